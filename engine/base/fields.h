@@ -1,0 +1,29 @@
+/// One list of fields per struct, from which configs are filled, states are allocated, saved and bound.
+///
+/// Write `HEDON_FIELDS(SolverConfig, dt, passes)` as the last line of a struct without padding. A field that is
+/// missing from the list makes the sizes differ and does not compile.
+#pragma once
+
+#include <cstddef>
+
+#define HEDON_PARENS ()
+#define HEDON_EXPAND(...) HEDON_EXPAND3(HEDON_EXPAND3(HEDON_EXPAND3(HEDON_EXPAND3(__VA_ARGS__))))
+#define HEDON_EXPAND3(...) HEDON_EXPAND2(HEDON_EXPAND2(HEDON_EXPAND2(HEDON_EXPAND2(__VA_ARGS__))))
+#define HEDON_EXPAND2(...) HEDON_EXPAND1(HEDON_EXPAND1(HEDON_EXPAND1(HEDON_EXPAND1(__VA_ARGS__))))
+#define HEDON_EXPAND1(...) __VA_ARGS__
+#define HEDON_EACH(macro, type, ...) __VA_OPT__(HEDON_EXPAND(HEDON_EACH_STEP(macro, type, __VA_ARGS__)))
+#define HEDON_EACH_STEP(macro, type, first, ...) \
+  macro(type, first) __VA_OPT__(HEDON_EACH_AGAIN HEDON_PARENS(macro, type, __VA_ARGS__))
+#define HEDON_EACH_AGAIN() HEDON_EACH_STEP
+
+#define HEDON_SIZE_OF(type, field) +sizeof(type::field)
+#define HEDON_VISIT(type, field) visit(#field, &type::field);
+
+/// Gives `Type::for_each_field(visit)`, which calls `visit(name, &Type::field)` for each field in order.
+#define HEDON_FIELDS(Type, ...)                                                            \
+  template <class Visit>                                                                   \
+  static void for_each_field(Visit&& visit) {                                              \
+    static_assert(sizeof(Type) == (0 HEDON_EACH(HEDON_SIZE_OF, Type, __VA_ARGS__)),        \
+                  "HEDON_FIELDS of " #Type " misses a field, or the struct has padding");  \
+    HEDON_EACH(HEDON_VISIT, Type, __VA_ARGS__)                                             \
+  }

@@ -1,0 +1,119 @@
+/// Elementary functions with the same bits on every machine: only IEEE + - * / sqrt and bit operations.
+///
+/// The C library's versions differ between systems, so a run could not be repeated elsewhere. All work in double and
+/// round once to float: relative error below 1e-7 over the stated ranges, tested against the C library.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/device.h"
+
+namespace hedon {
+
+inline constexpr double PI = 3.14159265358979323846;
+inline constexpr float PI_F = 3.14159265358979323846f;
+inline constexpr float TWO_PI_F = 6.28318530717958647692f;
+
+HEDON_FN double bits_to_double(uint64_t bits) {
+  double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+HEDON_FN uint64_t double_to_bits(double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/// e^x for any x; below -700 it is 0, above 700 it stays at e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2.
+HEDON_FN double exp_double(double x) {
+  if (x < -700.0) return 0.0;
+  if (x > 700.0) x = 700.0;
+  const double n = floor(x * 1.4426950408889634074 + 0.5);
+  const double r = (x - n * 0.69314718036912381649) - n * 1.9082149292705877e-10;
+  double p = 1.0 / 39916800.0;
+  p = p * r + 1.0 / 3628800.0;
+  p = p * r + 1.0 / 362880.0;
+  p = p * r + 1.0 / 40320.0;
+  p = p * r + 1.0 / 5040.0;
+  p = p * r + 1.0 / 720.0;
+  p = p * r + 1.0 / 120.0;
+  p = p * r + 1.0 / 24.0;
+  p = p * r + 1.0 / 6.0;
+  p = p * r + 0.5;
+  p = p * r + 1.0;
+  p = p * r + 1.0;
+  return p * bits_to_double(static_cast<uint64_t>(static_cast<int64_t>(n) + 1023) << 52);
+}
+
+/// Natural logarithm of a positive, normal x, by the series of atanh around 1.
+HEDON_FN double log_double(double x) {
+  uint64_t bits = double_to_bits(x);
+  int exponent = static_cast<int>(bits >> 52) - 1023;
+  double m = bits_to_double((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL);
+  if (m > 1.4142135623730950488) {
+    m *= 0.5;
+    exponent += 1;
+  }
+  const double s = (m - 1.0) / (m + 1.0);
+  const double z = s * s;
+  double p = 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z + 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z + 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z + 1.0 / 3.0;
+  p = p * z + 1.0;
+  return exponent * 0.69314718055994530942 + 2.0 * s * p;
+}
+
+/// Sine and cosine of x [rad], |x| < 1e6.
+HEDON_FN void sincos_double(double x, double* sine, double* cosine) {
+  const double n = floor(x * (2.0 / PI) + 0.5);
+  const double r = (x - n * 1.57079632673412561417) - n * 6.07710050650619224932e-11;
+  const double z = r * r;
+  double s = 1.0 / 6227020800.0;
+  s = s * z - 1.0 / 39916800.0;
+  s = s * z + 1.0 / 362880.0;
+  s = s * z - 1.0 / 5040.0;
+  s = s * z + 1.0 / 120.0;
+  s = s * z - 1.0 / 6.0;
+  s = s * z * r + r;
+  double c = 1.0 / 479001600.0;
+  c = c * z - 1.0 / 3628800.0;
+  c = c * z + 1.0 / 40320.0;
+  c = c * z - 1.0 / 720.0;
+  c = c * z + 1.0 / 24.0;
+  c = c * z - 0.5;
+  c = c * z + 1.0;
+  switch (static_cast<int64_t>(n) & 3) {
+    case 0: *sine = s; *cosine = c; break;
+    case 1: *sine = c; *cosine = -s; break;
+    case 2: *sine = -s; *cosine = -c; break;
+    default: *sine = -c; *cosine = s; break;
+  }
+}
+
+HEDON_FN float exp_float(float x) { return static_cast<float>(exp_double(x)); }
+HEDON_FN float log_float(float x) { return static_cast<float>(log_double(x)); }
+HEDON_FN float sigmoid(float x) { return static_cast<float>(1.0 / (1.0 + exp_double(-static_cast<double>(x)))); }
+
+HEDON_FN void sincos_float(float x, float* sine, float* cosine) {
+  double s, c;
+  sincos_double(x, &s, &c);
+  *sine = static_cast<float>(s);
+  *cosine = static_cast<float>(c);
+}
+
+/// Wraps an angle [rad] that left [0, 2π) by at most one turn back into it.
+HEDON_FN float wrap_angle(float angle) {
+  if (angle < 0.0f) angle += TWO_PI_F;
+  if (angle >= TWO_PI_F) angle -= TWO_PI_F;
+  return angle < 0.0f ? 0.0f : angle;
+}
+
+}  // namespace hedon

@@ -1,0 +1,79 @@
+/// Threads that run the same code over the same world: the group that every step rule is written for.
+///
+/// Each member calls the same functions. `for_each` and `once` end with a barrier, so what one phase wrote the next
+/// may read. A loop body writes only what belongs to its own index; hence results do not depend on the team's size.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+namespace hedon {
+
+/// What the members of a team share.
+struct TeamState {
+  std::atomic<int> waiting{0};
+  std::atomic<uint32_t> phase{0};
+  std::atomic<int> next{0};
+  int size = 1;
+};
+
+class Team {
+ public:
+  Team(TeamState& state, int rank) : state_(&state), rank_(rank), size_(state.size) {}
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+  /// Waits until all members arrive. Spins first, since phases last microseconds, then yields the processor.
+  void barrier() {
+    if (size_ == 1) return;
+    const uint32_t phase = state_->phase.load(std::memory_order_relaxed);
+    if (state_->waiting.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
+      state_->waiting.store(0, std::memory_order_relaxed);
+      state_->next.store(0, std::memory_order_relaxed);
+      state_->phase.store(phase + 1, std::memory_order_release);
+      return;
+    }
+    for (int spin = 0; state_->phase.load(std::memory_order_acquire) == phase; ++spin) {
+      if (spin > 4000) std::this_thread::yield();
+    }
+  }
+
+  /// Calls body(i) for i in [0, count), in contiguous blocks of nearly equal size: for many small equal pieces.
+  template <class Body>
+  void for_each(int count, Body&& body) {
+    const int first = static_cast<int>(static_cast<int64_t>(count) * rank_ / size_);
+    const int last = static_cast<int>(static_cast<int64_t>(count) * (rank_ + 1) / size_);
+    for (int i = first; i < last; ++i) body(i);
+    barrier();
+  }
+
+  /// Calls body(i) for i in [0, count), each claimed when a member is free: for few large or unequal pieces.
+  template <class Body>
+  void for_each_claimed(int count, Body&& body) {
+    if (size_ == 1) {
+      for (int i = 0; i < count; ++i) body(i);
+      return;
+    }
+    for (int i = state_->next.fetch_add(1, std::memory_order_relaxed); i < count;
+         i = state_->next.fetch_add(1, std::memory_order_relaxed)) {
+      body(i);
+    }
+    barrier();
+  }
+
+  /// Calls body() on one member while the others wait.
+  template <class Body>
+  void once(Body&& body) {
+    if (rank_ == 0) body();
+    barrier();
+  }
+
+ private:
+  TeamState* state_;
+  int rank_;
+  int size_;
+};
+
+}  // namespace hedon

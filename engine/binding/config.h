@@ -1,0 +1,92 @@
+/// Fills the engine's config structs from nested Python dicts and sequences: one generic way for all of them.
+///
+/// A missing or an extra name is an error that gives the path, as is a value of the wrong type.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include "world/config.h"
+
+namespace hedon {
+
+/// Names of an enumeration's values, for `fill`.
+template <class E>
+struct EnumNames;
+#define HEDON_ENUM(E, names)                  \
+  template <>                                 \
+  struct EnumNames<E> {                       \
+    static constexpr auto& text = names;      \
+  }
+HEDON_ENUM(CriticTarget, CRITIC_TARGET_NAMES);
+HEDON_ENUM(MutationNoise, MUTATION_NOISE_NAMES);
+HEDON_ENUM(ActionNorm, ACTION_NORM_NAMES);
+HEDON_ENUM(ObservationScaling, OBSERVATION_SCALING_NAMES);
+HEDON_ENUM(PlacementForm, PLACEMENT_FORM_NAMES);
+HEDON_ENUM(Starvation, STARVATION_NAMES);
+#undef HEDON_ENUM
+
+template <class T>
+struct IsFixedList : std::false_type {};
+template <class T, int N>
+struct IsFixedList<FixedList<T, N>> : std::true_type {};
+
+template <class T>
+void fill(nanobind::handle value, T& out, const std::string& path) {
+  namespace nb = nanobind;
+  if constexpr (std::is_enum_v<T>) {
+    const auto name = nb::cast<std::string>(value);
+    int at = 0;
+    for (const char* text : EnumNames<T>::text) {
+      if (name == text) {
+        out = static_cast<T>(at);
+        return;
+      }
+      ++at;
+    }
+    throw nb::value_error((path + ": unknown name '" + name + "'").c_str());
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    if (!nb::try_cast<T>(value, out)) {
+      // An int where a float is asked for is fine; anything else is not.
+      if constexpr (std::is_floating_point_v<T>) {
+        out = static_cast<T>(nb::cast<double>(nb::float_(value)));
+      } else {
+        throw nb::type_error((path + ": wrong type").c_str());
+      }
+    }
+  } else if constexpr (std::is_same_v<T, Vec2>) {
+    fill(value[0], out.x, path + "[0]");
+    fill(value[1], out.y, path + "[1]");
+  } else if constexpr (IsFixedList<T>::value) {
+    const size_t count = nb::len(value);
+    if (count > static_cast<size_t>(T::capacity)) throw nb::value_error((path + ": too many items").c_str());
+    out.count = static_cast<int32_t>(count);
+    for (size_t i = 0; i < count; ++i) fill(value[i], out.items[i], path + "[" + std::to_string(i) + "]");
+  } else {
+    const auto dict = nb::cast<nb::dict>(value);
+    std::set<std::string> known;
+    T::for_each_field([&](const char* name, auto member) {
+      known.insert(name);
+      const std::string inner = path.empty() ? name : path + "." + name;
+      if (!dict.contains(name)) throw nb::key_error((inner + ": missing").c_str());
+      fill(nb::object(dict[name]), out.*member, inner);
+    });
+    for (auto [key, unused] : dict) {
+      const auto name = nb::cast<std::string>(key);
+      if (!known.contains(name)) throw nb::key_error((path + "." + name + ": unknown").c_str());
+    }
+  }
+}
+
+/// A config struct from a nested dict.
+template <class T>
+T to_config(nanobind::dict dict) {
+  T config{};
+  fill(dict, config, "");
+  return config;
+}
+
+}  // namespace hedon

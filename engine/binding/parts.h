@@ -1,0 +1,10 @@
+/// What each part of the binding adds to the module.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace hedon {
+
+void bind_random(nanobind::module_& module);
+
+}  // namespace hedon

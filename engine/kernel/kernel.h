@@ -1,0 +1,93 @@
+/// The table of hot kernels. One table per instruction set; one is chosen when a simulation is made.
+///
+/// The units that fill a table are compiled for their instruction set, so they define nothing that the linker could
+/// take for other code: everything in them is in an anonymous namespace, and they include no standard containers.
+#pragma once
+
+#include <cstdint>
+
+#include "learning/config.h"
+#include "learning/network.h"
+#include "learning/observation.h"
+
+namespace hedon {
+
+/// One learner's rollout of `count` steps, and the order of its minibatches.
+struct PpoBatch {
+  const PackedObservation* observation;  ///< (count)
+  const float* action;                   ///< (count, 2), before the sigmoid
+  const float* log_prob;                 ///< (count), of the joint action under the policy that acted
+  const float* advantage;                ///< (count)
+  const float* target;                   ///< (count), of the value
+  const int32_t* order;                  ///< (update_epochs, count), a permutation of the steps per epoch
+  int32_t count;                         ///< a multiple of minibatch_size
+};
+
+/// One learner's parameters and Adam state, each of `NetworkShape::size()` floats, aligned to 64 bytes.
+struct Learner {
+  float* params;
+  float* first_moment;
+  float* second_moment;
+  int64_t* updates;  ///< Adam steps done so far in this life
+};
+
+/// Means over one minibatch: what one update saw.
+struct PpoLoss {
+  float policy, value, entropy;
+};
+
+/// Circles and segments that one agent may see, and the rays that look for them.
+struct RayScene {
+  const float* circle_x;  ///< relative to the agent's center [u]; (circles), readable to a multiple of 16
+  const float* circle_y;
+  const float* circle_radius;
+  const int32_t* circle_type;
+  int32_t circles;
+  const float* segment_ax;  ///< ends relative to the agent's center [u]; (segments)
+  const float* segment_ay;
+  const float* segment_bx;
+  const float* segment_by;
+  int32_t segments;
+  int32_t wall_type;
+  const float* direction_x;  ///< (32), unit vectors; what lies past `rays` repeats the last
+  const float* direction_y;
+  int32_t rays;
+  float start;   ///< distance from the center at which rays start: the body's radius [u]
+  float length;  ///< of a ray, from its start [u]
+};
+
+struct Kernel {
+  const char* name;
+
+  /// Folds the -1 of all ray channels into the first bias: folded[j] = b1[j] - sum of w1[row, j] over all ray rows.
+  void (*fold_bias)(const NetworkShape& shape, const float* params, float* folded);
+
+  /// Mean (2) and value (1) for one observation; `folded` (64) comes from `fold_bias`.
+  void (*forward)(const NetworkShape& shape, const float* params, const float* folded,
+                  const PackedObservation& observation, float* output);
+
+  /// Loss and gradient of one minibatch given by `order[0 .. minibatch_size)`; `gradient` has `shape.size()` floats.
+  PpoLoss (*gradient)(const NetworkShape& shape, const LearningConfig& config, const float* params,
+                      const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient);
+
+  /// One Adam step on `size` parameters.
+  void (*adam)(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner);
+
+  /// All epochs and minibatches of one learner; returns the means of the last epoch.
+  PpoLoss (*update)(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
+                    const Learner& learner);
+
+  /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type` likewise.
+  void (*cast_rays)(const RayScene& scene, float* reading, uint8_t* type);
+};
+
+/// Floats of scratch that `gradient` and `update` need, aligned to 64 bytes.
+int64_t ppo_scratch_size(const NetworkShape& shape, const LearningConfig& config);
+
+/// The kernel of that name if this processor can run it, the best one for an empty name, null for an unknown one.
+const Kernel* find_kernel(const char* name);
+
+/// Names of the kernels that this processor can run, best first, null-terminated.
+const char* const* kernel_names();
+
+}  // namespace hedon

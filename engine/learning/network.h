@@ -1,0 +1,30 @@
+/// The network of one agent: Linear(inputs, 64)–tanh–Linear(64, 64)–tanh, heads mean (2) and value (1), log-sd (2).
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "learning/observation.h"
+
+namespace hedon {
+
+inline constexpr int HIDDEN = 64;
+inline constexpr int ACTIONS = 2;
+inline constexpr int OUTPUTS = ACTIONS + 1;  ///< mean of each action, then the value
+
+/// Where each layer lies in the flat array of an agent's parameters. Weights are stored by input row: `w[in][out]`.
+/// The layout is a multiple of 16 floats; what pads it is 0 and stays 0.
+struct NetworkShape {
+  ObservationShape observation;
+
+  HEDON_FN int32_t w1() const { return 0; }                                            ///< (inputs, 64)
+  HEDON_FN int32_t b1() const { return observation.size() * HIDDEN; }                  ///< (64)
+  HEDON_FN int32_t w2() const { return b1() + HIDDEN; }                                ///< (64, 64)
+  HEDON_FN int32_t b2() const { return w2() + HIDDEN * HIDDEN; }                       ///< (64)
+  HEDON_FN int32_t w3() const { return b2() + HIDDEN; }                                ///< (3, 64): by output, not by input
+  HEDON_FN int32_t b3() const { return w3() + OUTPUTS * HIDDEN; }                      ///< (3)
+  HEDON_FN int32_t log_sd() const { return b3() + OUTPUTS; }                           ///< (2)
+  HEDON_FN int32_t size() const { return b3() + 16; }
+};
+
+}  // namespace hedon

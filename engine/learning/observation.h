@@ -1,0 +1,46 @@
+/// The packed observation: what a network reads, without the many entries that are known beforehand.
+///
+/// A ray reads at most one channel other than -1, and touch is mostly 0. With x' = x + 1 for the rays the -1 folds into
+/// the bias of the first layer (exact algebra), and the layer becomes one row-addition per ray instead of one per
+/// channel. The full observation, in the order of the model's specification, is recovered by `unpack`.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+
+namespace hedon {
+
+inline constexpr int PACKED_RAYS = 32;
+inline constexpr int MAX_DENSE = 6;
+
+/// One observation: 192 bytes, three cache lines.
+struct alignas(64) PackedObservation {
+  float ray[PACKED_RAYS];         ///< reading + 1 of the channel that the ray hit, in [1, 2]; 0 where it hit nothing
+  uint8_t ray_type[PACKED_RAYS];  ///< that channel; 0 where the ray hit nothing
+  uint64_t touch;                 ///< bit type * sectors + sector
+  float dense[MAX_DENSE];         ///< velocity (2), heading (1, or sine and cosine), angular velocity, energy
+};
+static_assert(sizeof(PackedObservation) == 192);
+
+/// Sizes of the observation. Input row of ray r and type k: r * types + k; then touch (type, sector); then dense.
+struct ObservationShape {
+  int32_t rays;
+  int32_t types;
+  int32_t touches;  ///< types * sectors, at most 64
+  int32_t dense;    ///< 5 or 6
+
+  HEDON_FN int32_t size() const { return rays * types + touches + dense; }
+};
+
+/// Writes the full observation: `size()` floats.
+HEDON_FN void unpack(const ObservationShape& shape, const PackedObservation& packed, float* full) {
+  int32_t at = 0;
+  for (int32_t r = 0; r < shape.rays; ++r) {
+    for (int32_t k = 0; k < shape.types; ++k, ++at) full[at] = packed.ray_type[r] == k ? packed.ray[r] - 1.0f : -1.0f;
+  }
+  for (int32_t t = 0; t < shape.touches; ++t, ++at) full[at] = static_cast<float>((packed.touch >> t) & 1u);
+  for (int32_t d = 0; d < shape.dense; ++d, ++at) full[at] = packed.dense[d];
+}
+
+}  // namespace hedon

@@ -1,0 +1,32 @@
+/// Settings of the rigid-body physics. Meaning, unit, range and source of each stand in `src/hedon/config/physics.py`.
+#pragma once
+
+#include <cstdint>
+
+#include "base/fields.h"
+
+namespace hedon {
+
+struct PhysicsConfig {
+  float dt;
+  int32_t substeps;
+  int32_t velocity_passes;
+  int32_t position_passes;
+  float linear_damping;
+  float angular_damping;
+  float max_speed;
+  float max_angular_speed;
+  float friction;
+  float restitution;
+  float restitution_threshold;
+  float correction_rate;
+  float slop;
+  float max_correction;
+  float neighbor_skin;
+
+  HEDON_FIELDS(PhysicsConfig, dt, substeps, velocity_passes, position_passes, linear_damping, angular_damping,
+               max_speed, max_angular_speed, friction, restitution, restitution_threshold, correction_rate, slop,
+               max_correction, neighbor_skin)
+};
+
+}  // namespace hedon
