@@ -145,7 +145,7 @@ class PythonSimulation {
 
   static std::vector<Segment> to_segments(const WallsIn& walls) {
     std::vector<Segment> segments;
-    for (size_t i = 0; i < walls.shape(0); ++i) segments.push_back({walls(i, 0), walls(i, 1), walls(i, 2), walls(i, 3)});
+    for (size_t i = 0; i < walls.shape(0); ++i) segments.push_back({{walls(i, 0), walls(i, 1)}, {walls(i, 2), walls(i, 3)}});
     return segments;
   }
 

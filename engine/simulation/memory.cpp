@@ -2,6 +2,13 @@
 
 namespace hedon {
 
+PhysicsCapacity world_physics_capacity(const World& world) {
+  const WorldConfig& config = *world.config;
+  const WorldShape& shape = *world.shape;
+  return physics_capacity(shape.slots, shape.foods, shape.walls, config.arena.width, config.arena.height,
+                          world.constants->body, config.physics.neighbor_skin);
+}
+
 void set_counts(World& world) {
   const WorldShape& shape = *world.shape;
   const int64_t slots = shape.slots, kinds = shape.kinds, genes = shape.genome.size(), params = shape.network.size();
@@ -12,7 +19,10 @@ void set_counts(World& world) {
   state.alive.count = state.living.count = state.free.count = state.life.count = state.touch.count = slots;
   state.eaten.count = slots * kinds;
   state.genome.count = slots * genes;
-  set_counts(state.physics, shape.slots, shape.foods, shape.walls);
+  const PhysicsCapacity capacity = world_physics_capacity(world);
+  const auto set_count = [](const char*, auto& array, int64_t count) { array.count = count; };
+  visit_state(state.physics, capacity, set_count);
+  visit_scratch(world.physics_scratch, capacity, set_count);
   state.physics.circles.x.count = state.physics.circles.y.count = state.physics.circles.present.count = shape.foods;
   state.food_stock.count = kinds;
   state.params.count = state.first_moment.count = state.second_moment.count = slots * params;
@@ -24,8 +34,6 @@ void set_counts(World& world) {
   state.event.count = shape.events;
   state.event_eaten.count = shape.events * kinds;
   state.event_genome.count = shape.events * genes;
-
-  set_counts(world.physics_scratch, shape.slots, shape.foods, shape.walls);
 
   for_each_array(world.scratch, "", [&](const std::string&, auto& array) { array.count = slots; });
   world.scratch.meal.count = slots * kinds;

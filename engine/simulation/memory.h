@@ -79,6 +79,9 @@ int64_t lay_out(Struct& fields, char* at) {
   return offset;
 }
 
+/// How many bodies, circles, walls and pairs the physics of a world must hold.
+PhysicsCapacity world_physics_capacity(const World& world);
+
 /// Sets how many items each array of a world holds.
 void set_counts(World& world);
 

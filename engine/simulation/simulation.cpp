@@ -47,7 +47,6 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     world.constants = &constants_;
     world.kernel = kernel_;
     world.seed = seeds[i];
-    world.walls = {walls_.data(), static_cast<int64_t>(walls_.size())};
     set_counts(world);
     const auto lay_out_all = [&](char* at) {
       int64_t bytes = 0;
@@ -78,8 +77,8 @@ void Simulation::empty(World& world) {
     world.state.free[clock.free_count++] = slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)];
   }
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
-  init_physics(world.state.physics, config_.physics, constants_.body, config_.body.food_radius, config_.arena.width,
-               config_.arena.height);
+  init_physics(world.state.physics, world_physics_capacity(world));
+  for (size_t w = 0; w < walls_.size(); ++w) world.state.physics.walls[static_cast<int64_t>(w)] = walls_[w];
 }
 
 bool Simulation::set_scene(int index, const SceneInput& scene) {

@@ -37,9 +37,8 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
   TouchVisitor touch{&world};
   const StepScratch& scratch = world.scratch;
   physics_step(group, world.config->physics, world.constants->body, world.state.physics, world.physics_scratch,
-               PhysicsInput{{state.living.data, clock.living_count}, scratch.force_x, scratch.force_y, scratch.torque,
-                            {state.physics.circles.x, state.physics.circles.y, state.physics.circles.present, world.config->body.food_radius}, world.walls},
-               touch, world.fault());
+               state.living, clock.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
+               world.fault());
   lap(Part::physics);
 
   group.once([&] { eat(world); });
