@@ -5,6 +5,8 @@
 
 namespace hedon {
 
+void bind_kernel(nanobind::module_& module);
+void bind_learning(nanobind::module_& module);
 void bind_random(nanobind::module_& module);
 
 }  // namespace hedon

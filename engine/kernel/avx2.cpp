@@ -1,1 +1,23 @@
-/// Filled by the kernels.
+/// The kernels for x86 processors with AVX2 and FMA (2013 and later).
+#if defined(__x86_64__)
+#include "lanes/avx2.h"
+
+#include "kernel/table.h"
+
+namespace hedon {
+
+/// How the products are cut up to fill this instruction set's 16 registers of 8 floats.
+struct Avx2Shape {
+  static constexpr int rows = 6;           ///< of a product's tile
+  static constexpr int lanes = 1;          ///< of 16 columns in a tile
+  static constexpr int forward_lanes = 4;  ///< the same for a single row
+  static constexpr int samples = 1;        ///< that go through the first layer together
+  static constexpr int chains = 6;        ///< for the measure of the processor's ceiling
+};
+
+extern const Kernel AVX2_KERNEL;
+const Kernel AVX2_KERNEL = make_table<Avx2Shape>("avx2");
+
+}  // namespace hedon
+
+#endif

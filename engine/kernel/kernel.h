@@ -78,11 +78,16 @@ struct Kernel {
                     const Learner& learner);
 
   /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type` likewise.
+  /// Both have PACKED_RAYS entries, 0 past the scene's rays.
   void (*cast_rays)(const RayScene& scene, float* reading, uint8_t* type);
+
+  /// Multiply-adds in registers, to measure this processor's ceiling. Reads a factor (below 1) from `result` and
+  /// leaves there a number that depends on all of them. Returns how many floating-point operations that were.
+  int64_t (*multiply_adds)(int64_t rounds, float* result);
 };
 
 /// Floats of scratch that `gradient` and `update` need, aligned to 64 bytes.
-int64_t ppo_scratch_size(const NetworkShape& shape, const LearningConfig& config);
+int64_t ppo_scratch_size(const NetworkShape& shape);
 
 /// The kernel of that name if this processor can run it, the best one for an empty name, null for an unknown one.
 const Kernel* find_kernel(const char* name);

@@ -30,7 +30,7 @@ struct ObservationShape {
   int32_t touches;  ///< types * sectors, at most 64
   int32_t dense;    ///< 5 or 6
 
-  HEDON_FN int32_t size() const { return rays * types + touches + dense; }
+  HEDON_INLINE int32_t size() const { return rays * types + touches + dense; }
 };
 
 /// Writes the full observation: `size()` floats.

@@ -1,0 +1,85 @@
+/// Kernels that belong to no part of the model by themselves: rays, and the measure of the processor.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "binding/memory.h"
+#include "binding/parts.h"
+#include "kernel/kernel.h"
+
+namespace nb = nanobind;
+
+namespace hedon {
+namespace {
+
+using Columns = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Types = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// Columns of a row-major array, each in its own aligned memory, readable to a multiple of 16.
+Aligned<float> column_of(const Columns& rows, size_t column) {
+  const size_t count = rows.shape(0), width = rows.shape(1);
+  Aligned<float> out((count + 15) / 16 * 16);
+  for (size_t i = 0; i < count; ++i) out.get()[i] = rows.data()[i * width + column];
+  return out;
+}
+
+nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circle_type, Columns segments,
+                    int32_t wall_type, Columns direction, float start, float length, int64_t repeats) {
+  const Kernel& kernel = kernel_by_name(kernel_name);
+  const size_t rays = direction.shape(0);
+  if (circles.shape(1) != 3) throw nb::value_error("circles: columns x, y, radius");
+  if (segments.shape(1) != 4) throw nb::value_error("segments: columns ax, ay, bx, by");
+  if (direction.shape(1) != 2 || rays < 1 || rays > PACKED_RAYS) throw nb::value_error("direction: (1 to 32, 2)");
+  check_length(circle_type.size(), circles.shape(0), "circle_type");
+  const Aligned<float> x = column_of(circles, 0), y = column_of(circles, 1), radius = column_of(circles, 2);
+  const Aligned<float> ax = column_of(segments, 0), ay = column_of(segments, 1);
+  const Aligned<float> bx = column_of(segments, 2), by = column_of(segments, 3);
+  const Aligned<float> direction_x(PACKED_RAYS), direction_y(PACKED_RAYS);
+  for (size_t r = 0; r < PACKED_RAYS; ++r) {
+    const size_t from = r < rays ? r : rays - 1;
+    direction_x.get()[r] = direction.data()[2 * from];
+    direction_y.get()[r] = direction.data()[2 * from + 1];
+  }
+  const Aligned<int32_t> type(circle_type.data(), circle_type.size());
+  const RayScene scene = {x.get(),  y.get(),  radius.get(), type.get(), static_cast<int32_t>(circles.shape(0)),
+                          ax.get(), ay.get(), bx.get(),     by.get(),   static_cast<int32_t>(segments.shape(0)),
+                          wall_type, direction_x.get(), direction_y.get(), static_cast<int32_t>(rays), start, length};
+  float reading[PACKED_RAYS];
+  uint8_t hit[PACKED_RAYS];
+  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(scene, reading, hit);
+  return nb::make_tuple(to_numpy(reading, {rays}), to_numpy(hit, {rays}));
+}
+
+double calibrate(const std::string& kernel_name, int64_t rounds) {
+  const Kernel& kernel = kernel_by_name(kernel_name);
+  float result = 0.5f;
+  const auto before = std::chrono::steady_clock::now();
+  const int64_t operations = kernel.multiply_adds(rounds, &result);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
+  if (!(result > 0.0f)) throw nb::value_error("rounds: must be positive");
+  return static_cast<double>(operations) / seconds.count() * 1e-9;
+}
+
+}  // namespace
+
+void bind_kernel(nb::module_& module) {
+  nb::module_ kernel = module.def_submodule("kernel", "Kernels by themselves: one implementation per instruction set.");
+  kernel.def("kernel_names", [] {
+    std::vector<std::string> names;
+    for (const char* const* name = kernel_names(); *name != nullptr; ++name) names.emplace_back(*name);
+    return names;
+  }, "Names of the kernels that this processor can run, best first.");
+  kernel.def("cast_rays", cast_rays, nb::arg("kernel"), nb::arg("circles"), nb::arg("circle_type"), nb::arg("segments"),
+             nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
+             "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
+             "done `repeats` times, to be timed.");
+  kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"),
+             "Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels.");
+}
+
+}  // namespace hedon

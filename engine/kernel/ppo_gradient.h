@@ -1,0 +1,189 @@
+/// Loss and gradient of one minibatch of PPO, in blocks of samples that stay in the caches.
+#pragma once
+
+#include "kernel/network_forward.h"
+#include "kernel/ppo_loss.h"
+#include "kernel/ppo_scratch.h"
+
+namespace hedon {
+namespace {
+
+inline constexpr int DENSE_STRIDE = 8;
+
+/// The samples `order[0 .. count)` of a block: pointers to their observations, and what the loss needs, filled up to a
+/// multiple of 16 by repeating the last with no share.
+HEDON_INLINE void gather(const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
+                         const PackedObservation** observation) {
+  const int padded = (count + LANES - 1) / LANES * LANES;
+  for (int s = 0; s < padded; ++s) {
+    const int32_t i = order[s < count ? s : count - 1];
+    observation[s] = batch.observation + i;
+    block.action[0][s] = batch.action[ACTIONS * i];
+    block.action[1][s] = batch.action[ACTIONS * i + 1];
+    block.log_prob[s] = batch.log_prob[i];
+    block.advantage[s] = batch.advantage[i];
+    block.target[s] = batch.target[i];
+    block.share[s] = s < count ? share : 0.0f;
+  }
+}
+
+/// Backward through the heads: adds to their weights' gradient and the second bias's, and replaces the second hidden
+/// layer by the derivative by that layer's sums.
+HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params, const BlockSamples& block, int count,
+                                 float* hidden2, float* gradient) {
+  for (int column = 0; column < HIDDEN; column += LANES) {
+    Lanes weight[OUTPUTS];
+    Lanes total[OUTPUTS];
+    unroll<OUTPUTS>([&](auto o) HEDON_INLINED {
+      weight[o] = load(params + shape.w3() + o * HIDDEN + column);
+      total[o] = load(gradient + shape.w3() + o * HIDDEN + column);
+    });
+    Lanes bias = load(gradient + shape.b2() + column);
+    float* hidden = hidden2 + column;
+    for (int s = 0; s < count; ++s, hidden += HIDDEN) {
+      const Lanes h = load(hidden);
+      Lanes by_hidden = broadcast(block.output[0][s]) * weight[0];
+      total[0] = multiply_add(broadcast(block.output[0][s]), h, total[0]);
+      unroll<OUTPUTS - 1>([&](auto o) HEDON_INLINED {
+        const Lanes by_output = broadcast(block.output[o + 1][s]);
+        by_hidden = multiply_add(by_output, weight[o + 1], by_hidden);
+        total[o + 1] = multiply_add(by_output, h, total[o + 1]);
+      });
+      const Lanes by_sum = by_hidden * (broadcast(1.0f) - h * h);
+      bias = bias + by_sum;
+      store(hidden, by_sum);
+    }
+    unroll<OUTPUTS>([&](auto o) HEDON_INLINED { store(gradient + shape.w3() + o * HIDDEN + column, total[o]); });
+    store(gradient + shape.b2() + column, bias);
+  }
+}
+
+/// Backward through the first layer: adds each sample's derivative to the rows of its rays, touches and dense entries.
+template <class Shape>
+HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedObservation* const* observation,
+                                       int count, const float* by_sum, float* gradient) {
+  const ObservationShape& sizes = shape.observation;
+  float* const touch_rows = gradient + shape.w1() + sizes.rays * sizes.types * HIDDEN;
+  float* const dense_rows = touch_rows + sizes.touches * HIDDEN;
+  alignas(64) float dense[BLOCK * DENSE_STRIDE];
+  Lanes bias[WIDTH];
+  unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(gradient + shape.b1() + c * LANES); });
+  for (int s = 0; s < count; ++s) {
+    const PackedObservation& seen = *observation[s];
+    Lanes by[WIDTH];
+    unroll<WIDTH>([&](auto c) HEDON_INLINED {
+      by[c] = load(by_sum + s * HIDDEN + c * LANES);
+      bias[c] = bias[c] + by[c];
+    });
+    float* group = gradient + shape.w1();
+    for (int32_t r = 0; r < sizes.rays; ++r, group += sizes.types * HIDDEN) {
+      float* row = group + seen.ray_type[r] * HIDDEN;
+      const Lanes x = broadcast(seen.ray[r]);
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { store(row + c * LANES, multiply_add(x, by[c], load(row + c * LANES))); });
+    }
+    for (uint64_t bits = seen.touch; bits != 0; bits &= bits - 1) {
+      float* row = touch_rows + __builtin_ctzll(bits) * HIDDEN;
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { store(row + c * LANES, load(row + c * LANES) + by[c]); });
+    }
+    for (int d = 0; d < MAX_DENSE; ++d) dense[s * DENSE_STRIDE + d] = seen.dense[d];
+  }
+  unroll<WIDTH>([&](auto c) HEDON_INLINED { store(gradient + shape.b1() + c * LANES, bias[c]); });
+  multiply<Shape::rows, Shape::lanes, 1, DENSE_STRIDE>(
+      dense, by_sum, sizes.dense, count, [&](int row, int column) HEDON_INLINED { return load(dense_rows + row * HIDDEN + column); },
+      [&](int row, int column, Lanes total) HEDON_INLINED { store(dense_rows + row * HIDDEN + column, total); });
+}
+
+/// Forward, loss and backward of one block of at most BLOCK samples.
+template <class Shape>
+HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* params, const PpoBatch& batch,
+                                    const int32_t* order, int count, float share, const LossConstants& constants,
+                                    const PpoScratch& memory, float* gradient, LossSums& sums) {
+  BlockSamples block;
+  const PackedObservation* observation[BLOCK];
+  gather(batch, order, count, share, block, observation);
+
+  int s = 0;
+  for (; s + Shape::samples <= count; s += Shape::samples) {
+    first_layer<Shape::samples>(shape, params, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+  }
+  for (; s < count; ++s) first_layer<1>(shape, params, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+  second_layer<Shape>(shape, params, memory.hidden1, count, memory.hidden2);
+  const int padded = (count + LANES - 1) / LANES * LANES;
+  for (s = 0; s < padded; ++s) {
+    float output[OUTPUTS];
+    heads(shape, params, memory.hidden2 + (s < count ? s : count - 1) * HIDDEN, output);
+    unroll<OUTPUTS>([&](auto o) HEDON_INLINED { block.output[o][s] = output[o]; });
+  }
+
+  for (s = 0; s < padded; s += LANES) loss_of_lanes(constants, block, s, sums);
+
+  heads_backward(shape, params, block, count, memory.hidden2, gradient);
+  float* const w2 = gradient + shape.w2();
+  multiply<Shape::rows, Shape::lanes, 1, HIDDEN>(
+      memory.hidden1, memory.hidden2, HIDDEN, count,
+      [&](int row, int column) HEDON_INLINED { return load(w2 + row * HIDDEN + column); },
+      [&](int row, int column, Lanes total) HEDON_INLINED { store(w2 + row * HIDDEN + column, total); });
+  // Each tile reads and writes its own part of hidden1, which nothing else needs any more.
+  multiply<Shape::rows, Shape::lanes, HIDDEN, 1>(
+      memory.hidden2, memory.w2_transposed, count, HIDDEN, [&](int, int) HEDON_INLINED { return broadcast(0.0f); },
+      [&](int row, int column, Lanes total) HEDON_INLINED {
+        float* const at = memory.hidden1 + row * HIDDEN + column;
+        const Lanes h = load(at);
+        store(at, total * (broadcast(1.0f) - h * h));
+      });
+  first_layer_backward<Shape>(shape, observation, count, memory.hidden1, gradient);
+}
+
+/// Loss and gradient of one minibatch; see `Kernel::gradient`.
+template <class Shape>
+PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
+                              const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
+  const PpoScratch memory = split_scratch(scratch);
+  fold_bias(shape, params, memory.folded);
+  const float* const w2 = params + shape.w2();
+  for (int row = 0; row < HIDDEN; ++row) {
+    for (int column = 0; column < HIDDEN; ++column) memory.w2_transposed[column * HIDDEN + row] = w2[row * HIDDEN + column];
+  }
+  for (int32_t i = 0; i < shape.size(); i += LANES) store(gradient + i, broadcast(0.0f));
+
+  const int32_t size = config.minibatch_size;
+  const float share = 1.0f / static_cast<float>(size);
+  const float* const log_sd = params + shape.log_sd();
+  alignas(64) float sd_inverse[LANES] = {-log_sd[0], -log_sd[1]};
+  store(sd_inverse, exp_lanes(load(sd_inverse)));
+  const bool batch_mean = config.critic_target == CriticTarget::batch_mean;
+  float target_mean = 0.0f;
+  if (batch_mean) {
+    for (int32_t i = 0; i < size; ++i) target_mean += batch.target[order[i]];
+    target_mean *= share;
+  }
+  const float log_two_pi = 1.83787707f;
+  const LossConstants constants = {{broadcast(sd_inverse[0]), broadcast(sd_inverse[1])},
+                                   broadcast(log_sd[0] + log_sd[1] + log_two_pi),
+                                   broadcast(1.0f - config.clip_coef),
+                                   broadcast(1.0f + config.clip_coef),
+                                   broadcast(config.value_coef),
+                                   broadcast(target_mean),
+                                   batch_mean};
+  LossSums sums = zero_sums();
+  for (int32_t first = 0; first < size; first += BLOCK) {
+    const int count = size - first < BLOCK ? size - first : BLOCK;
+    gradient_of_block<Shape>(shape, params, batch, order + first, count, share, constants, memory, gradient, sums);
+  }
+
+  // The rays' -1: x = x' - 1, so each of their rows loses the sum of the derivatives, which is the bias's gradient.
+  const int32_t ray_rows = shape.observation.rays * shape.observation.types;
+  for (int32_t row = 0; row < ray_rows; ++row) {
+    unroll<WIDTH>([&](auto c) HEDON_INLINED {
+      float* const at = gradient + row * HIDDEN + c * LANES;
+      store(at, load(at) - load(gradient + shape.b1() + c * LANES));
+    });
+  }
+  unroll<OUTPUTS>([&](auto o) HEDON_INLINED { gradient[shape.b3() + o] = sum(sums.bias[o]); });
+  unroll<ACTIONS>([&](auto d) HEDON_INLINED { gradient[shape.log_sd() + d] = sum(sums.log_sd[d]) - config.entropy_coef; });
+  const float entropy = log_sd[0] + log_sd[1] + ACTIONS * 0.5f + log_two_pi;
+  return {sum(sums.policy), sum(sums.value), entropy};
+}
+
+}  // namespace
+}  // namespace hedon

@@ -1,0 +1,65 @@
+/// One learner's update: all epochs and minibatches, each a gradient and an Adam step.
+#pragma once
+
+#include "kernel/ppo_gradient.h"
+
+namespace hedon {
+namespace {
+
+/// base^exponent, by repeated squaring.
+HEDON_INLINE double power(double base, int64_t exponent) {
+  double result = 1.0;
+  for (; exponent > 0; exponent >>= 1, base *= base) {
+    if (exponent & 1) result *= base;
+  }
+  return result;
+}
+
+/// One Adam step: p -= rate · m̂ / (sqrt(v̂) + ε). Source: Kingma and Ba (2015), algorithm 1.
+void adam(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner) {
+  const int64_t step = ++*learner.updates;
+  const double correction1 = 1.0 - power(config.adam_beta1, step);
+  const double correction2 = 1.0 - power(config.adam_beta2, step);
+  const Lanes rate = broadcast(static_cast<float>(-config.learning_rate / correction1));
+  const Lanes root_scale = broadcast(static_cast<float>(__builtin_sqrt(1.0 / correction2)));
+  const Lanes epsilon = broadcast(config.adam_epsilon);
+  const Lanes beta1 = broadcast(config.adam_beta1);
+  const Lanes beta2 = broadcast(config.adam_beta2);
+  const Lanes rest1 = broadcast(1.0f - config.adam_beta1);
+  const Lanes rest2 = broadcast(1.0f - config.adam_beta2);
+  for (int32_t i = 0; i < size; i += LANES) {
+    const Lanes g = load(gradient + i);
+    const Lanes m = multiply_add(beta1, load(learner.first_moment + i), rest1 * g);
+    const Lanes v = multiply_add(beta2, load(learner.second_moment + i), rest2 * g * g);
+    store(learner.first_moment + i, m);
+    store(learner.second_moment + i, v);
+    const Lanes divisor = multiply_add(square_root(v), root_scale, epsilon);
+    store(learner.params + i, load(learner.params + i) + rate * m / divisor);
+  }
+}
+
+/// See `Kernel::update`.
+template <class Shape>
+PpoLoss update(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
+               const Learner& learner) {
+  float* const gradient = split_scratch(scratch).gradient;
+  const int32_t minibatches = batch.count / config.minibatch_size;
+  PpoLoss mean = {0.0f, 0.0f, 0.0f};
+  for (int32_t epoch = 0; epoch < config.update_epochs; ++epoch) {
+    mean = {0.0f, 0.0f, 0.0f};
+    for (int32_t i = 0; i < minibatches; ++i) {
+      const int32_t* order = batch.order + static_cast<int64_t>(epoch) * batch.count + i * config.minibatch_size;
+      const PpoLoss loss =
+          gradient_of_minibatch<Shape>(shape, config, learner.params, batch, order, scratch, gradient);
+      adam(config, shape.size(), gradient, learner);
+      mean.policy += loss.policy;
+      mean.value += loss.value;
+      mean.entropy += loss.entropy;
+    }
+  }
+  const float share = minibatches > 0 ? 1.0f / static_cast<float>(minibatches) : 0.0f;
+  return {mean.policy * share, mean.value * share, mean.entropy * share};
+}
+
+}  // namespace
+}  // namespace hedon

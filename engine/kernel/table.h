@@ -1,0 +1,20 @@
+/// Puts the kernels of one unit into its table. Include after the unit's lane type.
+#pragma once
+
+#include "kernel/calibrate.h"
+#include "kernel/cast_rays.h"
+#include "kernel/kernel.h"
+#include "kernel/network_forward.h"
+#include "kernel/ppo_update.h"
+
+namespace hedon {
+namespace {
+
+template <class Shape>
+constexpr Kernel make_table(const char* name) {
+  return {name, fold_bias,     forward<Shape>, gradient_of_minibatch<Shape>,
+          adam, update<Shape>, cast_rays,      multiply_adds<Shape>};
+}
+
+}  // namespace
+}  // namespace hedon

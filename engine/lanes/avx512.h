@@ -1,0 +1,56 @@
+/// 16 floats in one AVX-512 register. Included by one unit only, which is compiled for that instruction set.
+///
+/// The operations, the same in each file of this folder: `load` and `store` need 64-byte alignment; `multiply_add(a, b,
+/// c)` is a*b + c, rounded once; `smaller` and `larger` give b where either is NaN; comparisons with NaN are false;
+/// `sum` adds in a fixed tree (halves of 8, 4, 2, 1).
+#pragma once
+
+// GCC before 13 takes the undefined operands inside its own AVX-512 header for mistakes (GCC bug 105593).
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ < 13
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <immintrin.h>
+
+#include "lanes/unroll.h"
+
+namespace hedon {
+namespace {
+
+struct Lanes {
+  __m512 v;
+};
+using LaneMask = __mmask16;
+
+HEDON_INLINE Lanes load(const float* p) { return {_mm512_load_ps(p)}; }
+HEDON_INLINE void store(float* p, Lanes a) { _mm512_store_ps(p, a.v); }
+HEDON_INLINE Lanes broadcast(float x) { return {_mm512_set1_ps(x)}; }
+HEDON_INLINE Lanes operator+(Lanes a, Lanes b) { return {_mm512_add_ps(a.v, b.v)}; }
+HEDON_INLINE Lanes operator-(Lanes a, Lanes b) { return {_mm512_sub_ps(a.v, b.v)}; }
+HEDON_INLINE Lanes operator*(Lanes a, Lanes b) { return {_mm512_mul_ps(a.v, b.v)}; }
+HEDON_INLINE Lanes operator/(Lanes a, Lanes b) { return {_mm512_div_ps(a.v, b.v)}; }
+HEDON_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) { return {_mm512_fmadd_ps(a.v, b.v, c.v)}; }
+HEDON_INLINE Lanes square_root(Lanes a) { return {_mm512_sqrt_ps(a.v)}; }
+HEDON_INLINE Lanes smaller(Lanes a, Lanes b) { return {_mm512_min_ps(a.v, b.v)}; }
+HEDON_INLINE Lanes larger(Lanes a, Lanes b) { return {_mm512_max_ps(a.v, b.v)}; }
+HEDON_INLINE LaneMask operator<(Lanes a, Lanes b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ); }
+HEDON_INLINE LaneMask operator<=(Lanes a, Lanes b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
+HEDON_INLINE LaneMask both(LaneMask a, LaneMask b) { return static_cast<LaneMask>(a & b); }
+HEDON_INLINE bool any(LaneMask m) { return m != 0; }
+HEDON_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) { return {_mm512_mask_blend_ps(m, no.v, yes.v)}; }
+
+/// a * 2^n, where n is the integer in the low bits of `shifted` = n + 1.5 * 2^23.
+HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
+  const __m512i n = _mm512_slli_epi32(_mm512_castps_si512(shifted.v), 23);
+  return {_mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(a.v), n))};
+}
+
+HEDON_INLINE float sum(Lanes a) {
+  const __m256 eight = _mm256_add_ps(_mm512_castps512_ps256(a.v), _mm512_extractf32x8_ps(a.v, 1));
+  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+}
+
+}  // namespace
+}  // namespace hedon
