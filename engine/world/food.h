@@ -31,7 +31,8 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
   state.physics.circles.y[f] = place.y;
   state.physics.circles.present[f] = 1;
   state.food_stock[k].present += 1;
-  insert_circle(state.physics, f, place);
+  insert(state.physics.circle_grid, f, place.x, place.y);
+  state.physics.neighbors.head[0].stale = 1;
 }
 
 /// Tries up to `candidates` places until the foods present of kind `k` reach the floor of its internal number.
@@ -52,7 +53,8 @@ HEDON_FN void eat(World& world) {
     for (int32_t k = 0; k < world.shape->kinds; ++k) world.meal(state.living[i])[k] = 0;
   }
   int32_t found = 0;
-  for_each_marked_circle(state.physics, [&](int32_t slot, int32_t f) {
+  for_each_circle_pair(state.physics.neighbors, [&](int32_t slot, int32_t f, uint8_t mark) {
+    if (mark == 0) return;
     const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
     const float distance = squared_length(apart);
     if (scratch.eater[f] >= 0 && scratch.eater_distance[f] <= distance) return;
@@ -69,6 +71,8 @@ HEDON_FN void eat(World& world) {
       if (slot < 0) continue;
       scratch.eater[f] = -1;
       state.physics.circles.present[f] = 0;
+      remove(state.physics.circle_grid, f, state.physics.circles.x[f], state.physics.circles.y[f]);
+      state.physics.neighbors.head[0].stale = 1;
       stock.present -= 1;
       stock.number -= 1.0;
       stock.eaten += 1;

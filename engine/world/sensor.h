@@ -188,12 +188,8 @@ struct TouchVisitor {
     world->state.touch[slot] |= uint64_t{1} << (type * world->config->sensor.touch_sectors + at);
   }
 
-  /// Forgets all that was told, before a step and where a step has to be done again.
-  template <class Group>
-  void begin(Group& group) {
-    const WorldState& state = world->state;
-    group.for_each(world->clock().living_count, [&](int32_t i) { state.touch[state.living[i]] = 0; });
-  }
+  /// Forgets what was told of a body, before each try of a step.
+  HEDON_FN void on_start(int32_t slot) { world->state.touch[slot] = 0; }
 };
 
 }  // namespace hedon

@@ -39,6 +39,10 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
   physics_step(group, world.config->physics, world.constants->body, world.state.physics, world.physics_scratch,
                state.living, clock.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
                world.fault());
+  if (world.fault().status != Status::ok) {
+    group.once([&] { world.fault().step = clock.step; });
+    return;
+  }
   lap(Part::physics);
 
   group.once([&] { eat(world); });
