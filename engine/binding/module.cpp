@@ -5,5 +5,6 @@
 
 NB_MODULE(_engine, module) {
   module.doc() = "The native engine of hedon: the simulation and nothing else.";
+  hedon::bind_physics(module);
   hedon::bind_random(module);
 }

@@ -5,6 +5,7 @@
 
 namespace hedon {
 
+void bind_physics(nanobind::module_& module);
 void bind_random(nanobind::module_& module);
 
 }  // namespace hedon
