@@ -8,6 +8,7 @@ from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import sections, settings
+from hedon.config.problem import format_value
 
 _HEAD = "# Complete: every setting stands here, and nothing is taken from the preset or the fidelity.\n"
 
@@ -83,15 +84,6 @@ def _tables(config: Config) -> Iterator[tuple[str, str]]:
                 yield from write(f"{below}.{kind}".rstrip("."), item)
 
     return write("", config)
-
-
-def format_value(value: Any) -> str:
-    """A value as TOML."""
-    if isinstance(value, tuple):
-        return "[" + ", ".join(format_value(item) for item in value) + "]"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    return repr(value)
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -7,9 +7,11 @@ from types import MappingProxyType
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 PAPER = "paper"
-"""Printed in Kanagawa & Doya (2024)."""
+"""Printed in Kanagawa & Doya (2024), ALIFE."""
 CODE = "code"
-"""Not printed, or printed otherwise: the value that the paper's released code was configured with."""
+"""The value that the paper's released code was configured with, where the paper prints another or none."""
+EITHER = "paper or code"
+"""The paper's where it prints one, else that of its released code; the two do not differ."""
 OURS = "ours"
 """A choice of this project."""
 
@@ -40,7 +42,7 @@ class Doc:
     Attributes:
         meaning: What the value does, as a phrase.
         unit: Its unit, or "" where it has none.
-        source: `PAPER`, `CODE` or `OURS`, with a remark where there is one to make.
+        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark where there is one to make.
         range: The allowed values, apart from their type.
     """
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from hedon.config.problem import Problem, nearest
+from hedon.config.problem import Problem, format_value, nearest
 
 Table = dict[str, Any]
 EVERY = "*"
@@ -32,7 +32,7 @@ def settle_food(tables: Table) -> Iterator[Problem]:
         return
     every = food.pop(EVERY, {})
     if not isinstance(every, dict):
-        yield Problem(f'food."{EVERY}"', "must be a table", repr(every))
+        yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))
     for kind, value in list(food.items()):
         others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
         if value is False:
