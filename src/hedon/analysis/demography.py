@@ -1,8 +1,8 @@
 """Life at constant energy, in closed form: chances of death and birth, survival, length of life, children.
 
-The functions take ages in steps and treat time as continuous, where the simulation draws once per step with the
-same chances; the two agree to a relative error of about the chance per step. Source: Kanagawa & Doya (2024); the
-hazard's age part is Gompertz's (1825).
+The functions take ages in steps and treat time as continuous, where the simulation draws once per step with
+the same chances; the two agree to a relative error of about the chance per step. Source: Kanagawa & Doya
+(2024); the hazard's age part is Gompertz's (1825).
 """
 
 from typing import TYPE_CHECKING
@@ -66,8 +66,9 @@ def expected_lifetime(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.
         energy: [energy], any shape.
 
     Returns:
-        The integral of `survival` over all ages [step], of the shape of `energy`; infinite where nothing kills.
-        Closed for a hazard that does not rise with age; else by Gauss–Legendre quadrature, relative error < 1e-10.
+        The integral of `survival` over all ages [step], of the shape of `energy`; infinite where nothing
+        kills. Closed for a hazard that does not rise with age; else by Gauss–Legendre quadrature, with a
+        relative error below 1e-10.
     """
     flat = energy_hazard(config, energy)
     if config.alpha_age == 0 or config.beta_age == 0:
