@@ -2,10 +2,12 @@
 
 import math
 import re
+import struct
 from collections.abc import Iterator
 
 from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.config import PROVENANCE, Config
+from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
 from hedon.config.problem import Problem, format_value
 
@@ -13,6 +15,8 @@ MAX_TOUCH_BITS = 64
 """Types times touch sectors that the engine has room for."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap jams at 0.547 (Feder 1980)."""
+MIN_WALL = 0.01
+"""Length of the shortest outer wall that float32 still gives a direction [u]."""
 RESERVED_KINDS = ("agent", "wall", "action")
 """Names that stand for something else in sensor channels or in the columns of records."""
 
@@ -20,6 +24,7 @@ RESERVED_KINDS = ("agent", "wall", "action")
 def contradictions(config: Config) -> Iterator[Problem]:
     """Everything in a config that cannot be true at the same time."""
     yield from _names(config)
+    yield from _rounding(config)
     yield from _arena(config)
     yield from _bodies(config)
     yield from _kinds(config)
@@ -33,13 +38,22 @@ def _names(config: Config) -> Iterator[Problem]:
             yield Problem(field, "must be a text of 1 to 200 printable characters", format_value(text))
 
 
+def _rounding(config: Config) -> Iterator[Problem]:
+    """Numbers that leave their range when they are rounded to the engine's 32 bits."""
+    for path, setting, value in leaves(config):
+        if setting.type is float:
+            rounded = struct.unpack("f", struct.pack("f", value))[0]
+            if rounded not in setting.doc.range:
+                message = f"is {rounded:g} in the engine's 32-bit numbers, but must be {setting.allowed}"
+                yield Problem(path, message, format_value(value))
+
+
 def _arena(config: Config) -> Iterator[Problem]:
     arena = config.arena
     if not _corners_fit(arena):
-        most = min(arena.width, arena.height) / 2
-        yield _problem(
-            config, "arena.corner_radius", f"must be at most {most:g} [u], half of the shorter side"
-        )
+        side = min(arena.width, arena.height)
+        rule = f"must be 0 or below {side / 2:g} [u], with no wall shorter than {MIN_WALL:g} [u]"
+        yield _problem(config, "arena.corner_radius", rule)
     for i, wall in enumerate(arena.inner_walls):
         ax, ay, bx, by = wall
         if _is_outside(arena, ax, ay) or _is_outside(arena, bx, by):
@@ -49,7 +63,9 @@ def _arena(config: Config) -> Iterator[Problem]:
 
 
 def _corners_fit(arena: ArenaConfig) -> bool:
-    return 2 * arena.corner_radius <= min(arena.width, arena.height)
+    chord = 2 * arena.corner_radius * math.sin(math.pi / 4 / arena.corner_chords)
+    straight = min(arena.width, arena.height) - 2 * arena.corner_radius
+    return straight >= MIN_WALL and (arena.corner_radius == 0 or chord >= MIN_WALL)
 
 
 def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:

@@ -26,6 +26,14 @@ class Range:
     lt: float | None = None
     max_items: int | None = None
 
+    def __contains__(self, value: float) -> bool:
+        return (
+            (self.ge is None or value >= self.ge)
+            and (self.gt is None or value > self.gt)
+            and (self.le is None or value <= self.le)
+            and (self.lt is None or value < self.lt)
+        )
+
     def __str__(self) -> str:
         if self.max_items is not None:
             return f"with at most {self.max_items} items"
@@ -149,3 +157,13 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
             parts.pop(0)
         here = sections(here)[name].type
     return here
+
+
+def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
+    """Every setting in a section and below by its path, in order, with its value."""
+    for name, setting in settings(type(section)).items():
+        yield f"{path}{name}", setting, getattr(section, name)
+    for name, inner in sections(type(section)).items():
+        below = getattr(section, name)
+        for kind, item in below.items() if inner.repeated else [("", below)]:
+            yield from leaves(item, f"{path}{name}.{kind}." if kind else f"{path}{name}.")

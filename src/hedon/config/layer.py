@@ -20,7 +20,7 @@ def stack(layers: Iterable[Table]) -> Table:
     for layer in layers:
         food, added = result.get("food", {}), layer.get("food", {})
         result = _lay(result, layer)
-        if isinstance(food, dict) and isinstance(added, dict):
+        if isinstance(food, dict) and isinstance(added, dict) and (food or added):
             result["food"] = _lay_food(food, added)
     return result
 

@@ -1,4 +1,4 @@
-"""The reference page of all settings, written from the dataclasses: `python -m hedon.config.reference > FILE`."""
+"""The reference page of all settings: `python -m hedon.config.reference > docs/config.md`."""
 
 import sys
 from collections.abc import Iterator
@@ -30,13 +30,13 @@ energy = 0.5
 growth_rate = 0.5
 ```
 
-What is said later wins: preset, then fidelity, then file, then `--set section.name=value` on the command line.
-`normal = false` under `[food]` removes a kind of food. The order of the kinds is the order of the sensor's
-channels and of the genome's weights. A file with `complete = true`, as `hedon config show` prints it, stands
-alone and takes nothing from its preset.
+What is said later wins: preset, then fidelity, then file, then `--set section.name=value` on the command
+line. `normal = false` under `[food]` removes a kind of food. The order of the kinds is the order of the
+sensor's channels and of the genome's weights. A file with `complete = true`, as `hedon config show` prints
+it, stands alone and takes nothing from its preset.
 
-Sources: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, "ours"
-is a choice of this project; "paper or code" is the paper's value where it prints one, else the code's.
+Sources: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code,
+"ours" is a choice of this project; "paper or code" is the paper's value where it prints one, else the code's.
 """
 
 
