@@ -13,8 +13,8 @@ from hedon.record.snapshot import Snapshot
 _HEAD = f"""\
 # What a run leaves behind
 
-This page is made from the schema by `python -m hedon.analysis.document > docs/records.md`. Format
-{FORMAT_VERSION}.
+This page is made from the schema by `python -m hedon.analysis.document > docs/records.md`.
+Format {FORMAT_VERSION}.
 
 ```
 RUN/

@@ -20,7 +20,7 @@ _AGENT_RAY = "#1f63a0"
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
 _WIDTH = 7.2  # of the figure [inch]
 _ENERGY_COLORS = LinearSegmentedColormap.from_list(
-    "energy", ["#dfe7ee", "#a9c5de", "#5a97c7", "#1f63a0", "#0b2f63"]
+    "energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"]
 )
 
 

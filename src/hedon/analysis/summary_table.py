@@ -25,8 +25,8 @@ _WORLD_COLUMNS = {  # key of a world: header
     "alive": "alive",
     "births": "births",
     "deaths": "deaths",
-    "mean_lifetime": "lifetime",
-    "food_per_step": "food/step",
+    "mean_lifetime": "life",
+    "food_per_step": "food",
     "mean_energy": "energy",
     "generation": "gen.",
 }
@@ -93,13 +93,19 @@ def _weights(summary: Mapping[str, Any]) -> Table:
     table = _table("weights of the 5000 agents born last, mean ± sd", ("seed", *names))
     for world in summary["worlds"]:
         spreads = [world["weights"][name] for name in names]
-        cells = [f"{format_number(spread['mean'])} ± {format_number(spread['sd'])}" for spread in spreads]
+        cells = [f"{_weight(spread['mean'])} ± {_weight(spread['sd'])}" for spread in spreads]
         table.add_row(str(world["seed"]), *cells, style="dim" if world["extinct"] else None)
     return table
 
 
+def _weight(value: float | None) -> str:
+    return _NOTHING if value is None else f"{value:.2f}"
+
+
 def _table(title: str, headers: Sequence[str]) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, padding=(0, 1))
+    table = Table(
+        title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False
+    )
     table.add_column(headers[0])
     for header in headers[1:]:
         table.add_column(header, justify="right")
