@@ -42,6 +42,9 @@ enum class Purpose : uint32_t {
   network = 8,
   minibatch = 9,
   food_place = 10,
+  frozen_mutation = 11,
+  initial_heading = 12,
+  initial_food = 13,
 };
 
 /// The draws of one world for one purpose, one id (agent, food kind) and one step, counted by `index`.

@@ -8,4 +8,5 @@ NB_MODULE(_engine, module) {
   hedon::bind_kernel(module);
   hedon::bind_learning(module);
   hedon::bind_random(module);
+  hedon::bind_simulation(module);
 }

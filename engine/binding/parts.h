@@ -8,5 +8,6 @@ namespace hedon {
 void bind_kernel(nanobind::module_& module);
 void bind_learning(nanobind::module_& module);
 void bind_random(nanobind::module_& module);
+void bind_simulation(nanobind::module_& module);
 
 }  // namespace hedon

@@ -1,0 +1,243 @@
+/// `_engine.Simulation`: many worlds, advanced with the interpreter lock released, and read as NumPy arrays.
+#include "simulation/simulation.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <string>
+
+#include "binding/config.h"
+#include "binding/parts.h"
+
+namespace nb = nanobind;
+
+namespace hedon {
+namespace {
+
+using FloatsIn = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using IntsIn = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using WallsIn = nb::ndarray<const float, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
+
+/// A copy with its own memory, as a NumPy array.
+template <class T>
+nb::object copy_array(std::vector<T> values, std::vector<size_t> shape) {
+  auto* held = new std::vector<T>(std::move(values));
+  nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, T>(held->data(), shape.size(), shape.data(), owner));
+}
+
+/// Rows of lives as a dict of columns.
+nb::dict columns(const Life* life, const int32_t* eaten, const float* genome, const std::vector<int64_t>& rows,
+                 const WorldShape& shape) {
+  nb::dict out;
+  Life::for_each_field([&](const char* name, auto member) {
+    using Field = std::remove_cvref_t<decltype(life->*member)>;
+    std::vector<Field> column(rows.size());
+    for (size_t i = 0; i < rows.size(); ++i) column[i] = life[rows[i]].*member;
+    out[name] = copy_array(std::move(column), {rows.size()});
+  });
+  const auto table = [&]<class T>(const T* data, int32_t width) {
+    std::vector<T> values;
+    values.reserve(rows.size() * static_cast<size_t>(width));
+    for (const int64_t row : rows) values.insert(values.end(), data + row * width, data + (row + 1) * width);
+    return copy_array(std::move(values), {rows.size(), static_cast<size_t>(width)});
+  };
+  out["eaten"] = table(eaten, shape.kinds);
+  out["genome"] = table(genome, shape.genome.size());
+  return out;
+}
+
+template <class Struct>
+nb::dict to_dict(const Struct& values) {
+  nb::dict out;
+  Struct::for_each_field([&](const char* name, auto member) { out[name] = values.*member; });
+  return out;
+}
+
+/// A simulation that refuses a second caller while it runs, and that raises what its worlds report.
+class PythonSimulation {
+ public:
+  PythonSimulation(nb::dict config, WallsIn walls, int32_t outer_walls, const std::vector<uint64_t>& seeds, int threads,
+                   const std::string& kernel, const std::vector<int32_t>& slot_order)
+      : simulation_(to_config<WorldConfig>(config), to_segments(walls), outer_walls, seeds,
+                    threads > 0 ? threads : available_processors(), need_kernel(kernel), slot_order) {
+    raise_faults();
+  }
+
+  Simulation& get() { return simulation_; }
+
+  World& world(int index) {
+    if (index < 0 || index >= simulation_.world_count()) throw nb::index_error("no world of that index");
+    if (running_.load()) throw std::runtime_error("busy: the simulation is running in another thread");
+    return simulation_.world(index);
+  }
+
+  void run(int64_t steps) {
+    if (steps < 0) throw nb::value_error("steps: at least 0");
+    if (simulation_.pool().forked()) throw std::runtime_error("this process was forked from the simulation's; make a new one");
+    if (running_.exchange(true)) throw std::runtime_error("busy: the simulation is running in another thread");
+    {
+      const nb::gil_scoped_release release;
+      simulation_.run(steps);
+    }
+    running_.store(false);
+    raise_faults();
+  }
+
+  nb::dict take_rows(int index) {
+    World& from = world(index);
+    std::vector<int64_t> rows(static_cast<size_t>(from.clock().event_count));
+    for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
+    nb::dict out = columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
+    from.clock().event_count = 0;
+    return out;
+  }
+
+  nb::dict living_rows(int index) {
+    const World& from = world(index);
+    std::vector<int64_t> rows;
+    for (int32_t i = 0; i < from.clock().living_count; ++i) rows.push_back(from.state.living[i]);
+    return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
+  }
+
+  /// Full observations of the living, in their order, from the state as it is now.
+  nb::object observations(int index) {
+    World& from = world(index);
+    const ObservationShape& shape = from.shape->network.observation;
+    const size_t count = static_cast<size_t>(from.clock().living_count), size = static_cast<size_t>(shape.size());
+    std::vector<float> full(count * size);
+    gather_scene(from);
+    for (size_t i = 0; i < count; ++i) {
+      PackedObservation packed{};
+      observe(from, static_cast<int32_t>(i), packed);
+      unpack(shape, packed, &full[i * size]);
+    }
+    return copy_array(std::move(full), {count, size});
+  }
+
+  void set_scene(int index, FloatsIn x, FloatsIn y, FloatsIn angle, FloatsIn energy, FloatsIn food_x, FloatsIn food_y,
+                 IntsIn food_kind) {
+    world(index);
+    const size_t agents = x.shape(0), foods = food_x.shape(0);
+    if (y.shape(0) != agents || angle.shape(0) != agents || energy.shape(0) != agents || food_y.shape(0) != foods ||
+        food_kind.shape(0) != foods) {
+      throw nb::value_error("the arrays of agents, and those of foods, have one length each");
+    }
+    const auto view = []<class T>(const T& array) {
+      return Array<const typename T::Scalar>{array.data(), static_cast<int64_t>(array.shape(0))};
+    };
+    if (!simulation_.set_scene(index, {view(x), view(y), view(angle), view(energy), view(food_x), view(food_y), view(food_kind)})) {
+      throw nb::value_error("more agents than slots, or more foods of a kind than its capacity, or an unknown kind");
+    }
+  }
+
+ private:
+  static const Kernel* need_kernel(const std::string& name) {
+    const Kernel* kernel = find_kernel(name.c_str());
+    if (kernel != nullptr) return kernel;
+    std::string known;
+    for (const char* const* at = kernel_names(); *at != nullptr; ++at) known += std::string(known.empty() ? "" : ", ") + *at;
+    throw nb::value_error(("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
+  }
+
+  static std::vector<Segment> to_segments(const WallsIn& walls) {
+    std::vector<Segment> segments;
+    for (size_t i = 0; i < walls.shape(0); ++i) segments.push_back({{walls(i, 0), walls(i, 1)}, {walls(i, 2), walls(i, 3)}});
+    return segments;
+  }
+
+  /// The one place that turns a world's status into an exception.
+  void raise_faults() {
+    for (int i = 0; i < simulation_.world_count(); ++i) {
+      const Fault& fault = simulation_.world(i).fault();
+      if (fault.status == Status::ok) continue;
+      const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
+      std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(i) + ", step " +
+                            std::to_string(fault.step) + ", value " + std::to_string(fault.value);
+      if (fault.agent_id >= 0) message += ", agent " + std::to_string(fault.agent_id);
+      throw std::runtime_error(message + ". " + text.remedy);
+    }
+  }
+
+  Simulation simulation_;
+  std::atomic<bool> running_{false};
+};
+
+/// A read-only view of one array of a world's state, by its path; columns of structs are strided.
+nb::object view(nb::handle self, int index, const std::string& path) {
+  World& world = nb::cast<PythonSimulation&>(self).world(index);
+  const size_t slots = static_cast<size_t>(world.shape->slots);
+  nb::object out;
+  for_each_array(world.state, "", [&]<class T>(const std::string& name, Array<T>& array) {
+    const size_t count = static_cast<size_t>(array.count);
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (name != path) return;
+      const bool by_slot = count % slots == 0 && name.rfind("food", 0) != 0 && name.rfind("event", 0) != 0;
+      const size_t width = by_slot ? count / slots : 1;
+      const size_t shape[2] = {by_slot ? slots : count, width};
+      out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, width == 1 ? 1 : 2, shape, self));
+    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
+      T::for_each_field([&](const char* column, auto member) {
+        using Field = std::remove_cvref_t<decltype(array.data->*member)>;
+        if constexpr (std::is_arithmetic_v<Field>) {
+          if (name + "." + column != path) return;
+          const int64_t stride = sizeof(T) / sizeof(Field);
+          out = nb::cast(nb::ndarray<nb::numpy, const Field>(&(array.data->*member), 1, &count, self, &stride));
+        }
+      });
+    }
+  });
+  if (!out.is_valid()) throw nb::key_error(("no array named '" + path + "' in the state").c_str());
+  return out;
+}
+
+nb::list view_names(PythonSimulation& self) {
+  nb::list names;
+  for_each_array(self.world(0).state, "", [&]<class T>(const std::string& name, Array<T>&) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      names.append(name);
+    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
+      T::for_each_field([&](const char* column, auto member) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(std::declval<T>().*member)>>) names.append(name + "." + column);
+      });
+    }
+  });
+  return names;
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& module) {
+  using S = PythonSimulation;
+  nb::class_<S>(module, "Simulation", "Many worlds under one config. Views are read-only and valid until the next `run`.")
+      .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&, const std::vector<int32_t>&>(),
+           nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
+           nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{})
+      .def("run", &S::run, nb::arg("steps"), "Advances every world that is not over; releases the interpreter lock.")
+      .def("take_rows", &S::take_rows, nb::arg("world"), "Columns of the agents that died since the last call.")
+      .def("living_rows", &S::living_rows, nb::arg("world"), "Columns of the living, in the order of their ids.")
+      .def("observations", &S::observations, nb::arg("world"), "Full observations of the living: (living, size).")
+      .def("set_scene", &S::set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
+           nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"), "Empties a world and puts these agents and foods into it.")
+      .def("view", [](nb::handle self, int world, const std::string& path) { return view(self, world, path); },
+           nb::arg("world"), nb::arg("path"), "One array of a world's state, by slot.")
+      .def("view_names", &view_names, "Paths that `view` knows.")
+      .def("counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
+      .def("clock", [](S& s, int world) { return to_dict(s.world(world).clock()); }, nb::arg("world"))
+      .def("digest", [](S& s, int world) { s.world(world); return s.get().digest(world); }, nb::arg("world"))
+      .def("seconds", [](S& s, int world) {
+             s.world(world);
+             nb::dict out;
+             for (size_t p = 0; p < s.get().seconds(world).size(); ++p) out[PART_NAMES[p]] = s.get().seconds(world)[p];
+             return out;
+           }, nb::arg("world"), "Seconds spent in each part by the world's first thread.")
+      .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
+      .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })
+      .def_prop_ro("kernel", [](S& s) { return s.get().kernel().name; })
+      .def_prop_ro("bytes_per_world", [](S& s) { return s.get().bytes_per_world(); });
+}
+
+}  // namespace hedon

@@ -1,0 +1,47 @@
+/// What is inherited: one reward weight per food kind, one for action, then neutral markers that enter no reward.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/random.h"
+#include "evolution/config.h"
+
+namespace hedon {
+
+/// Where each gene lies. The neutral markers are mutated like the others: they are the control for drift.
+struct GenomeShape {
+  int32_t kinds;
+  int32_t neutral;
+
+  HEDON_FN int32_t action() const { return kinds; }
+  HEDON_FN int32_t size() const { return kinds + 1 + neutral; }
+};
+
+HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
+
+/// A founder's genome: independent normals around the configured means.
+HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t agent_id, float* genome) {
+  const RandomStream random{seed, Purpose::initial_genome, agent_id, 0};
+  for (int32_t g = 0; g < shape.size(); ++g) {
+    const float mean = g < shape.kinds ? config.initial_mean_food : g == shape.action() ? config.initial_mean_action : 0.0f;
+    const Random4 bits = random.draw(static_cast<uint32_t>(g));
+    genome[g] = clip(mean + config.initial_sd * to_normal(bits.word[0], bits.word[1]).first, -config.weight_limit,
+                     config.weight_limit);
+  }
+}
+
+/// A child's genome: the parent's plus Cauchy noise of scale `mutation_scale`, clipped to the weight limit.
+/// With frozen noise (a fault of the released code, kept for study) the noise depends on the seed, the gene and the
+/// number `birth_in_window` of the successful birth within its window, so that every window repeats one small table.
+HEDON_FN void inherit(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t child_id,
+                      uint32_t birth_in_window, const float* parent, float* child) {
+  const bool frozen = config.mutation_noise == MutationNoise::frozen;
+  const RandomStream random{seed, frozen ? Purpose::frozen_mutation : Purpose::mutation, frozen ? birth_in_window : child_id, 0};
+  for (int32_t g = 0; g < shape.size(); ++g) {
+    const float noise = to_cauchy(random.draw(static_cast<uint32_t>(g)).word[0]);
+    child[g] = clip(parent[g] + config.mutation_scale * noise, -config.weight_limit, config.weight_limit);
+  }
+}
+
+}  // namespace hedon

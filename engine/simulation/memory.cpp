@@ -1,0 +1,45 @@
+#include "simulation/memory.h"
+
+namespace hedon {
+
+PhysicsCapacity world_physics_capacity(const World& world) {
+  const WorldConfig& config = *world.config;
+  const WorldShape& shape = *world.shape;
+  return physics_capacity(shape.slots, shape.foods, shape.walls, config.arena.width, config.arena.height,
+                          world.constants->body, config.physics.neighbor_skin);
+}
+
+void set_counts(World& world) {
+  const WorldShape& shape = *world.shape;
+  const int64_t slots = shape.slots, kinds = shape.kinds, genes = shape.genome.size(), params = shape.network.size();
+  const int64_t rows = slots * shape.steps;
+
+  WorldState& state = world.state;
+  state.clock.count = state.fault.count = state.counters.count = 1;
+  state.alive.count = state.living.count = state.free.count = state.life.count = state.touch.count = slots;
+  state.eaten.count = slots * kinds;
+  state.genome.count = slots * genes;
+  const PhysicsCapacity capacity = world_physics_capacity(world);
+  const auto set_count = [](const char*, auto& array, int64_t count) { array.count = count; };
+  visit_state(state.physics, capacity, set_count);
+  visit_scratch(world.physics_scratch, capacity, set_count);
+  state.physics.circles.x.count = state.physics.circles.y.count = state.physics.circles.present.count = shape.foods;
+  state.food_stock.count = kinds;
+  state.params.count = state.first_moment.count = state.second_moment.count = slots * params;
+  state.folded_bias.count = slots * HIDDEN;
+  state.updates.count = slots;
+  state.observation.count = rows + slots;
+  state.action.count = rows * ACTIONS;
+  state.log_prob.count = state.value.count = state.reward.count = rows;
+  state.event.count = shape.events;
+  state.event_eaten.count = shape.events * kinds;
+  state.event_genome.count = shape.events * genes;
+
+  for_each_array(world.scratch, "", [&](const std::string&, auto& array) { array.count = slots; });
+  world.scratch.meal.count = slots * kinds;
+  world.scratch.eater.count = world.scratch.eater_distance.count = shape.foods;
+
+  world.scene.x.count = world.scene.y.count = world.scene.radius.count = world.scene.type.count = slots + shape.foods;
+}
+
+}  // namespace hedon

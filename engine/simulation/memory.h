@@ -1,0 +1,88 @@
+/// One block of memory per world, laid out from the lists of fields.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "base/array.h"
+#include "world/shape.h"
+#include "world/state.h"
+#include "world/world.h"
+
+namespace hedon {
+
+template <class T>
+struct IsArray : std::false_type {};
+template <class T>
+struct IsArray<Array<T>> : std::true_type {};
+
+/// Calls visit(path, array) for every array in a struct of fields, in order, through nested structs.
+template <class Struct, class Visit>
+void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
+  std::remove_const_t<Struct>::for_each_field([&](const char* name, auto member) {
+    auto& field = fields.*member;
+    using Field = std::remove_cvref_t<decltype(field)>;
+    if constexpr (IsArray<Field>::value) {
+      visit(prefix + name, field);
+    } else if constexpr (std::is_class_v<Field>) {
+      for_each_array(field, prefix + name + ".", visit);
+    }
+  });
+}
+
+/// Zeroed memory, aligned to cache lines. Pages that nobody touches cost nothing.
+class Memory {
+ public:
+  static constexpr int64_t ALIGNMENT = 64;
+
+  Memory() = default;
+  explicit Memory(int64_t bytes) : size_(bytes), block_(calloc(1, static_cast<size_t>(bytes + ALIGNMENT))) {
+    if (block_ == nullptr) abort();
+    const auto address = reinterpret_cast<uintptr_t>(block_);
+    first_ = reinterpret_cast<char*>((address + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
+  }
+  ~Memory() { free(block_); }
+  Memory(Memory&& other) noexcept { swap(other); }
+  Memory& operator=(Memory&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  char* data() const { return first_; }
+  int64_t size() const { return size_; }
+
+ private:
+  void swap(Memory& other) {
+    std::swap(size_, other.size_);
+    std::swap(block_, other.block_);
+    std::swap(first_, other.first_);
+  }
+
+  int64_t size_ = 0;
+  void* block_ = nullptr;
+  char* first_ = nullptr;
+};
+
+/// Bytes that the arrays of `fields` take, each rounded up to whole cache lines; points them into `at` unless null.
+template <class Struct>
+int64_t lay_out(Struct& fields, char* at) {
+  int64_t offset = 0;
+  for_each_array(fields, "", [&]<class T>(const std::string&, Array<T>& array) {
+    if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
+    // One spare line: vector loads may read, never use, up to 15 floats past the end.
+    const int64_t bytes = array.count * static_cast<int64_t>(sizeof(T)) + Memory::ALIGNMENT;
+    offset += (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
+  });
+  return offset;
+}
+
+/// How many bodies, circles, walls and pairs the physics of a world must hold.
+PhysicsCapacity world_physics_capacity(const World& world);
+
+/// Sets how many items each array of a world holds.
+void set_counts(World& world);
+
+}  // namespace hedon

@@ -1,0 +1,162 @@
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <deque>
+
+#include "world/population.h"
+
+namespace hedon {
+namespace {
+
+/// Adds the time since the last lap to a part. Reads the clock only; nothing in a world depends on it.
+class Stopwatch {
+ public:
+  explicit Stopwatch(PartSeconds* seconds) : seconds_(seconds), last_(std::chrono::steady_clock::now()) {}
+
+  void operator()(Part part) {
+    if (seconds_ == nullptr) return;
+    const auto now = std::chrono::steady_clock::now();
+    (*seconds_)[static_cast<size_t>(part)] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  PartSeconds* seconds_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace
+
+Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
+                       const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
+                       const std::vector<int32_t>& slot_order)
+    : config_(config),
+      shape_(make_shape(config, static_cast<int32_t>(walls.size()), outer_walls)),
+      constants_(make_constants(config)),
+      kernel_(kernel),
+      walls_(std::move(walls)),
+      slot_order_(slot_order),
+      worlds_(seeds.size()),
+      seconds_(seeds.size()) {
+  for (size_t i = 0; i < worlds_.size(); ++i) {
+    World& world = worlds_[i];
+    world.config = &config_;
+    world.shape = &shape_;
+    world.constants = &constants_;
+    world.kernel = kernel_;
+    world.seed = seeds[i];
+    set_counts(world);
+    const auto lay_out_all = [&](char* at) {
+      int64_t bytes = 0;
+      const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
+      bytes += lay_out(world.state, next());
+      bytes += lay_out(world.physics_scratch, next());
+      bytes += lay_out(world.scratch, next());
+      bytes += lay_out(world.scene, next());
+      return bytes;
+    };
+    memory_.emplace_back(lay_out_all(nullptr));
+    lay_out_all(memory_.back().data());
+    empty(world);
+    found(world);
+  }
+  pool_ = std::make_unique<Pool>(threads);
+  learn_stride_ = (learn_scratch_size(shape_.network, config_.learning) + 15) / 16 * 16;
+  learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
+}
+
+void Simulation::empty(World& world) {
+  for_each_array(world.state, "", []<class T>(const std::string&, Array<T>& array) {
+    memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
+  });
+  Clock& clock = world.clock();
+  clock.extinct_step = -1;
+  for (int32_t slot = shape_.slots - 1; slot >= 0; --slot) {
+    world.state.free[clock.free_count++] = slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)];
+  }
+  for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
+  init_physics(world.state.physics, world_physics_capacity(world));
+  for (size_t w = 0; w < walls_.size(); ++w) world.state.physics.walls[static_cast<int64_t>(w)] = walls_[w];
+}
+
+bool Simulation::set_scene(int index, const SceneInput& scene) {
+  World& target = world(index);
+  if (scene.x.count > shape_.slots) return false;
+  std::vector<int32_t> count(static_cast<size_t>(shape_.kinds));
+  for (int64_t f = 0; f < scene.food_kind.count; ++f) {
+    const int32_t kind = scene.food_kind[f];
+    if (kind < 0 || kind >= shape_.kinds || ++count[static_cast<size_t>(kind)] > config_.food[kind].capacity) return false;
+  }
+  empty(target);
+  for (int64_t i = 0; i < scene.x.count; ++i) {
+    const int32_t slot = spawn(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i], 0);
+    init_genome(shape_.genome, config_.genome, target.seed, static_cast<uint32_t>(i), target.genome(slot));
+    target.counters().energy_initial += scene.energy[i];
+  }
+  for (int64_t f = 0; f < scene.food_kind.count; ++f) {
+    place_food(target, scene.food_kind[f], {scene.food_x[f], scene.food_y[f]});
+  }
+  for (int32_t k = 0; k < shape_.kinds; ++k) target.state.food_stock[k].number = target.state.food_stock[k].present;
+  if (scene.x.count == 0) target.clock().extinct_step = 0;
+  return true;
+}
+
+uint64_t Simulation::digest(int index) const {
+  // Multiply and rotate, eight bytes at a time: it has to tell states apart, not to resist an attacker.
+  uint64_t hash = 0x9E3779B97F4A7C15u;
+  const auto mix = [&hash](uint64_t word) {
+    hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
+    hash ^= hash >> 32;
+  };
+  for_each_array(worlds_[static_cast<size_t>(index)].state, "", [&]<class T>(const std::string&, const Array<T>& array) {
+    const size_t bytes = static_cast<size_t>(array.count) * sizeof(T);
+    const char* data = reinterpret_cast<const char*>(array.data);
+    mix(bytes);
+    for (size_t at = 0; at < bytes; at += 8) {
+      uint64_t word = 0;
+      memcpy(&word, data + at, bytes - at < 8 ? bytes - at : 8);
+      mix(word);
+    }
+  });
+  return hash;
+}
+
+void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
+  // A team's members use scratch next to one another, from its first member's place on.
+  float* scratch = reinterpret_cast<float*>(learn_scratch_.data()) + (thread - team.rank()) * learn_stride_;
+  Stopwatch lap(team.rank() == 0 ? &seconds_[static_cast<size_t>(world)] : nullptr);
+  advance(team, worlds_[static_cast<size_t>(world)], steps, scratch, learn_stride_, lap);
+}
+
+void Simulation::run(int64_t steps) {
+  std::vector<int> going;
+  for (int i = 0; i < world_count(); ++i) {
+    if (!world(i).over()) going.push_back(i);
+  }
+  const int threads = pool_->size();
+  const int count = static_cast<int>(going.size());
+  if (count == 0) return;
+  // As many worlds as fill all threads evenly run on one thread each; the rest are shared by teams of threads.
+  const int alone = count / threads * threads;
+  const int shared = count - alone;
+  std::atomic<int> next{0};
+  std::deque<TeamState> single(static_cast<size_t>(threads));
+  std::deque<TeamState> teams(static_cast<size_t>(shared));
+  const auto first_thread = [&](int team) { return team * threads / shared; };
+  for (int team = 0; team < shared; ++team) teams[static_cast<size_t>(team)].size = first_thread(team + 1) - first_thread(team);
+
+  pool_->run([&](int thread) {
+    for (int i = next.fetch_add(1); i < alone; i = next.fetch_add(1)) {
+      advance_with(Team(single[static_cast<size_t>(thread)], 0), thread, going[static_cast<size_t>(i)], steps);
+    }
+    for (int team = 0; team < shared; ++team) {
+      const int first = first_thread(team);
+      if (thread < first || thread >= first_thread(team + 1)) continue;
+      advance_with(Team(teams[static_cast<size_t>(team)], thread - first), thread, going[static_cast<size_t>(alone + team)], steps);
+    }
+  });
+}
+
+}  // namespace hedon

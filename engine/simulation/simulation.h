@@ -1,0 +1,70 @@
+/// Many worlds under one config: memory, threads, and advancing them together.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/team.h"
+#include "simulation/memory.h"
+#include "simulation/window.h"
+#include "world/world.h"
+
+namespace hedon {
+
+using PartSeconds = std::array<double, static_cast<size_t>(Part::count)>;
+
+/// Agents and foods of a chosen scene; all arrays of agents have one length, all arrays of foods another.
+struct SceneInput {
+  Array<const float> x, y, angle, energy;
+  Array<const float> food_x, food_y;
+  Array<const int32_t> food_kind;
+};
+
+class Simulation {
+ public:
+  /// walls   outer polygon first, clockwise, then inner walls
+  /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
+  Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
+             const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel, const std::vector<int32_t>& slot_order);
+
+  /// Empties a world and puts these agents and foods into it, wherever they are: for looking at chosen scenes.
+  /// False where they are more than the world can hold.
+  bool set_scene(int index, const SceneInput& scene);
+
+  /// A hash of everything in a world's state: equal for equal bits.
+  uint64_t digest(int index) const;
+
+  /// Advances every world that is not over by `steps` steps. Which threads do what changes no bit.
+  void run(int64_t steps);
+
+  int world_count() const { return static_cast<int>(worlds_.size()); }
+  World& world(int index) { return worlds_[static_cast<size_t>(index)]; }
+  const WorldShape& shape() const { return shape_; }
+  const WorldConfig& config() const { return config_; }
+  const Kernel& kernel() const { return *kernel_; }
+  const Pool& pool() const { return *pool_; }
+  const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
+  int64_t bytes_per_world() const { return memory_.empty() ? 0 : memory_.front().size(); }
+
+ private:
+  void empty(World& world);
+  void advance_with(Team team, int thread, int world, int64_t steps);
+
+  WorldConfig config_;
+  WorldShape shape_;
+  WorldConstants constants_;
+  const Kernel* kernel_;
+  std::vector<Segment> walls_;
+  std::vector<int32_t> slot_order_;
+  std::vector<Memory> memory_;
+  std::vector<World> worlds_;
+  std::vector<PartSeconds> seconds_;
+  Memory learn_scratch_;
+  int64_t learn_stride_;
+  std::unique_ptr<Pool> pool_;
+};
+
+}  // namespace hedon

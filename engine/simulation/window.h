@@ -1,0 +1,63 @@
+/// A window: N steps, then learning. All agents share this clock.
+#pragma once
+
+#include <cstdint>
+
+#include "learning/ppo.h"
+#include "world/step.h"
+
+namespace hedon {
+
+/// Every agent that lived through the whole window learns from its rollout; all others wait for the next.
+/// `scratch` holds `stride` floats for each member of the group.
+template <class Group>
+void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
+  const WorldState& state = world.state;
+  const WorldShape& shape = *world.shape;
+  Clock& clock = world.clock();
+  const int64_t window_start = clock.step - shape.steps;
+  group.once([&] { gather_scene(world); });
+
+  int32_t learners = 0;
+  for (int32_t i = 0; i < clock.living_count; ++i) {
+    if (state.life[state.living[i]].birth_step <= window_start) ++learners;
+  }
+  // The living stand in the order of birth, so those that lived through the window come first.
+  group.for_each_claimed(learners, [&](int32_t i) {
+    const int32_t slot = state.living[i];
+    PackedObservation& next = world.observation(slot, shape.steps);
+    observe(world, i, next);
+    float output[16];
+    world.kernel->forward(shape.network, world.params(slot), world.folded_bias(slot), next, output);
+
+    const int64_t row = slot * int64_t{shape.steps};
+    const int64_t first = int64_t{slot} * shape.network.size();
+    const Rollout rollout{&world.observation(slot, 0), &state.action[row * ACTIONS], &state.log_prob[row],
+                          &state.value[row], &state.reward[row], output[ACTIONS], shape.steps};
+    const Learner learner{&state.params[first], &state.first_moment[first], &state.second_moment[first],
+                          &state.updates[slot]};
+    const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
+                              static_cast<uint32_t>(clock.step)};
+    learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride, learner);
+    world.kernel->fold_bias(shape.network, learner.params, world.folded_bias(slot));
+  });
+  group.once([&] {
+    world.counters().learners += learners;
+    clock.births_in_window = 0;
+  });
+}
+
+/// Advances a world by `steps` steps, learning at the end of each window; stops early where the world is over.
+template <class Group, class Lap>
+void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Lap&& lap) {
+  const int64_t window = world.shape->steps;
+  for (int64_t i = 0; i < steps && !world.over(); ++i) {
+    step(group, world, world.clock().step % window, lap);
+    if (world.clock().step % window == 0 && !world.over()) {
+      learn_window(group, world, scratch, stride);
+      lap(Part::learning);
+    }
+  }
+}
+
+}  // namespace hedon

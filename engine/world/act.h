@@ -1,0 +1,59 @@
+/// From observation to forces: the policy, its sample, and the motors.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/random.h"
+#include "world/world.h"
+
+namespace hedon {
+
+inline constexpr float LOG_SQRT_TWO_PI = 0.91893853320467274178f;
+
+/// Samples an action for the agent in `slot` and keeps it with its log-probability and the state's value.
+HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedObservation& observation) {
+  const WorldState& state = world.state;
+  const NetworkShape& network = world.shape->network;
+  float output[16];
+  world.kernel->forward(network, world.params(slot), world.folded_bias(slot), observation, output);
+  const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(state.life[slot].agent_id),
+                            static_cast<uint32_t>(world.clock().step)};
+  const Random4 bits = random.draw(0);
+  const NormalPair noise = to_normal(bits.word[0], bits.word[1]);
+  const float z[ACTIONS] = {noise.first, noise.second};
+  const float* log_sd = world.params(slot) + network.log_sd();
+  const int64_t row = slot * int64_t{world.shape->steps} + t;
+  float log_prob = 0.0f;
+  for (int a = 0; a < ACTIONS; ++a) {
+    state.action[row * ACTIONS + a] = output[a] + exp_float(log_sd[a]) * z[a];
+    log_prob += -0.5f * z[a] * z[a] - log_sd[a] - LOG_SQRT_TWO_PI;
+  }
+  state.log_prob[row] = log_prob;
+  state.value[row] = output[ACTIONS];
+}
+
+/// Turns the action into the forces of the two motors and what they do to the body.
+HEDON_FN void drive(World& world, int32_t slot, int64_t t) {
+  const MotorConfig& motor = world.config->motor;
+  const BodyState& body = world.state.physics.bodies;
+  StepScratch& scratch = world.scratch;
+  const float* action = &world.state.action[(slot * int64_t{world.shape->steps} + t) * ACTIONS];
+  const float range = motor.max_force - motor.min_force;
+  const float left = motor.min_force + range * sigmoid(action[0]);
+  const float right = motor.min_force + range * sigmoid(action[1]);
+  float sine, cosine;
+  sincos_float(body.angle[slot], &sine, &cosine);
+  scratch.start_angle[slot] = body.angle[slot];
+  scratch.heading_sine[slot] = sine;
+  scratch.heading_cosine[slot] = cosine;
+  scratch.start_x[slot] = body.x[slot];
+  scratch.start_y[slot] = body.y[slot];
+  scratch.force_left[slot] = left;
+  scratch.force_right[slot] = right;
+  scratch.force_x[slot] = -sine * (left + right);
+  scratch.force_y[slot] = cosine * (left + right);
+  scratch.torque[slot] = world.constants->motor_arm * (right - left);
+}
+
+}  // namespace hedon

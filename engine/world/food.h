@@ -1,0 +1,99 @@
+/// How food grows, where it appears, and who eats it.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/random.h"
+#include "world/placement.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// A candidate place for a food of kind `k`; it may lie outside the arena.
+HEDON_FN Vec2 draw_food_place(const World& world, int32_t k, const RandomStream& random, uint32_t index) {
+  const PlacementConfig& placement = world.config->food[k].placement;
+  const Random4 bits = random.draw(index);
+  if (placement.form == PlacementForm::uniform) {
+    return {world.config->arena.width * to_uniform(bits.word[0]), world.config->arena.height * to_uniform(bits.word[1])};
+  }
+  const Vec2 center = placement.centers[world.state.food_stock[k].center];
+  const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
+  return {center.x + placement.sd.x * normal.first, center.y + placement.sd.y * normal.second};
+}
+
+/// Puts a food of kind `k` into a free slot of its kind.
+HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
+  WorldState& state = world.state;
+  int32_t f = world.shape->food_offset[k];
+  while (state.physics.circles.present[f]) ++f;
+  state.physics.circles.x[f] = place.x;
+  state.physics.circles.y[f] = place.y;
+  state.physics.circles.present[f] = 1;
+  state.food_stock[k].present += 1;
+  insert(state.physics.circle_grid, f, place.x, place.y);
+  state.physics.neighbors.head[0].stale = 1;
+}
+
+/// Tries up to `candidates` places until the foods present of kind `k` reach the floor of its internal number.
+HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& random, int32_t candidates) {
+  FoodStock& stock = world.state.food_stock[k];
+  for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
+    const Vec2 place = draw_food_place(world, k, random, static_cast<uint32_t>(i));
+    if (can_place(world, place, world.config->body.food_radius)) place_food(world, k, place);
+  }
+}
+
+/// Each food goes to the nearest of the agents whose mouths touched it in this step, and is then gone.
+HEDON_FN void eat(World& world) {
+  WorldState& state = world.state;
+  StepScratch& scratch = world.scratch;
+  const BodyState& body = state.physics.bodies;
+  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+    for (int32_t k = 0; k < world.shape->kinds; ++k) world.meal(state.living[i])[k] = 0;
+  }
+  int32_t found = 0;
+  for_each_circle_pair(state.physics.neighbors, [&](int32_t slot, int32_t f, uint8_t mark) {
+    if (mark == 0) return;
+    const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
+    const float distance = squared_length(apart);
+    if (scratch.eater[f] >= 0 && scratch.eater_distance[f] <= distance) return;
+    if (scratch.eater[f] < 0) ++found;
+    scratch.eater[f] = slot;
+    scratch.eater_distance[f] = distance;
+  });
+  if (found == 0) return;
+  for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    FoodStock& stock = state.food_stock[k];
+    const PlacementConfig& placement = world.config->food[k].placement;
+    for (int32_t f = world.shape->food_offset[k]; f < world.shape->food_offset[k + 1]; ++f) {
+      const int32_t slot = scratch.eater[f];
+      if (slot < 0) continue;
+      scratch.eater[f] = -1;
+      state.physics.circles.present[f] = 0;
+      remove(state.physics.circle_grid, f, state.physics.circles.x[f], state.physics.circles.y[f]);
+      state.physics.neighbors.head[0].stale = 1;
+      stock.present -= 1;
+      stock.number -= 1.0;
+      stock.eaten += 1;
+      world.meal(slot)[k] += 1;
+      if (placement.form == PlacementForm::switching && stock.eaten % placement.switch_after == 0) {
+        stock.center = (stock.center + 1) % placement.centers.count;
+      }
+    }
+  }
+}
+
+/// n <- min(n + g - eaten, n_max), then new food where the floor of n asks for it. The eaten were taken off in `eat`.
+HEDON_FN void grow(World& world) {
+  for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    const FoodConfig& config = world.config->food[k];
+    FoodStock& stock = world.state.food_stock[k];
+    stock.number += static_cast<double>(config.growth_rate);
+    if (stock.number > config.capacity) stock.number = config.capacity;
+    const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k), static_cast<uint32_t>(world.clock().step)};
+    place_missing_food(world, k, random, config.candidates);
+  }
+}
+
+}  // namespace hedon

@@ -1,0 +1,159 @@
+/// Energy and age, and what follows from them: births and deaths.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/math.h"
+#include "base/random.h"
+#include "evolution/reward.h"
+#include "world/population.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Probability of dying in a step at age `age` [step] and energy `energy`.
+HEDON_FN float hazard(const HazardConfig& config, double age, double energy) {
+  const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * energy);
+  // 1 - 1/(1 + x), written so that nothing cancels when x is small.
+  const double by_energy = config.kappa * (x / (1.0 + x));
+  return static_cast<float>(by_energy + config.alpha_age * exp_double(config.beta_age * age));
+}
+
+/// Probability of having a child in a step at energy `energy`.
+HEDON_FN float birth_rate(const BirthConfig& config, double energy) {
+  return static_cast<float>(config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy)));
+}
+
+/// One agent's step as its body feels it: meals and costs, then its reward and its draws for birth and death.
+HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
+  const WorldConfig& config = *world.config;
+  const WorldState& state = world.state;
+  StepScratch& scratch = world.scratch;
+  Life& life = state.life[slot];
+  const float left = scratch.force_left[slot], right = scratch.force_right[slot];
+  const float force = sqrtf(left * left + right * right);
+  const int32_t* meal = world.meal(slot);
+
+  double eaten = 0.0;
+  for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    eaten += static_cast<double>(config.food[k].energy) * meal[k];
+    state.eaten[int64_t{slot} * world.shape->kinds + k] += meal[k];
+  }
+  const double basic = config.energy.basic_cost;
+  const double action = static_cast<double>(config.energy.action_cost) * force;
+  const double wanted = life.energy + eaten - action - basic;
+  const double capacity = config.energy.capacity;
+  scratch.energy_eaten[slot] = eaten;
+  scratch.energy_basic[slot] = basic;
+  scratch.energy_action[slot] = action;
+  scratch.energy_forgiven[slot] = wanted < 0.0 ? -wanted : 0.0;
+  scratch.energy_capped[slot] = wanted > capacity ? wanted - capacity : 0.0;
+  scratch.starved[slot] = wanted < 0.0 && config.energy.starvation == Starvation::death;
+  life.energy = wanted < 0.0 ? 0.0 : (wanted > capacity ? capacity : wanted);
+  life.energy_gained += eaten;
+  life.energy_spent += basic + action;
+
+  const BodyState& body = state.physics.bodies;
+  const Vec2 moved{body.x[slot] - scratch.start_x[slot], body.y[slot] - scratch.start_y[slot]};
+  life.distance += length(moved);
+  life.force_left += left;
+  life.force_right += right;
+
+  const float r = reward(world.shape->genome, config.reward, world.genome(slot), meal, force, world.constants->max_force);
+  state.reward[slot * int64_t{world.shape->steps} + t] = r;
+  life.reward += r;
+
+  const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
+                            static_cast<uint32_t>(world.clock().step)};
+  const Random4 bits = random.draw(0);
+  scratch.birth_draw[slot] = to_uniform(bits.word[0]);
+  scratch.death_draw[slot] = to_uniform(bits.word[1]);
+}
+
+/// Adds what the living gained and spent in this step to the ledger, in their order.
+HEDON_FN void keep_ledger(World& world) {
+  Counters& counters = world.counters();
+  const StepScratch& scratch = world.scratch;
+  const int32_t living = world.clock().living_count;
+  counters.agent_steps += living;
+  for (int32_t i = 0; i < living; ++i) {
+    const int32_t slot = world.state.living[i];
+    counters.energy_eaten += scratch.energy_eaten[slot];
+    counters.energy_basic += scratch.energy_basic[slot];
+    counters.energy_action += scratch.energy_action[slot];
+    counters.energy_forgiven += scratch.energy_forgiven[slot];
+    counters.energy_capped += scratch.energy_capped[slot];
+  }
+}
+
+/// Looks for a place for the child of `parent` around it.
+HEDON_FN bool find_child_place(const World& world, int32_t parent, Vec2* place) {
+  const BirthConfig& birth = world.config->birth;
+  const BodyState& body = world.state.physics.bodies;
+  const RandomStream random{world.seed, Purpose::child_place, static_cast<uint32_t>(world.state.life[parent].agent_id),
+                            static_cast<uint32_t>(world.clock().step)};
+  for (int32_t i = 0; i < birth.attempts; ++i) {
+    const Random4 bits = random.draw(static_cast<uint32_t>(i));
+    const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
+    *place = {body.x[parent] + birth.distance_sd.x * normal.first, body.y[parent] + birth.distance_sd.y * normal.second};
+    if (can_place(world, *place, world.config->body.radius)) return true;
+  }
+  return false;
+}
+
+/// The agents whose draw made them parents have a child each, in random order, where there is a slot and a place.
+HEDON_FN void breed(World& world) {
+  StepScratch& scratch = world.scratch;
+  const WorldState& state = world.state;
+  Counters& counters = world.counters();
+  const uint32_t step = static_cast<uint32_t>(world.clock().step);
+  int32_t parents = 0;
+  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+    const int32_t slot = state.living[i];
+    if (!(scratch.birth_draw[slot] < birth_rate(world.config->birth, state.life[slot].energy))) continue;
+    const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id), step};
+    const uint32_t key = random.draw(0).word[0];
+    int32_t at = parents++;
+    for (; at > 0 && scratch.parent_key[at - 1] > key; --at) {
+      scratch.parent_key[at] = scratch.parent_key[at - 1];
+      scratch.parent[at] = scratch.parent[at - 1];
+    }
+    scratch.parent_key[at] = key;
+    scratch.parent[at] = slot;
+  }
+  for (int32_t p = 0; p < parents; ++p) {
+    const int32_t parent = scratch.parent[p];
+    Vec2 place;
+    if (world.clock().free_count == 0) {
+      counters.births_failed_full += 1;
+    } else if (!find_child_place(world, parent, &place)) {
+      counters.births_failed_space += 1;
+    } else {
+      bear(world, parent, place);
+    }
+  }
+}
+
+/// Each agent that lived through this step dies with the probability that its age and energy give.
+HEDON_FN void reap(World& world) {
+  const WorldState& state = world.state;
+  Clock& clock = world.clock();
+  int32_t kept = 0;
+  for (int32_t i = 0; i < clock.living_count; ++i) {
+    const int32_t slot = state.living[i];
+    const Life& life = state.life[slot];
+    const int64_t age = clock.step + 1 - life.birth_step;
+    const bool dies = age > 0 && (world.scratch.starved[slot] != 0 ||
+                                  world.scratch.death_draw[slot] < hazard(world.config->hazard, static_cast<double>(age), life.energy));
+    if (dies) {
+      bury(world, slot);
+    } else {
+      state.living[kept++] = slot;
+    }
+  }
+  clock.living_count = kept;
+  if (kept == 0 && clock.extinct_step < 0) clock.extinct_step = clock.step + 1;
+}
+
+}  // namespace hedon

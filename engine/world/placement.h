@@ -1,0 +1,51 @@
+/// Where something new may stand: inside the arena, overlapping nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/vec2.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// True where a disc lies wholly inside the outer polygon (clockwise, convex) and clear of the inner walls.
+HEDON_FN bool inside_arena(const World& world, Vec2 place, float radius) {
+  const Array<Segment>& walls = world.state.physics.walls;
+  for (int32_t w = 0; w < world.shape->outer_walls; ++w) {
+    // The outer walls run clockwise, so the inside is to their right.
+    const Vec2 along = walls[w].b - walls[w].a;
+    if (cross(place - walls[w].a, along) < radius * length(along)) return false;
+  }
+  for (int32_t w = world.shape->outer_walls; w < world.shape->walls; ++w) {
+    const Vec2 near = nearest_on_segment(walls[w].a, walls[w].b, place);
+    if (squared_length(place - near) < radius * radius) return false;
+  }
+  return true;
+}
+
+/// True where a disc overlaps no agent alive and no food present. The grids know where each was when it was put there;
+/// bodies have moved since by less than the skin of the neighbor list.
+HEDON_FN bool free_of_bodies(const World& world, Vec2 place, float radius) {
+  const WorldState& state = world.state;
+  const PhysicsState& physics = state.physics;
+  bool is_free = true;
+  const float agent_reach = radius + world.config->body.radius;
+  const float moved = physics.neighbors.head[0].skin;
+  for_each_near(physics.body_grid, place.x, place.y, agent_reach + moved, [&](int32_t slot) {
+    const Vec2 apart{physics.bodies.x[slot] - place.x, physics.bodies.y[slot] - place.y};
+    if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
+  });
+  const float food_reach = radius + world.config->body.food_radius;
+  for_each_near(physics.circle_grid, place.x, place.y, food_reach, [&](int32_t f) {
+    const Vec2 apart{physics.circles.x[f] - place.x, physics.circles.y[f] - place.y};
+    if (physics.circles.present[f] && squared_length(apart) < food_reach * food_reach) is_free = false;
+  });
+  return is_free;
+}
+
+HEDON_FN bool can_place(const World& world, Vec2 place, float radius) {
+  return inside_arena(world, place, radius) && free_of_bodies(world, place, radius);
+}
+
+}  // namespace hedon

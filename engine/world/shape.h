@@ -1,0 +1,106 @@
+/// Sizes and constants that follow from a config: computed once, never changed.
+#pragma once
+
+#include <cstdint>
+
+#include "base/array.h"
+#include "base/math.h"
+#include "base/vec2.h"
+#include "evolution/genome.h"
+#include "learning/network.h"
+#include "learning/observation.h"
+#include "physics/body.h"
+#include "world/config.h"
+
+namespace hedon {
+
+/// Types that senses tell apart: agents, each food kind, walls.
+inline constexpr int AGENT_TYPE = 0;
+
+struct WorldShape {
+  int32_t slots;        ///< most agents alive at a time
+  int32_t kinds;        ///< food kinds
+  int32_t foods;        ///< most foods present at a time, all kinds
+  int32_t walls;
+  int32_t outer_walls;  ///< the first walls, a closed convex polygon
+  int32_t events;       ///< deaths that can wait for the reader
+  int32_t steps;        ///< of a rollout
+  GenomeShape genome;
+  NetworkShape network;
+  int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
+
+  HEDON_FN int32_t wall_type() const { return 1 + kinds; }
+  HEDON_FN int32_t types() const { return kinds + 2; }
+};
+
+/// Deaths per slot that can wait for the reader. Python reads at least once per window, in which about one in ten dies.
+inline constexpr int EVENTS_PER_SLOT = 16;
+
+HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t outer_walls) {
+  WorldShape shape{};
+  shape.slots = config.population.capacity;
+  shape.kinds = config.food.count;
+  shape.walls = walls;
+  shape.outer_walls = outer_walls;
+  shape.events = EVENTS_PER_SLOT * shape.slots;
+  shape.steps = config.learning.rollout_steps;
+  for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
+  shape.foods = shape.food_offset[shape.kinds];
+  shape.genome = {shape.kinds, config.genome.neutral_count};
+  const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
+  shape.network = {{config.sensor.ray_count, shape.types(), shape.types() * config.sensor.touch_sectors, dense}};
+  return shape;
+}
+
+/// Numbers that every step needs, worked out once.
+struct WorldConstants {
+  BodyShape body;
+  float motor_arm;              ///< lever of each motor about the center [u]
+  float max_force;              ///< largest norm of the two forces: the norm of (f_max, f_max)
+  float mouth_cosine;           ///< cosine of the mouth's half angle
+  float ray_sine[MAX_RAYS];     ///< of each ray's angle to the heading; past the last ray the last repeats
+  float ray_cosine[MAX_RAYS];
+  Vec2 fan_left, fan_right;     ///< outermost rays in the body's frame (x forward, y left)
+  bool fan_convex;              ///< the fan spans less than half a turn, so that its edges can cull
+  float sector_sine[65];        ///< of each touch sector's first edge, counter-clockwise of the heading
+  float sector_cosine[65];
+};
+
+HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
+  const double degree = PI / 180.0;
+  WorldConstants c{};
+  c.body = make_disc(config.body.radius, config.body.density, config.body.food_radius);
+  double sine, cosine;
+  sincos_double(config.motor.angle * degree, &sine, &cosine);
+  c.motor_arm = static_cast<float>(config.body.radius * sine);
+  c.max_force = config.motor.max_force * sqrtf(2.0f);
+  sincos_double(config.sensor.mouth_spread * degree, &sine, &cosine);
+  c.mouth_cosine = static_cast<float>(cosine);
+  const int32_t rays = config.sensor.ray_count;
+  const double spread = config.sensor.ray_spread * degree;
+  for (int32_t r = 0; r < MAX_RAYS; ++r) {
+    const int32_t ray = r < rays ? r : rays - 1;
+    const double angle = rays == 1 ? 0.0 : -spread + 2.0 * spread * ray / (rays - 1);
+    sincos_double(angle, &sine, &cosine);
+    c.ray_sine[r] = static_cast<float>(sine);
+    c.ray_cosine[r] = static_cast<float>(cosine);
+  }
+  c.fan_convex = config.sensor.ray_spread < 90.0f;
+  c.fan_right = {c.ray_cosine[0], c.ray_sine[0]};
+  c.fan_left = {c.ray_cosine[rays - 1], c.ray_sine[rays - 1]};
+  for (int32_t s = 0; s <= config.sensor.touch_sectors; ++s) {
+    sincos_double(2.0 * PI * s / config.sensor.touch_sectors, &sine, &cosine);
+    c.sector_sine[s] = static_cast<float>(sine);
+    c.sector_cosine[s] = static_cast<float>(cosine);
+  }
+  return c;
+}
+
+/// Heading 0 looks along +y; positive is counter-clockwise.
+HEDON_FN Vec2 heading(float angle) {
+  float sine, cosine;
+  sincos_float(angle, &sine, &cosine);
+  return {-sine, cosine};
+}
+
+}  // namespace hedon

@@ -1,0 +1,127 @@
+/// All that a world is at one moment: read this first.
+///
+/// Agents live in *slots*, which are reused; an `agent_id` never is. `living` lists the slots of the living in the order
+/// of their ids, and every loop over agents follows it, so that which slot an agent got changes nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "base/array.h"
+#include "base/fields.h"
+#include "base/status.h"
+#include "learning/observation.h"
+#include "physics/state.h"
+#include "world/config.h"
+#include "world/shape.h"
+
+namespace hedon {
+
+/// One life: what the records say of an agent. Kept up to date while it lives.
+struct Life {
+  int64_t birth_step;
+  int64_t death_step;  ///< -1 while alive
+  int32_t agent_id;
+  int32_t parent_id;  ///< -1 for founders
+  int32_t generation;
+  int32_t children;
+  double energy;         ///< held now, or at death
+  double birth_energy;   ///< held at birth
+  double energy_gained;  ///< by eating; what was destroyed at the cap included
+  double energy_spent;   ///< on living and moving; what was forgiven at zero included
+  double distance;       ///< moved [u]
+  double force_left;     ///< summed over the steps lived
+  double force_right;
+  double reward;  ///< summed over the steps lived
+
+  HEDON_FIELDS(Life, birth_step, death_step, agent_id, parent_id, generation, children, energy, birth_energy,
+               energy_gained, energy_spent, distance, force_left, force_right, reward)
+};
+
+/// Sums since the world began. The ledger (double) accounts for every unit of energy that came or went.
+struct Counters {
+  int64_t births;
+  int64_t deaths;
+  int64_t births_failed_full;   ///< all slots taken
+  int64_t births_failed_space;  ///< no free place found
+  int64_t agent_steps;
+  int64_t learners;  ///< agent-windows learnt from
+  double energy_initial;
+  double energy_eaten;
+  double energy_basic;
+  double energy_action;
+  double energy_forgiven;  ///< spending that an agent at zero could not pay
+  double energy_capped;    ///< eaten but destroyed at the capacity
+  double energy_shared;    ///< given by parents to children: moved, neither made nor lost
+  double energy_lost;      ///< held by agents when they died
+
+  HEDON_FIELDS(Counters, births, deaths, births_failed_full, births_failed_space, agent_steps, learners,
+               energy_initial, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped,
+               energy_shared, energy_lost)
+};
+
+/// Growth of one food kind.
+struct FoodStock {
+  double number;       ///< the internal number n_t; its floor is how many foods there should be
+  int64_t eaten;       ///< since the world began
+  int32_t present;     ///< foods in the arena
+  int32_t center;      ///< the Gaussian in use, for switching placement
+
+  HEDON_FIELDS(FoodStock, number, eaten, present, center)
+};
+
+/// Single numbers of a world.
+struct Clock {
+  int64_t step;             ///< steps completed
+  int64_t extinct_step;     ///< -1 while anyone lives
+  int32_t next_agent_id;
+  int32_t living_count;
+  int32_t free_count;
+  int32_t births_in_window;
+  int32_t event_count;      ///< deaths not yet taken by the reader
+  int32_t reserved;
+
+  HEDON_FIELDS(Clock, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, event_count,
+               reserved)
+};
+
+struct WorldState {
+  Array<Clock> clock;        // (1)
+  Array<Fault> fault;        // (1) the first error
+  Array<Counters> counters;  // (1)
+
+  // Agents, by slot.
+  Array<uint8_t> alive;     // (slots)
+  Array<int32_t> living;    // (slots) slots of the living in the order of their ids
+  Array<int32_t> free;      // (slots) stack of free slots
+  Array<Life> life;         // (slots)
+  Array<int32_t> eaten;     // (slots, kinds) foods eaten in this life
+  Array<float> genome;      // (slots, genes)
+  Array<uint64_t> touch;    // (slots) bit type * sectors + sector, of the last step
+  PhysicsState physics;     // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
+
+  Array<FoodStock> food_stock;  // (kinds)
+
+  // Learners, by slot.
+  Array<float> params;         // (slots, params)
+  Array<float> folded_bias;    // (slots, 64) derived from params
+  Array<float> first_moment;   // (slots, params)
+  Array<float> second_moment;  // (slots, params)
+  Array<int64_t> updates;      // (slots) Adam steps done in this life
+
+  // Rollouts of the current window, by slot, then by step. One more observation serves as bootstrap.
+  Array<PackedObservation> observation;  // (slots, rollout_steps + 1)
+  Array<float> action;                   // (slots, rollout_steps, 2) before the sigmoid
+  Array<float> log_prob;                 // (slots, rollout_steps)
+  Array<float> value;                    // (slots, rollout_steps)
+  Array<float> reward;                   // (slots, rollout_steps)
+
+  // Deaths that the reader has not yet taken.
+  Array<Life> event;            // (events)
+  Array<int32_t> event_eaten;   // (events, kinds)
+  Array<float> event_genome;    // (events, genes)
+
+  HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock, params, folded_bias, first_moment, second_moment, updates, observation,
+               action, log_prob, value, reward, event, event_eaten, event_genome)
+};
+
+}  // namespace hedon

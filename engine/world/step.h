@@ -1,0 +1,60 @@
+/// One step of a world: the order of the model's specification, as a table of contents.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "physics/step.h"
+#include "world/act.h"
+#include "world/food.h"
+#include "world/life.h"
+#include "world/sensor.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// The parts whose time is reported.
+enum class Part : int32_t { sense_and_act, physics, life, learning, count };
+inline constexpr const char* PART_NAMES[] = {"sense_and_act", "physics", "life", "learning"};
+
+/// Advances a world by one step. All members of the group call it; `t` is the step within the window.
+/// `lap(part)` is told when each part ends.
+template <class Group, class Lap>
+void step(Group& group, World& world, int64_t t, Lap&& lap) {
+  Clock& clock = world.clock();
+  const WorldState& state = world.state;
+
+  group.once([&] { gather_scene(world); });
+  group.for_each(clock.living_count, [&](int32_t i) {
+    const int32_t slot = state.living[i];
+    PackedObservation& observation = world.observation(slot, t);
+    observe(world, i, observation);
+    sample_action(world, slot, t, observation);
+    drive(world, slot, t);
+  });
+  lap(Part::sense_and_act);
+
+  TouchVisitor touch{&world};
+  const StepScratch& scratch = world.scratch;
+  physics_step(group, world.config->physics, world.constants->body, world.state.physics, world.physics_scratch,
+               state.living, clock.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
+               world.fault());
+  if (world.fault().status != Status::ok) {
+    group.once([&] { world.fault().step = clock.step; });
+    return;
+  }
+  lap(Part::physics);
+
+  group.once([&] { eat(world); });
+  group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, state.living[i], t); });
+  group.once([&] {
+    keep_ledger(world);
+    breed(world);
+    reap(world);
+    grow(world);
+    clock.step += 1;
+  });
+  lap(Part::life);
+}
+
+}  // namespace hedon

@@ -1,0 +1,74 @@
+/// One world: its config, its state, and the scratch of a step.
+#pragma once
+
+#include <cstdint>
+
+#include "base/array.h"
+#include "kernel/kernel.h"
+#include "physics/state.h"
+#include "world/config.h"
+#include "world/shape.h"
+#include "world/state.h"
+
+namespace hedon {
+
+/// Circles that rays may hit, gathered once per step: the living in order, then the foods present.
+struct Scene {
+  Array<float> x, y, radius;  // (slots + foods)
+  Array<int32_t> type;
+  int64_t count;
+
+  HEDON_FIELDS(Scene, x, y, radius, type, count)
+};
+
+/// What an agent does and meets within one step, by slot. Means nothing between steps.
+struct StepScratch {
+  Array<float> force_left, force_right;  ///< applied by the motors
+  Array<float> force_x, force_y, torque; ///< the same, on the body
+  Array<float> heading_sine, heading_cosine;  ///< at the start of the step
+  Array<float> start_angle, start_x, start_y;
+  Array<int32_t> meal;                   ///< (slots, kinds) foods eaten in this step
+  Array<float> birth_draw, death_draw;   ///< uniform in [0, 1)
+  Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
+  Array<uint8_t> starved;
+  Array<int32_t> eater;                  ///< (foods) slot of the agent that gets the food, -1 for none
+  Array<float> eater_distance;           ///< (foods) squared
+  Array<int32_t> parent;                 ///< (slots)
+  Array<uint32_t> parent_key;            ///< (slots)
+
+  HEDON_FIELDS(StepScratch, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine, start_angle,
+               start_x, start_y, meal, birth_draw, death_draw, energy_eaten, energy_basic, energy_action,
+               energy_forgiven, energy_capped, starved, eater, eater_distance, parent, parent_key)
+};
+
+struct World {
+  const WorldConfig* config;
+  const WorldShape* shape;
+  const WorldConstants* constants;
+  const Kernel* kernel;
+  uint64_t seed;
+  WorldState state;
+  PhysicsScratch physics_scratch;
+  StepScratch scratch;
+  Scene scene;
+
+  HEDON_FN Clock& clock() const { return state.clock[0]; }
+  HEDON_FN Counters& counters() const { return state.counters[0]; }
+  HEDON_FN Fault& fault() const { return state.fault[0]; }
+  HEDON_FN bool over() const { return clock().extinct_step >= 0 || fault().status != Status::ok; }
+
+  /// Keeps the first error; later ones are usually its consequences.
+  HEDON_FN void fail(Status status, int32_t agent_id, double value) const {
+    if (fault().status == Status::ok) fault() = {status, agent_id, clock().step, value};
+  }
+
+  HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->network.size()]; }
+  HEDON_FN float* folded_bias(int32_t slot) const { return &state.folded_bias[int64_t{slot} * HIDDEN]; }
+  HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genome.size()]; }
+  HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->kinds]; }
+  HEDON_FN PackedObservation& observation(int32_t slot, int64_t t) const {
+    return state.observation[slot * (int64_t{shape->steps} + 1) + t];
+  }
+};
+
+}  // namespace hedon

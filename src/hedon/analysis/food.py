@@ -1,0 +1,45 @@
+"""How much do agents eat?
+
+Two rules of averaging give different answers. The paper's is a mean over agents of foods per step of life,
+so a short life counts as much as a long one. The other is total foods over total steps lived: what a living
+agent eats in a step.
+"""
+
+from collections.abc import Sequence
+
+import polars as pl
+
+from hedon.analysis.lifetime import dead_agents
+
+
+def food_per_step(
+    agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None
+) -> float | None:
+    """Mean over the dead of foods eaten / lifetime [1/step]: the paper's rule.
+
+    Args:
+        agents: table `agents`.
+        food_kinds: kinds to count, poison too if it is named.
+        last: only over those who died last.
+
+    Returns:
+        None where nobody died. Lives of no step are left out.
+    """
+    dead = dead_agents(agents, last=last).filter(pl.col("lifetime") > 0)
+    mean = dead.select(_eaten(food_kinds) / pl.col("lifetime")).to_series().mean()
+    return None if mean is None else float(mean)  # type: ignore[arg-type]
+
+
+def food_per_agent_step(population: pl.DataFrame, food_kinds: Sequence[str]) -> float | None:
+    """Total foods eaten / total steps lived by all agents [1/step]; None where nobody lived.
+
+    Args:
+        population: table `population`.
+        food_kinds: kinds to count, poison too if it is named.
+    """
+    steps = population["agent_steps"].sum()
+    return population.select(_eaten(food_kinds).sum()).item() / steps if steps else None
+
+
+def _eaten(food_kinds: Sequence[str]) -> pl.Expr:
+    return pl.sum_horizontal(pl.lit(0, pl.Int64), *(pl.col(f"eaten_{k}").cast(pl.Int64) for k in food_kinds))

@@ -1,0 +1,64 @@
+"""Is every unit of energy accounted for?"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+_INFLOW = ("energy_eaten", "energy_forgiven")
+_OUTFLOW = ("energy_basic", "energy_action", "energy_capped", "energy_lost")
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Sums over a run of one world [energy]; energy that parents share with children stays within the world.
+
+    Attributes:
+        initial: held by the founders at birth; None where their rows are missing.
+        eaten, forgiven, basic, action, capped, lost, shared: as the columns of the table `population`.
+        final: held by the living at the end.
+        residual: largest difference over the intervals between the energy held and what the flows say it
+            must be; only rounding where the ledger closes. None where there is nothing to compare.
+    """
+
+    initial: float | None
+    eaten: float
+    forgiven: float
+    basic: float
+    action: float
+    capped: float
+    lost: float
+    shared: float
+    final: float | None
+    residual: float | None
+
+
+def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
+    """The ledger of one world.
+
+    held at the end = held before + eaten + forgiven − basic − action − capped − lost, in each interval.
+
+    Args:
+        population: rows of one world, by step.
+        agents: rows of the same world.
+    """
+    founders = agents.filter(pl.col("parent_id").is_null())
+    initial = float(founders["birth_energy"].cast(pl.Float64).sum()) if founders.height else None
+    sums = {name: float(population[f"energy_{name}"].sum()) for name in _names()}
+    total = population["energy_total"].to_numpy()
+    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(
+        population[name].to_numpy() for name in _OUTFLOW
+    )
+    before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
+    residuals = np.abs(total - before - flow)
+    residuals = residuals[np.isfinite(residuals)]
+    return Ledger(
+        initial=initial,
+        final=float(total[-1]) if len(total) else None,
+        residual=float(residuals.max()) if len(residuals) else None,
+        **sums,
+    )
+
+
+def _names() -> list[str]:
+    return [name.removeprefix("energy_") for name in (*_INFLOW, *_OUTFLOW, "energy_shared")]

@@ -1,0 +1,57 @@
+"""What did the paper report? Kanagawa & Doya (2024), means over 5 seeds of 10.24 million steps each."""
+
+from dataclasses import dataclass
+
+STEPS = 10_240_000  # per seed
+SEEDS = 5
+
+
+@dataclass(frozen=True)
+class PaperFigures:
+    """What the paper reports of one setting; None where it gives no number.
+
+    Attributes:
+        mean_lifetime: unweighted over agents [step].
+        food_per_step: unweighted over agents, foods / lifetime [1/step].
+        population: range of the number alive.
+        generation: range of the number of generations in a run.
+        claim: what it says about the weights that evolve.
+    """
+
+    mean_lifetime: float | None = None
+    food_per_step: float | None = None
+    population: tuple[int, int] | None = None
+    generation: tuple[int, int] | None = None
+    claim: str = ""
+
+
+_POSITIVE = (
+    "w_food evolves positive, mostly above 4; w_action to two modes, largely positive or slightly negative"
+)
+_HARDLY = "hardly any evolution: agents learn to eat well within a life"
+_VARIES = "varies widely between runs while the weight for normal food stays positive"
+
+PAPER: dict[str, PaperFigures] = {
+    "baseline": PaperFigures(6310, 0.001, (130, 150), (300, 400), _POSITIVE),
+    "small": PaperFigures(120668, 0.0045, claim=_HARDLY),
+    "large": PaperFigures(5718, 0.0008, claim=_POSITIVE),
+    "centered": PaperFigures(74318, 0.0039, claim=_HARDLY),
+    "relocation": PaperFigures(6794, 0.00096, claim="w_action evolves mostly negative"),
+    "poor": PaperFigures(claim=f"the weight for poor food {_VARIES}"),
+    "poison": PaperFigures(claim=f"the weight for poison {_VARIES}"),
+}
+
+# Share of 10 seeds extinct by 1.024 million steps, by (basic_cost, action_cost) per step.
+EXTINCTION_STEP = 1_024_000
+EXTINCTION: dict[tuple[float, float], float] = {
+    (0.002, 2e-5): 0.9,
+    (0.0015, 2e-5): 0.3,
+    (0.001, 4e-5): 1.0,
+    (0.001, 3e-5): 0.5,
+    (0.001, 2e-5): 0.0,
+}
+
+
+def paper_figures(preset: str | None) -> PaperFigures | None:
+    """What the paper reports of a preset; None for a setting that is not in the paper."""
+    return PAPER.get(preset or "")

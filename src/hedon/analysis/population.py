@@ -1,0 +1,71 @@
+"""How does a world fare: who lives, is born, dies, finds no place for a child, and is it hungry?"""
+
+from collections.abc import Sequence
+
+import polars as pl
+
+TAIL = 0.1  # share of a run, at its end, over which its state is averaged
+
+_COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
+
+
+def history(population: pl.DataFrame, food_kinds: Sequence[str], points: int = 400) -> pl.DataFrame:
+    """The course of each world, in at most `points` intervals of equal length.
+
+    Args:
+        population: table `population`.
+        food_kinds: names.
+        points: rows per world at most.
+
+    Returns:
+        By world and step (the interval's end [step]): alive, energy_mean and generation_mean (means over the
+        interval), births, deaths, births_failed_full and births_failed_space per 1000 steps, and
+        eaten_<kind> per step lived. Where nobody lived the last are null.
+    """
+    if population.is_empty():
+        return population.select("world", "step")
+    width = max(int(population["step"].max()) / points, 1.0)  # type: ignore[arg-type]
+    groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().alias("bin"))
+    rates = [(1000.0 * pl.col(name).sum() / pl.col("steps").sum()).alias(name) for name in _COUNTS]
+    lived = pl.col("agent_steps").sum()
+    eaten = [
+        pl.when(lived > 0).then(pl.col(f"eaten_{kind}").sum() / lived).alias(f"eaten_{kind}")
+        for kind in food_kinds
+    ]
+    means = [pl.col(name).mean() for name in ("alive", "energy_mean", "generation_mean")]
+    return groups.agg(pl.col("step").max(), *means, *rates, *eaten).sort("world", "step").drop("bin")
+
+
+def run_tail(population: pl.DataFrame) -> pl.DataFrame:
+    """The rows of one world's last tenth: those that end after nine tenths of its steps."""
+    if population.is_empty():
+        return population
+    return population.filter(pl.col("step") > (1 - TAIL) * pl.col("step").max())
+
+
+def mean_alive(population: pl.DataFrame) -> float | None:
+    """Agents alive, averaged over the steps of the given intervals of one world; None without intervals."""
+    steps = int(population["steps"].sum())
+    return int(population["agent_steps"].sum()) / steps if steps else None
+
+
+def mean_energy(population: pl.DataFrame) -> float | None:
+    """Energy of the living, mean over the ends of the given intervals, each weighted by the number alive.
+
+    Returns:
+        None where nobody lived.
+    """
+    alive = int(population["alive"].sum())
+    return float((population["energy_mean"] * population["alive"]).sum()) / alive if alive else None
+
+
+def last_generation(population: pl.DataFrame) -> float | None:
+    """Mean generation of the living at the end, or when somebody lived last; None if that is not recorded."""
+    known = population["generation_mean"].drop_nulls()
+    return float(known[-1]) if len(known) else None
+
+
+def extinct_step(population: pl.DataFrame) -> int | None:
+    """End of the first interval at whose end nobody lived [step]; None while somebody lives."""
+    empty = population.filter(pl.col("alive") == 0)
+    return None if empty.is_empty() else int(empty["step"][0])

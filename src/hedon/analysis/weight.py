@@ -1,0 +1,53 @@
+"""Which rewards evolved? The neutral markers tell how much of it is drift."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import polars as pl
+
+LAST_AGENTS = 5000  # whose weights the paper shows
+
+
+@dataclass(frozen=True)
+class WeightSpread:
+    """A weight among the agents of one world.
+
+    Attributes:
+        mean: None where there are no agents.
+        sd: standard deviation; None where there are fewer than two.
+    """
+
+    mean: float | None
+    sd: float | None
+
+
+def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
+    """The agents of each world that were born last, dead or alive, by world and birth.
+
+    Args:
+        agents: table `agents`.
+        count: per world; all where there are fewer.
+    """
+    return agents.sort("world", "birth_step", "agent_id").group_by("world", maintain_order=True).tail(count)
+
+
+def world_weights(
+    agents: pl.DataFrame, names: Sequence[str], count: int = LAST_AGENTS
+) -> dict[int, dict[str, WeightSpread]]:
+    """Weights of the agents born last, per world.
+
+    Args:
+        agents: table `agents`.
+        names: genome columns.
+        count: agents per world.
+
+    Returns:
+        By world and name. A world without agents is missing.
+    """
+    groups = last_agents(agents, count).partition_by("world", as_dict=True)
+    return {int(world): {name: _spread(group[name]) for name in names} for (world,), group in groups.items()}
+
+
+def _spread(values: pl.Series) -> WeightSpread:
+    values = values.cast(pl.Float64)
+    return WeightSpread(values.mean(), values.std())  # type: ignore[arg-type]

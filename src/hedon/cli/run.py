@@ -1,0 +1,116 @@
+"""`hedon run`: one command from a condition to a result."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hedon.error import HedonError
+
+DEFAULT_STEPS = 204_800
+"""200 windows of the baseline: about two minutes on two cores."""
+MAX_SEED = 2**64 - 1
+MAX_STEPS = 2**31 - 1
+
+
+class RunError(HedonError):
+    """An argument of `hedon run` that cannot be used."""
+
+
+def run(
+    source: Annotated[
+        str, typer.Argument(metavar="PRESET|FILE", help="A preset's name or a config file (.toml).")
+    ] = "baseline",
+    seeds: Annotated[str, typer.Option(help="One world per seed: 7, or 1-5, or 1,4,7-9.")] = "1",
+    steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = DEFAULT_STEPS,
+    threads: Annotated[
+        int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)
+    ] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")
+    ] = None,
+    frames: Annotated[
+        int, typer.Option(help="Keep positions of everything each so many steps; 0 for never.", min=0)
+    ] = 0,
+    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or text.")] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
+    ] = None,
+) -> None:
+    """Run a condition: simulate its worlds, keep records, and end with a table and figures.
+
+    Ctrl-C ends the run after the current window; all results so far are kept.
+
+    Examples:
+
+      hedon run baseline
+
+      hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+
+      hedon run baseline --fidelity released --set population.capacity=100
+
+      hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
+    """
+    from rich.console import Console
+
+    from hedon.analysis.report import write_report
+    from hedon.analysis.summary_table import summary_table
+    from hedon.config.load import load_config
+    from hedon.experiment.progress import duration, make_display
+    from hedon.experiment.run import RunPlan, default_folder
+    from hedon.experiment.run import run as run_plan
+    from hedon.record.reader import open_run
+
+    config = load_config(source, fidelity, overrides or ())
+    world_seeds = parse_seeds(seeds)
+    folder = out or default_folder(config, world_seeds)
+    console = Console()
+    worlds = f"{len(world_seeds)} world{'s' if len(world_seeds) > 1 else ''}"
+    console.print(
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}", highlight=False
+    )
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames)
+    with make_display(console, tuple(config.food), config.genome.neutral_count, world_seeds) as display:
+        manifest = run_plan(plan, display)
+    for seed, extinct in zip(world_seeds, manifest.extinct_steps, strict=True):
+        if extinct is not None:
+            console.print(f"The world of seed {seed} died out at step {extinct:,}.", highlight=False)
+    if manifest.status == "interrupted":
+        done = max(manifest.steps_done)
+        console.print(
+            f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.",
+            highlight=False,
+        )
+    finished = open_run(folder)
+    files = write_report(finished)
+    console.print(summary_table(finished))
+    took = duration(manifest.run_seconds or 0.0)
+    console.print(
+        f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}", highlight=False
+    )
+    console.print(
+        f"Look at {folder / 'figures'}; make them again with: hedon report {folder}", highlight=False
+    )
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Seeds from "7", "1-5" or "1,4,7-9".
+
+    Raises:
+        RunError: The text is no such list, a seed is out of range, or one appears twice.
+    """
+    seeds: list[int] = []
+    for item in text.split(","):
+        first, dash, last = item.strip().partition("-")
+        if not first.isdecimal() or (dash and not last.isdecimal()):
+            raise RunError(f"--seeds: {text!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+        low, high = int(first), int(last or first)
+        if high < low or high > MAX_SEED or high - low >= 10_000:
+            raise RunError(
+                f"--seeds: {item.strip()!r} is not a range of seeds from 0 to {MAX_SEED}, at most 10,000 of them"
+            )
+        seeds += range(low, high + 1)
+    twice = sorted({seed for seed in seeds if seeds.count(seed) > 1})
+    if twice:
+        raise RunError(f"--seeds: {twice[0]} appears twice; equal seeds give equal worlds")
+    return tuple(seeds)

@@ -1,0 +1,76 @@
+"""The arena: a rectangle with rounded corners and, where asked for, walls inside."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class ArenaConfig:
+    """Where the agents live."""
+
+    width: Annotated[float, Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5))] = 480.0
+    height: Annotated[float, Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5))] = 360.0
+    corner_radius: Annotated[
+        float, Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0))
+    ] = 19.0
+    corner_chords: Annotated[
+        int, Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64))
+    ] = 4
+    inner_walls: Annotated[
+        tuple[tuple[float, float, float, float], ...],
+        Doc("walls inside, each from (ax, ay) to (bx, by)", "u", OURS, Range(max_items=256)),
+    ] = ()
+
+
+def outline(arena: ArenaConfig) -> list[tuple[float, float]]:
+    """The corners of the outer polygon, clockwise from the lower end of the left wall.
+
+    Returns:
+        Points [u]: each is the start of one outer wall, which ends at the next point.
+    """
+    w, h, r = arena.width, arena.height, arena.corner_radius
+    if r == 0:
+        return [(0.0, 0.0), (0.0, h), (w, h), (w, 0.0)]
+    points = []
+    for corner, (x, y) in enumerate([(r, r), (r, h - r), (w - r, h - r), (w - r, r)]):
+        start = 1.5 * math.pi - corner * 0.5 * math.pi
+        for i in range(arena.corner_chords + 1):
+            angle = start - 0.5 * math.pi * i / arena.corner_chords
+            points.append((x + r * math.cos(angle), y + r * math.sin(angle)))
+    # The first corner is the last one to be closed: the polygon starts with the left wall.
+    return points[arena.corner_chords :] + points[: arena.corner_chords]
+
+
+def outer_count(arena: ArenaConfig) -> int:
+    """How many of the first `walls` make up the closed outer polygon."""
+    return 4 if arena.corner_radius == 0 else 4 * (arena.corner_chords + 1)
+
+
+def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
+    """All walls: the outer polygon first, clockwise from the left wall, then the inner walls in their order.
+
+    Returns:
+        (count, 4) float32: ax, ay, bx, by of each segment [u]. The inside of the outer polygon lies to
+        the right of a → b.
+    """
+    import numpy as np
+
+    points = outline(arena)
+    outer = [(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+    return np.array([*outer, *arena.inner_walls], dtype=np.float32)
+
+
+def is_inside(arena: ArenaConfig, x: float, y: float) -> bool:
+    """Whether a point [u] lies within the outer polygon (a point on a wall counts as inside)."""
+    points = outline(arena)
+    return all(
+        (bx - ax) * (y - ay) - (by - ay) * (x - ax) <= 1e-6 * arena.width * arena.height
+        for (ax, ay), (bx, by) in zip(points, points[1:] + points[:1], strict=True)
+    )

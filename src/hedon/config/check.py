@@ -1,0 +1,135 @@
+"""Contradictions: settings that are each allowed, but not together."""
+
+import math
+import re
+from collections.abc import Iterator
+
+from hedon.config.arena import is_inside
+from hedon.config.config import PROVENANCE, Config
+from hedon.config.food import MAX_KINDS, FoodConfig
+from hedon.config.problem import Problem
+
+MAX_TOUCH_BITS = 64
+"""Types times touch sectors that the engine has room for."""
+MAX_COVERAGE = 0.45
+"""Share of the arena that founders may cover; random placement without overlap jams at 0.547 (Feder 1980)."""
+RESERVED_KINDS = ("agent", "wall", "action")
+"""Names that stand for something else in sensor channels or in the columns of records."""
+
+
+def contradictions(config: Config) -> Iterator[Problem]:
+    """Everything in a config that cannot be true at the same time."""
+    yield from _names(config)
+    yield from _arena(config)
+    yield from _bodies(config)
+    yield from _kinds(config)
+    yield from _life(config)
+
+
+def _names(config: Config) -> Iterator[Problem]:
+    for field in PROVENANCE:
+        text = getattr(config, field)
+        if not text or len(text) > 200 or not text.isprintable():
+            yield Problem(field, "must be a text of 1 to 200 printable characters", repr(text))
+
+
+def _arena(config: Config) -> Iterator[Problem]:
+    arena = config.arena
+    most = min(arena.width, arena.height) / 2
+    if arena.corner_radius > most:
+        yield _problem(
+            config, "arena.corner_radius", f"must be at most half of the shorter side, {most:g} [u]"
+        )
+        return
+    for i, (ax, ay, bx, by) in enumerate(arena.inner_walls):
+        if not (is_inside(arena, ax, ay) and is_inside(arena, bx, by)):
+            yield Problem(
+                f"arena.inner_walls[{i}]", "lies outside the arena", f"[{ax:g}, {ay:g}, {bx:g}, {by:g}]"
+            )
+        if (ax, ay) == (bx, by):
+            yield Problem(f"arena.inner_walls[{i}]", "has no length", f"[{ax:g}, {ay:g}, {bx:g}, {by:g}]")
+
+
+def _bodies(config: Config) -> Iterator[Problem]:
+    arena, radius, count = config.arena, config.body.radius, config.population.initial_count
+    if config.motor.min_force >= config.motor.max_force:
+        yield _problem(
+            config, "motor.min_force", f"must be below motor.max_force = {config.motor.max_force:g}"
+        )
+    if 2 * max(radius, config.body.food_radius) >= min(arena.width, arena.height):
+        yield _problem(config, "body.radius", "a body does not fit into the arena")
+    elif count * math.pi * radius**2 > MAX_COVERAGE * arena.width * arena.height:
+        most = math.floor(MAX_COVERAGE * arena.width * arena.height / (math.pi * radius**2))
+        yield _problem(
+            config, "population.initial_count", f"too many to be placed: the arena has room for {most}"
+        )
+    if count > config.population.capacity:
+        limit = config.population.capacity
+        yield _problem(config, "population.initial_count", f"must be at most population.capacity = {limit}")
+    types = len(config.food) + 2
+    if types * config.sensor.touch_sectors > MAX_TOUCH_BITS:
+        most = MAX_TOUCH_BITS // types
+        yield _problem(
+            config, "sensor.touch_sectors", f"must be at most {most} with {len(config.food)} kinds of food"
+        )
+
+
+def _kinds(config: Config) -> Iterator[Problem]:
+    if not 1 <= len(config.food) <= MAX_KINDS:
+        yield Problem("food", f"there must be from 1 to {MAX_KINDS} kinds of food, not {len(config.food)}")
+    for kind, food in config.food.items():
+        path = f"food.{kind}"
+        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind) or kind in RESERVED_KINDS:
+            rule = "a kind's name must be of a-z, 0-9 and _, start with a letter, have at most 32 characters"
+            yield Problem(path, f"{rule} and not be one of " + ", ".join(RESERVED_KINDS))
+        if not re.fullmatch(r"#[0-9a-f]{6}", food.color):
+            yield Problem(
+                f"{path}.color", 'must be "#rrggbb" in lower-case hexadecimal digits', repr(food.color)
+            )
+        if food.initial_count > food.capacity:
+            message = f"must be at most {path}.capacity = {food.capacity}"
+            yield Problem(f"{path}.initial_count", message, str(food.initial_count))
+        yield from _placement(config, food, f"{path}.placement")
+
+
+def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]:
+    place = food.placement
+    for i, (x, y) in enumerate(place.centers):
+        if not is_inside(config.arena, x, y):
+            yield Problem(f"{path}.centers[{i}]", "lies outside the arena", f"[{x:g}, {y:g}]")
+    if place.form == "uniform":
+        return
+    if place.form == "gaussian" and len(place.centers) != 1:
+        yield Problem(f"{path}.centers", f'"gaussian" takes one center, not {len(place.centers)}')
+    if place.form == "switching" and len(place.centers) < 2:
+        yield Problem(f"{path}.centers", f'"switching" takes at least two centers, not {len(place.centers)}')
+    if min(place.sd) <= 0:
+        yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', str(list(place.sd)))
+
+
+def _life(config: Config) -> Iterator[Problem]:
+    learning, genome = config.learning, config.genome
+    if config.birth.distance_unit == "arena_width" and config.birth.distance_sd > 1:
+        yield _problem(
+            config, "birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"'
+        )
+    if config.energy.initial > config.energy.capacity:
+        yield _problem(
+            config, "energy.initial", f"must be at most energy.capacity = {config.energy.capacity:g}"
+        )
+    if learning.rollout_steps % learning.minibatch_size:
+        yield _problem(
+            config,
+            "learning.minibatch_size",
+            f"must divide learning.rollout_steps = {learning.rollout_steps}",
+        )
+    for name in ("initial_mean_food", "initial_mean_action"):
+        if abs(getattr(genome, name)) > genome.weight_limit:
+            yield _problem(
+                config, f"genome.{name}", f"must be within ± genome.weight_limit = {genome.weight_limit:g}"
+            )
+
+
+def _problem(config: Config, path: str, message: str) -> Problem:
+    section, name = path.split(".")
+    return Problem(path, message, f"{getattr(getattr(config, section), name):g}")

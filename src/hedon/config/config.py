@@ -1,0 +1,43 @@
+"""The root of a config: everything that a run is, with where it came from."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
+
+from hedon.config.arena import ArenaConfig
+from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
+from hedon.config.energy import EnergyConfig
+from hedon.config.evolution import GenomeConfig, RewardConfig
+from hedon.config.field import OURS, Doc
+from hedon.config.food import FoodConfig
+from hedon.config.learning import LearningConfig
+from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.physics import PhysicsConfig
+from hedon.config.population import PopulationConfig
+
+PROVENANCE = ("name", "preset", "fidelity")
+"""Fields that say where a config came from and change nothing in a run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`."""
+
+    # For the validator: no conversion between types, no unknown names, no NaN or infinity, in any section.
+    __pydantic_config__: ClassVar[Any] = {"strict": True, "extra": "forbid", "allow_inf_nan": False}
+
+    name: Annotated[str, Doc("what the run is called", "", OURS)] = "baseline"
+    preset: Annotated[str, Doc("the preset that it started from", "", OURS)] = "baseline"
+    fidelity: Annotated[str, Doc("the overlay that was laid on the preset", "", OURS)] = "corrected"
+    arena: ArenaConfig = field(default_factory=ArenaConfig)
+    physics: PhysicsConfig = field(default_factory=PhysicsConfig)
+    body: BodyConfig = field(default_factory=BodyConfig)
+    motor: MotorConfig = field(default_factory=MotorConfig)
+    sensor: SensorConfig = field(default_factory=SensorConfig)
+    population: PopulationConfig = field(default_factory=PopulationConfig)
+    food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
+    energy: EnergyConfig = field(default_factory=EnergyConfig)
+    hazard: HazardConfig = field(default_factory=HazardConfig)
+    birth: BirthConfig = field(default_factory=BirthConfig)
+    genome: GenomeConfig = field(default_factory=GenomeConfig)
+    reward: RewardConfig = field(default_factory=RewardConfig)
+    learning: LearningConfig = field(default_factory=LearningConfig)

@@ -1,0 +1,102 @@
+"""A config as text, as a digest, and compared with another."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import Any
+
+from hedon.config.config import PROVENANCE, Config
+from hedon.config.field import sections, settings
+
+_HEAD = "# Complete: every setting stands here, and nothing is taken from the preset or the fidelity.\n"
+
+
+def dump_toml(config: Config, section: str | None = None) -> str:
+    """Writes a config as a TOML file that loads to an equal config; each setting with its meaning and unit.
+
+    Args:
+        config: What to write.
+        section: Write only this section ("food", "food.normal", …).
+
+    Returns:
+        The text. With a section it is no complete file, but can be pasted into one.
+
+    Raises:
+        KeyError: There is no such section.
+    """
+    tables = list(_tables(config))
+    if section is None:
+        return _HEAD + "complete = true\n" + "\n\n".join(text for _, text in tables) + "\n"
+    wanted = [text for path, text in tables if path == section or path.startswith(f"{section}.")]
+    if not section or not wanted:
+        raise KeyError(section)
+    return "\n\n".join(wanted) + "\n"
+
+
+def section_paths(config: Config) -> list[str]:
+    """The sections that `dump_toml` can write by themselves."""
+    return [*sections(Config), *(f"food.{kind}" for kind in config.food)]
+
+
+def flatten(config: Config) -> dict[str, Any]:
+    """Every setting by its path, in order, without the names of preset and fidelity."""
+    return {path: value for path, value in _leaves(asdict(config), "") if path not in PROVENANCE}
+
+
+def digest(config: Config) -> str:
+    """A fingerprint of what a run does: equal if all settings are, whatever the names and colors.
+
+    Returns:
+        SHA-256, 64 hexadecimal digits.
+    """
+    seen = [[path, value] for path, value in flatten(config).items() if not path.endswith(".color")]
+    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
+
+
+def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
+    """What differs between two configs.
+
+    Returns:
+        (path, value in a, value in b) in order, None where a setting is absent; the path "food" with the
+        names of the kinds, where these or their order differ.
+    """
+    left, right = flatten(a), flatten(b)
+    kinds = [("food", tuple(a.food), tuple(b.food))] if list(a.food) != list(b.food) else []
+    paths = dict.fromkeys([*left, *right])
+    return kinds + [
+        (path, left.get(path), right.get(path)) for path in paths if left.get(path) != right.get(path)
+    ]
+
+
+def _tables(config: Config) -> Iterator[tuple[str, str]]:
+    def write(path: str, section: Any) -> Iterator[tuple[str, str]]:
+        lines = [f"[{path}]"] if path else []
+        for name, setting in settings(type(section)).items():
+            unit = f" [{setting.doc.unit}]" if setting.doc.unit else ""
+            lines.append(f"{name} = {format_value(getattr(section, name))}  # {setting.doc.meaning}{unit}")
+        if len(lines) > bool(path):
+            yield path, "\n".join(lines)
+        for name, inner in sections(type(section)).items():
+            below, value = f"{path}.{name}".lstrip("."), getattr(section, name)
+            for kind, item in value.items() if inner.repeated else [("", value)]:
+                yield from write(f"{below}.{kind}".rstrip("."), item)
+
+    return write("", config)
+
+
+def format_value(value: Any) -> str:
+    """A value as TOML."""
+    if isinstance(value, tuple):
+        return "[" + ", ".join(format_value(item) for item in value) + "]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value)
+
+
+def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _leaves(inner, f"{path}.{name}".lstrip("."))
+    else:
+        yield path, value

@@ -1,0 +1,149 @@
+"""What stands beside each setting: its meaning, unit, range and source, readable by people and by machine."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+PAPER = "paper"
+"""Printed in Kanagawa & Doya (2024)."""
+CODE = "code"
+"""Not printed, or printed otherwise: the value that the paper's released code was configured with."""
+OURS = "ours"
+"""A choice of this project."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Range:
+    """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`."""
+
+    ge: float | None = None
+    gt: float | None = None
+    le: float | None = None
+    lt: float | None = None
+    max_items: int | None = None
+
+    def __str__(self) -> str:
+        if self.max_items is not None:
+            return f"with at most {self.max_items} items"
+        if self.ge is not None and self.le is not None:
+            return f"from {self.ge:.10g} to {self.le:.10g}"
+        signs = {">=": self.ge, ">": self.gt, "<=": self.le, "<": self.lt}
+        return " and ".join(f"{sign} {bound:.10g}" for sign, bound in signs.items() if bound is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Doc:
+    """The annotation of one setting: `Annotated[float, Doc("meaning", "unit", SOURCE, Range(ge=0))]`.
+
+    Attributes:
+        meaning: What the value does, as a phrase.
+        unit: Its unit, or "" where it has none.
+        source: `PAPER`, `CODE` or `OURS`, with a remark where there is one to make.
+        range: The allowed values, apart from their type.
+    """
+
+    meaning: str
+    unit: str
+    source: str
+    range: Range = Range()
+    __is_annotated_types_grouped_metadata__: Literal[True] = True
+
+    def __iter__(self) -> Iterator[object]:
+        """Yields the range in the validator's own terms (the protocol of grouped metadata)."""
+        from pydantic import Field
+
+        bounds: Any = Field(
+            ge=self.range.ge,
+            gt=self.range.gt,
+            le=self.range.le,
+            lt=self.range.lt,
+            max_length=self.range.max_items,
+        )
+        yield from bounds.metadata
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One field of a section: its name, type, default and documentation."""
+
+    name: str
+    type: Any
+    default: Any
+    doc: Doc
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The allowed names where the setting is a choice among names, else nothing."""
+        return get_args(self.type) if get_origin(self.type) is Literal else ()
+
+    @property
+    def allowed(self) -> str:
+        """Type, range and unit in words, as error messages and the reference page give them."""
+        if self.choices:
+            return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
+        limits = str(self.doc.range)
+        unit = f"[{self.doc.unit}]" if self.doc.unit else ""
+        return " ".join(filter(None, (type_name(self.type), limits, unit)))
+
+
+def type_name(kind: Any) -> str:
+    """A type in words: "a number", "a list of [number, number]"."""
+    plain = {float: "a number", int: "an integer", str: "a text", bool: "true or false"}
+    if kind in plain:
+        return plain[kind]
+    items = get_args(kind)
+    if len(items) == 2 and items[1] is Ellipsis:
+        return "a list of " + type_name(items[0]).removeprefix("a list ").removeprefix("of ")
+    return "[" + ", ".join(type_name(item).split(" ", 1)[1] for item in items) + "]"
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A field that is a section itself, or a table of such sections by the name of their kind."""
+
+    type: type
+    repeated: bool
+
+
+@cache
+def settings(section: type) -> Mapping[str, Setting]:
+    """The documented settings of a section by name, in order, without the sections that it holds."""
+    hints = get_type_hints(section, include_extras=True)
+    found = {}
+    for field in fields(section):
+        if get_origin(hints[field.name]) is Annotated:
+            kind, doc = get_args(hints[field.name])
+            found[field.name] = Setting(field.name, kind, field.default, doc)
+    return MappingProxyType(found)
+
+
+@cache
+def sections(section: type) -> Mapping[str, Section]:
+    """The sections directly within a section by name, in order."""
+    hints = get_type_hints(section)
+    found = {}
+    for field in fields(section):
+        repeated = get_origin(hints[field.name]) is dict
+        inner = get_args(hints[field.name])[1] if repeated else hints[field.name]
+        if isinstance(inner, type) and is_dataclass(inner):
+            found[field.name] = Section(inner, repeated)
+    return MappingProxyType(found)
+
+
+def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
+    """What stands at a path below a section: the setting that it leads to or into, a section, or nothing."""
+    here, parts = root, list(path)
+    while parts:
+        name = parts.pop(0)
+        if not isinstance(name, str):
+            return None
+        if name in settings(here):
+            return settings(here)[name]
+        if name not in sections(here):
+            return None
+        if sections(here)[name].repeated and parts:
+            parts.pop(0)
+        here = sections(here)[name].type
+    return here

@@ -1,0 +1,67 @@
+"""Food: one section per kind. The order of the kinds is the order of sensor channels and genome weights."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+
+MAX_KINDS = 8
+"""Kinds that the engine has room for."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacementConfig:
+    """Where new food of a kind appears."""
+
+    form: Annotated[
+        Literal["uniform", "gaussian", "switching"],
+        Doc("anywhere, around one center, or around one of several centers in turn", "", PAPER),
+    ] = "uniform"
+    centers: Annotated[
+        tuple[tuple[float, float], ...],
+        Doc(
+            "means of the Gaussians: one for gaussian, at least two for switching",
+            "u",
+            PAPER,
+            Range(max_items=16),
+        ),
+    ] = ()
+    sd: Annotated[
+        tuple[float, float], Doc("standard deviations of the Gaussians along x and y", "u", PAPER)
+    ] = (0.0, 0.0)
+    switch_after: Annotated[
+        int,
+        Doc(
+            "food of this kind eaten before the next center is used",
+            "food",
+            PAPER,
+            Range(ge=1, le=1_000_000_000),
+        ),
+    ] = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class FoodConfig:
+    """One kind of food."""
+
+    energy: Annotated[float, Doc("gained by eating one", "energy", PAPER, Range(ge=-1e4, le=1e4))] = 1.0
+    growth_rate: Annotated[
+        float,
+        Doc(
+            "growth of the supply",
+            "food/step",
+            CODE + "; the paper prints 0.02, the code's rounding amounts to 1",
+            Range(ge=0, le=1000),
+        ),
+    ] = 0.2
+    capacity: Annotated[int, Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=10_000))] = 100
+    initial_count: Annotated[
+        int, Doc("supply and food present at first", "food", CODE, Range(ge=0, le=10_000))
+    ] = 20
+    candidates: Annotated[
+        int, Doc("places tried for new food in each step; else it waits", "", CODE, Range(ge=1, le=1000))
+    ] = 10
+    color: Annotated[
+        str, Doc("in figures and in the viewer: #rrggbb; the agents do not see it", "", OURS)
+    ] = "#3f8f4f"
+    placement: PlacementConfig = field(default_factory=PlacementConfig)

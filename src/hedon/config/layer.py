@@ -1,0 +1,70 @@
+"""Layers of nested tables: each is laid over those below it, setting by setting."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hedon.config.problem import Problem, nearest
+
+Table = dict[str, Any]
+EVERY = "*"
+"""In a layer, the kind of food that stands for every kind: `[food."*"]`."""
+
+
+def stack(layers: Iterable[Table]) -> Table:
+    """Lays tables over one another, the last on top.
+
+    In `food`, a layer's `*` applies to every kind, also to those that later layers add; `kind = false`
+    removes a kind. Kinds keep the place of their first mention.
+    """
+    result: Table = {}
+    for layer in layers:
+        food, added = result.get("food", {}), layer.get("food", {})
+        result = _lay(result, layer)
+        if isinstance(food, dict) and isinstance(added, dict):
+            result["food"] = _lay_food(food, added)
+    return result
+
+
+def settle_food(tables: Table) -> Iterator[Problem]:
+    """Takes removed kinds and `*` out of `food`, in place; yields what is wrong with the kinds as such."""
+    food = tables.get("food")
+    if not isinstance(food, dict):
+        return
+    every = food.pop(EVERY, {})
+    if not isinstance(every, dict):
+        yield Problem(f'food."{EVERY}"', "must be a table", repr(every))
+    for kind, value in list(food.items()):
+        others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
+        if value is False:
+            del food[kind]
+        elif isinstance(value, dict) and "energy" not in value:
+            known = ", ".join(others) or "none"
+            message = f"there is no such kind of food (known: {known}); a new kind must give its energy"
+            yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
+
+
+def _lay(base: Table, over: Table) -> Table:
+    merged = dict(base)
+    for name, value in over.items():
+        below = merged.get(name)
+        merged[name] = _lay(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return merged
+
+
+def _lay_food(base: Table, over: Table) -> Table:
+    merged = dict(base)
+    every = over.get(EVERY, {})
+    if isinstance(every, dict):
+        for kind, below in base.items():
+            merged[kind] = _lay(below, every) if isinstance(below, dict) else below
+        merged[EVERY] = _lay(base.get(EVERY, {}), every) if isinstance(base.get(EVERY, {}), dict) else every
+    else:
+        merged[EVERY] = every
+    for kind, value in over.items():
+        if kind == EVERY:
+            continue
+        below = merged.get(kind)
+        if not isinstance(below, dict):
+            below = merged[EVERY] if isinstance(merged[EVERY], dict) else {}
+        merged[kind] = _lay(below, value) if isinstance(value, dict) else value
+    return merged

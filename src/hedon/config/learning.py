@@ -1,0 +1,48 @@
+"""Learning: PPO, one learner per agent."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from hedon.config.field import CODE, PAPER, Doc, Range
+
+
+@dataclass(frozen=True, slots=True)
+class LearningConfig:
+    """Proximal policy optimization (Schulman et al. 2017) with generalized advantage estimation."""
+
+    rollout_steps: Annotated[
+        int,
+        Doc(
+            "steps of a window, at whose end every agent that lived through it learns",
+            "step",
+            PAPER,
+            Range(ge=1, le=65_536),
+        ),
+    ] = 1024
+    minibatch_size: Annotated[
+        int, Doc("steps in one gradient; must divide rollout_steps", "step", PAPER, Range(ge=1, le=65_536))
+    ] = 256
+    update_epochs: Annotated[int, Doc("passes over a rollout", "", PAPER, Range(ge=0, le=1000))] = 10
+    gamma: Annotated[float, Doc("discount of later rewards", "1/step", PAPER, Range(ge=0, le=1))] = 0.999
+    gae_lambda: Annotated[
+        float, Doc("decay of the advantage estimate", "1/step", PAPER, Range(ge=0, le=1))
+    ] = 0.95
+    clip_coef: Annotated[float, Doc("clip of the probability ratio", "", PAPER, Range(gt=0, le=10))] = 0.2
+    learning_rate: Annotated[float, Doc("of Adam", "", PAPER, Range(ge=0, le=1))] = 3e-4
+    adam_beta1: Annotated[float, Doc("decay of Adam's first moment", "", CODE, Range(ge=0, lt=1))] = 0.9
+    adam_beta2: Annotated[float, Doc("decay of Adam's second moment", "", CODE, Range(ge=0, lt=1))] = 0.999
+    adam_epsilon: Annotated[
+        float, Doc("added to the root of Adam's second moment", "", PAPER, Range(gt=0, le=1))
+    ] = 1e-7
+    value_coef: Annotated[float, Doc("weight of the value loss", "", CODE, Range(ge=0, le=1e3))] = 1.0
+    entropy_coef: Annotated[
+        float, Doc("weight of the entropy bonus", "", CODE + "; the paper prints 0", Range(ge=0, le=1e3))
+    ] = 0.001
+    critic_target: Annotated[
+        Literal["per_state", "batch_mean"],
+        Doc(
+            "what the value learns: each state's return, or the minibatch's mean",
+            "",
+            PAPER + '; the code amounts to "batch_mean"',
+        ),
+    ] = "per_state"

@@ -1,0 +1,138 @@
+"""From a preset or a file to a config: preset, then fidelity, then the file, then single overrides."""
+
+import tomllib
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from hedon.config.config import Config
+from hedon.config.layer import Table, settle_food, stack
+from hedon.config.override import parse_override
+from hedon.config.problem import ConfigError, Problem, nearest
+from hedon.config.validate import from_tables
+
+_FOLDER = Path(__file__).parent
+DEFAULT_PRESET = "baseline"
+DEFAULT_FIDELITY = "corrected"
+PRESETS = ("baseline", "small", "large", "centered", "relocation", "poor", "poison")
+"""The conditions of the paper."""
+FIDELITIES = ("corrected", "released", "text")
+"""Overlays for any preset: correct algorithms, the faults of the released code, the values as printed."""
+
+
+def load_config(source: str | Path, fidelity: str | None = None, overrides: Iterable[str] = ()) -> Config:
+    """Loads a run's settings.
+
+    Args:
+        source: The name of a preset, or the path of a TOML file, which may start with `preset` and
+            `fidelity` and then gives what differs. A file with `complete = true`, as `dump_toml` writes it,
+            stands alone.
+        fidelity: One of `FIDELITIES`; wins over the file's.
+        overrides: Texts `path=value`, as of `--set`; the last wins.
+
+    Raises:
+        ConfigError: There is no such preset or file, or anything in it is wrong; all problems at once.
+    """
+    path = _path_of(source)
+    origin = str(path or source)
+    own = {"preset": source} if path is None else _read(path)
+    over = [parse_override(text) for text in overrides]
+    problems = [item for item in over if isinstance(item, Problem)]
+    tables = [item for item in over if not isinstance(item, Problem)]
+    problems += [
+        _not_settable(name)
+        for table in tables
+        for name in ("preset", "fidelity", "complete")
+        if name in table
+    ]
+    below = _layers_below(own, fidelity, problems)
+    if problems:
+        raise ConfigError(origin, problems)
+    name = {"name": str(source) if path is None else path.stem}
+    merged = stack([name, *below, own, *tables])
+    merged.pop("complete", None)
+    problems = list(settle_food(merged))
+    if problems:
+        raise ConfigError(origin, problems)
+    return from_tables(merged, origin + " with --set" if tables else origin)
+
+
+@cache
+def describe_preset(name: str) -> str:
+    """What a preset is, in one sentence."""
+    return _read(_FOLDER / "presets" / f"{name}.toml")["description"]
+
+
+@cache
+def describe_fidelity(name: str) -> str:
+    """What a fidelity is, in one sentence."""
+    return _read(_FOLDER / "overlays" / f"{name}.toml")["description"]
+
+
+def _path_of(source: str | Path) -> Path | None:
+    """The file that a source names, or None for a preset."""
+    if isinstance(source, Path) or source.endswith(".toml") or "/" in source:
+        return Path(source)
+    if source not in PRESETS:
+        known = "there is no such preset (there is " + ", ".join(PRESETS) + "); a file's name ends with .toml"
+        raise ConfigError(source, [Problem("", known, nearest=nearest(source, PRESETS))])
+    return None
+
+
+def _read(path: Path) -> Table:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(str(path), [Problem("", f"cannot be read: {error.strerror}")]) from None
+    except UnicodeDecodeError:
+        raise ConfigError(str(path), [Problem("", "cannot be read: it is not a text in UTF-8")]) from None
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(str(path), [Problem("", f"is not valid TOML: {error}")]) from None
+
+
+def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
+    """The layers that a file rests on; sets the names of preset and fidelity in `own`."""
+    if own.get("complete") is True:
+        if fidelity not in (None, own.get("fidelity")):
+            message = (
+                "the file is complete, so no fidelity can be laid below it; start from its preset instead"
+            )
+            problems.append(Problem("--fidelity", message, fidelity))
+        return []
+    if "complete" in own:
+        problems.append(Problem("complete", "must be true or left out", repr(own["complete"])))
+    own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
+    own.setdefault("preset", DEFAULT_PRESET)
+    good = [
+        _is_one_of("preset", own["preset"], PRESETS, problems),
+        _is_one_of("fidelity", own["fidelity"], FIDELITIES, problems),
+    ]
+    if not all(good):
+        return []
+    return [*_preset_layers(own["preset"]), _settings_of(_FOLDER / "overlays" / f"{own['fidelity']}.toml")]
+
+
+def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Problem]) -> bool:
+    if value in names:
+        return True
+    near = nearest(value, names) if isinstance(value, str) else None
+    problems.append(Problem(field, "must be one of " + ", ".join(names), repr(value), near))
+    return False
+
+
+def _not_settable(name: str) -> Problem:
+    other = "--fidelity" if name == "fidelity" else "the preset or file itself"
+    return Problem(name, f"is not a setting: give it by {other}")
+
+
+def _preset_layers(name: str) -> list[Table]:
+    """A preset and those that it starts from, the lowest first."""
+    own = _settings_of(_FOLDER / "presets" / f"{name}.toml")
+    return [*(_preset_layers(own["preset"]) if "preset" in own else []), own]
+
+
+def _settings_of(path: Path) -> Table:
+    tables = _read(path)
+    tables.pop("description")
+    return tables

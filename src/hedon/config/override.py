@@ -1,0 +1,61 @@
+"""Single settings given on the command line: `food.normal.growth_rate=0.5`."""
+
+import re
+import tomllib
+from typing import Any
+
+from hedon.config.layer import Table
+from hedon.config.problem import Problem
+
+_PART = re.compile(r'"([^"]+)"|([\w*-]+)')
+_WORD = re.compile(r"[A-Za-z_#][\w.#/-]*")
+
+
+def parse_override(text: str) -> Table | Problem:
+    """Reads `path=value` as nested tables.
+
+    Args:
+        text: A path of names joined by points (a name may stand in quotes, `*` is every kind of food), "=",
+            and a TOML value; a single word that is no TOML value is a text, so that `sensor.scaling=unit`
+            needs no quotes.
+
+    Returns:
+        The tables, or what is wrong with the text.
+    """
+    path, sign, value_text = text.partition("=")
+    names = _names(path.strip())
+    if not sign or not names:
+        return Problem("--set", 'must be "section.name=value", as in energy.initial=20', repr(text))
+    try:
+        value = _value(value_text.strip())
+    except ValueError:
+        return Problem(
+            path.strip(), 'not a TOML value: texts of several words need quotes: "…"', value_text.strip()
+        )
+    for name in reversed(names):
+        value = {name: value}
+    return value
+
+
+def _names(path: str) -> list[str]:
+    names, at = [], 0
+    while match := _PART.match(path, at):
+        names.append(match[1] or match[2])
+        if match.end() == len(path):
+            return names
+        if path[match.end()] != ".":
+            return []
+        at = match.end() + 1
+    return []
+
+
+def _value(text: str) -> Any:
+    try:
+        tables = tomllib.loads(f"value = {text}\n")
+    except tomllib.TOMLDecodeError:
+        if _WORD.fullmatch(text):
+            return text
+        raise
+    if list(tables) != ["value"]:
+        raise ValueError(text)
+    return tables["value"]

@@ -1,0 +1,61 @@
+"""What is wrong with a config: every problem by its place, what is allowed, the nearest valid name."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from hedon.error import HedonError
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing to put right.
+
+    Attributes:
+        path: Where it is: "food.normal.growth_rate"; "" for the source as a whole.
+        message: What is wrong and what is allowed.
+        value: What stands there, as text; None where that says nothing.
+        nearest: A valid name close to the one that was given, if there is one.
+    """
+
+    path: str
+    message: str
+    value: str | None = None
+    nearest: str | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.path} = {self.value}" if self.value is not None else self.path
+        hint = f"; did you mean {self.nearest}?" if self.nearest else ""
+        return f"{place}: {self.message}{hint}" if place else f"{self.message}{hint}"
+
+
+class ConfigError(HedonError):
+    """A config that cannot be used. It names all problems at once.
+
+    Attributes:
+        origin: The preset or file that was read.
+        problems: What is wrong, in the order of the file where it has one.
+    """
+
+    def __init__(self, origin: str, problems: Iterable[Problem]) -> None:
+        self.origin = origin
+        self.problems = tuple(problems)
+        lines = [str(problem) for problem in self.problems]
+        if len(lines) == 1:
+            super().__init__(f"{origin}: {lines[0]}")
+        else:
+            super().__init__("\n  ".join([f"{origin}: {len(lines)} problems", *lines]))
+
+
+def nearest(name: str, names: Iterable[str]) -> str | None:
+    """The valid name closest to the given one, or None where none is close."""
+    matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
+    return matches[0] if matches else None
+
+
+def format_path(parts: Iterable[str | int]) -> str:
+    """A path as it is written in messages: names joined by points, positions in brackets."""
+    text = ""
+    for part in parts:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text

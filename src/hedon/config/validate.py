@@ -1,0 +1,83 @@
+"""The door: plain nested tables become a `Config`, or one error that names everything that is wrong."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from hedon.config.check import contradictions
+from hedon.config.config import Config
+from hedon.config.field import Setting, find, sections, settings
+from hedon.config.problem import ConfigError, Problem, format_path, nearest
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+    from pydantic_core import ErrorDetails
+
+
+def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
+    """Builds a config from nested tables; what is not given has its default.
+
+    Args:
+        tables: Sections and settings by name, as TOML gives them.
+        origin: What to call the tables in an error.
+
+    Raises:
+        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
+    """
+    from pydantic import ValidationError
+
+    try:
+        # By way of JSON: only there does a strict validator take tables for dataclasses, lists for tuples.
+        config = _validator().validate_json(json.dumps(tables, default=str))
+    except ValidationError as error:
+        problems = [_problem(details) for details in error.errors(include_url=False)]
+        raise ConfigError(origin, dict.fromkeys(problems)) from None
+    problems = list(contradictions(config))
+    if problems:
+        raise ConfigError(origin, problems)
+    return config
+
+
+def validated(config: Config, origin: str = "config") -> Config:
+    """The same config, after all checks: for one that was put together in Python.
+
+    Raises:
+        ConfigError: As `from_tables`.
+    """
+    return from_tables(asdict(config), origin)
+
+
+@cache
+def _validator() -> "TypeAdapter[Config]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Config)
+
+
+def _problem(details: "ErrorDetails") -> Problem:
+    location = details["loc"]
+    path = format_path(location)
+    if details["type"] == "unexpected_keyword_argument":
+        return Problem(path, "unknown name", nearest=_nearest_name(location))
+    target = find(Config, location)
+    if isinstance(target, Setting):
+        given = details["input"]
+        near = nearest(given, target.choices) if isinstance(given, str) else None
+        return Problem(path, f"must be {target.allowed}", json.dumps(given, ensure_ascii=False), near)
+    if target is not None:
+        return Problem(path, "must be a table", json.dumps(details["input"], ensure_ascii=False))
+    return Problem(path, details["msg"])
+
+
+def _nearest_name(location: Sequence[str | int]) -> str | None:
+    """The nearest name beside an unknown one, else the places where the same name is known."""
+    name, section = str(location[-1]), find(Config, location[:-1])
+    if not isinstance(section, type):
+        return None
+    beside = nearest(name, [*settings(section), *sections(section)])
+    elsewhere = [
+        f"{place}.{name}" for place, inner in sections(Config).items() if name in settings(inner.type)
+    ]
+    return beside or " or ".join(elsewhere) or None

@@ -1,0 +1,151 @@
+"""Shows how a run goes: a live table on a terminal, plain lines elsewhere."""
+
+import time
+from typing import IO, Any
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from hedon.experiment.run import Moment
+from hedon.record.schema import weight_names
+
+FIRST_LINE_SECONDS = 1.0
+LINE_SECONDS = 10.0
+
+
+def duration(seconds: float) -> str:
+    """A time as people write it: "42 s", "3 min 05 s", "2 h 07 min"."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+class _Speed:
+    """Steps per second over the last seconds, for a forecast that follows the population."""
+
+    SPAN = 10.0  # seconds
+
+    def __init__(self) -> None:
+        self._seen: list[tuple[float, int]] = [(0.0, 0)]
+
+    def update(self, moment: Moment) -> float:
+        self._seen.append((moment.seconds, moment.step))
+        while len(self._seen) > 2 and self._seen[1][0] < moment.seconds - self.SPAN:
+            self._seen.pop(0)
+        (begun, first), (now, last) = self._seen[0], self._seen[-1]
+        return (last - first) / max(now - begun, 1e-9)
+
+
+class LineDisplay:
+    """One plain line now and then, for logs."""
+
+    def __init__(
+        self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
+    ) -> None:
+        self._stream = stream
+        self._weights = weight_names(kinds, neutral_count)
+        self._seeds = seeds
+        self._speed = _Speed()
+        self._due = FIRST_LINE_SECONDS
+
+    def __enter__(self) -> "LineDisplay":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stream.flush()
+
+    def update(self, moment: Moment) -> None:
+        """Prints a line for each world, if it is time or the run is at its end."""
+        speed = self._speed.update(moment)
+        if moment.seconds < self._due and moment.step < moment.steps:
+            return
+        self._due = moment.seconds + LINE_SECONDS
+        left = duration((moment.steps - moment.step) / speed) if speed > 0 else "?"
+        head = f"step {moment.step:,} of {moment.steps:,}  {speed:,.0f} steps/s  {left} left"
+        for seed, row, extinct in zip(self._seeds, moment.rows, moment.extinct, strict=True):
+            print(
+                f"{head}  seed {seed}: {_describe(row, extinct, self._weights)}",
+                file=self._stream,
+                flush=True,
+            )
+
+
+def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]) -> str:
+    if extinct is not None:
+        return f"extinct at step {extinct:,}"
+    parts = [f"{row['alive']} alive", f"{row['births']} births", f"{row['deaths']} deaths"]
+    parts.append(f"energy {row['energy_mean']:.2f}")
+    parts += [f"{name} {row[f'{name}_mean']:+.2f}" for name in weights]
+    return ", ".join(parts)
+
+
+class LiveDisplay:
+    """A bar and a table of the worlds that renew themselves on a terminal."""
+
+    def __init__(
+        self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
+    ) -> None:
+        self._weights = weight_names(kinds, neutral_count)
+        self._seeds = seeds
+        self._speed = _Speed()
+        self._live = Live(console=console, auto_refresh=False, transient=True)
+        self._due = 0.0
+
+    def __enter__(self) -> "LiveDisplay":
+        self._live.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self._live.__exit__(*error)
+
+    def update(self, moment: Moment) -> None:
+        """Draws the moment, at most five times a second."""
+        speed = self._speed.update(moment)
+        now = time.monotonic()
+        if now < self._due and moment.step < moment.steps:
+            return
+        self._due = now + 0.2
+        self._live.update(self._draw(moment, speed), refresh=True)
+
+    def _draw(self, moment: Moment, speed: float) -> Group:
+        left = duration((moment.steps - moment.step) / speed) if speed > 0 else "?"
+        head = Text(
+            f"step {moment.step:,} of {moment.steps:,}   {speed:,.0f} steps/s   {left} left   (Ctrl-C ends after this window)"
+        )
+        bar = ProgressBar(total=moment.steps, completed=moment.step, width=72)
+        table = Table(box=None, pad_edge=False, header_style="bold")
+        for name in ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten"):
+            table.add_column(name, justify="right")
+        for name in self._weights:
+            table.add_column(name, justify="right", style="cyan")
+        for seed, row, extinct in zip(self._seeds, moment.rows, moment.extinct, strict=True):
+            table.add_row(*self._cells(seed, row, extinct))
+        return Group(
+            head,
+            bar,
+            table,
+            Text("births, deaths and food: in the last window; weights: means over the living", style="dim"),
+        )
+
+    def _cells(self, seed: int, row: dict[str, Any], extinct: int | None) -> list[str]:
+        if extinct is not None:
+            return [str(seed), "0", f"extinct at step {extinct:,}"]
+        eaten = sum(value for name, value in row.items() if name.startswith("eaten_"))
+        cells = [str(seed), *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
+        cells += [f"{row['energy_mean']:.2f}", f"{row['generation_mean']:.1f}", f"{eaten:,}"]
+        return cells + [f"{row[f'{name}_mean']:+.3f}" for name in self._weights]
+
+
+def make_display(
+    console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
+) -> LiveDisplay | LineDisplay:
+    """The display that fits where the output goes."""
+    if console.is_terminal:
+        return LiveDisplay(console, kinds, neutral_count, seeds)
+    return LineDisplay(console.file, kinds, neutral_count, seeds)

@@ -1,0 +1,107 @@
+"""From a world to rows of the records."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.experiment.simulation import World
+from hedon.record.schema import weight_names
+
+Rows = dict[str, Any]
+
+COUNTED = ("agent_steps", "births", "deaths", "births_failed_full", "births_failed_space", "learners")
+LEDGER = (
+    "energy_eaten",
+    "energy_basic",
+    "energy_action",
+    "energy_forgiven",
+    "energy_capped",
+    "energy_lost",
+    "energy_shared",
+)
+
+
+def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
+    """Rows of the table `agents` from lives as the engine gives them (`take_rows`, `living_rows`)."""
+    kinds = tuple(world.config.food)
+    end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
+    steps = np.maximum(end - lives["birth_step"], 1)
+    direct = ("agent_id", "parent_id", "generation", "birth_step", "death_step", "birth_energy", "energy")
+    direct += ("energy_gained", "energy_spent", "children", "distance")
+    return {
+        "world": world.index,
+        "seed": world.seed,
+        **{name: lives[name] for name in direct},
+        **{f"eaten_{kind}": lives["eaten"][:, k] for k, kind in enumerate(kinds)},
+        "mean_force_left": lives["force_left"] / steps,
+        "mean_force_right": lives["force_right"] / steps,
+        "reward_sum": lives["reward"],
+        **{name: lives["genome"][:, g] for g, name in enumerate(_genes(world))},
+    }
+
+
+class PopulationSampler:
+    """Rows of the table `population` of one world: its state now, and what was counted since the last row."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self._step = world.step
+        self._counted = world.counters
+        self._eaten = self._eaten_now()
+
+    def sample(self) -> Rows:
+        """One row, for the interval since the last one."""
+        world = self.world
+        lives = world.agents()
+        counters, eaten = world.counters, self._eaten_now()
+        present = world.view("food_stock.present")
+        row: Rows = {
+            "world": world.index,
+            "seed": world.seed,
+            "step": world.step,
+            "steps": world.step - self._step,
+        }
+        row["alive"] = world.alive
+        row |= {name: counters[name] - self._counted[name] for name in (*COUNTED, *LEDGER)}
+        row |= _spread("energy", lives["energy"]) | _spread("age", lives["age"])
+        generation = lives["generation"]
+        row["generation_mean"] = generation.mean() if len(generation) else np.nan
+        row["generation_max"] = generation.max() if len(generation) else -1
+        for g, name in enumerate(_genes(world)):
+            weight = lives["genome"][:, g]
+            row[f"{name}_mean"] = weight.mean() if len(weight) else np.nan
+            row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
+        for k, kind in enumerate(world.config.food):
+            row[f"food_{kind}"] = int(present[k])
+            row[f"eaten_{kind}"] = int(eaten[k] - self._eaten[k])
+        row["energy_total"] = lives["energy"].sum()
+        self._step, self._counted, self._eaten = world.step, counters, eaten
+        return row
+
+    def _eaten_now(self) -> NDArray[np.int64]:
+        return self.world.view("food_stock.eaten").copy()
+
+
+def frame_rows(world: World) -> list[Rows]:
+    """Rows of the table `frames`: every agent and every food of a world as it is now."""
+    lives, foods = world.agents(), world.foods()
+    here = {"world": world.index, "step": world.step}
+    agents = {name: lives[name] for name in ("x", "y", "angle", "energy")}
+    rows = [{**here, "kind": "agent", "id": lives["agent_id"], **agents}]
+    for k, kind in enumerate(world.config.food):
+        mine = foods["kind"] == k
+        rows.append({**here, "kind": kind, "x": foods["x"][mine], "y": foods["y"][mine]})
+    return rows
+
+
+def _genes(world: World) -> tuple[str, ...]:
+    return weight_names(tuple(world.config.food), world.config.genome.neutral_count)
+
+
+def _spread(name: str, values: NDArray[Any]) -> Rows:
+    statistics = ("mean", "sd", "min", "q25", "median", "q75", "max")
+    if len(values) == 0:
+        return {f"{name}_{statistic}": np.nan for statistic in statistics}
+    numbers = (values.mean(), values.std(), *np.quantile(values, (0.0, 0.25, 0.5, 0.75, 1.0)))
+    return {f"{name}_{statistic}": number for statistic, number in zip(statistics, numbers, strict=True)}

@@ -1,0 +1,158 @@
+"""The engine's worlds as Python objects: build them from a config, run them, look into them."""
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon import _engine
+from hedon.config.arena import outer_count, walls
+from hedon.config.config import Config
+from hedon.config.native import engine_config
+
+KERNEL_VARIABLE = "HEDON_KERNEL"
+"""Environment variable that forces an instruction set; see `hedon run --help`."""
+
+
+class Simulation:
+    """Worlds of one config, advanced together. A seed gives the same life, alone or in company.
+
+    Example:
+        >>> from hedon.config.load import load_config
+        >>> from hedon.experiment.simulation import Simulation
+        >>> simulation = Simulation(load_config("baseline"), seeds=[1, 2])
+        >>> simulation.run(1024)
+        >>> simulation.worlds[0].agents()["energy"].mean()
+
+    Args:
+        config: What the worlds are.
+        seeds: One world per seed, each in [0, 2^64).
+        threads: Threads to use; 0 for all processors that this process may use. Changes no result.
+        kernel: Instruction set, as `hedon._engine.learning.kernel_names` lists them; empty for the best one, or
+            the one that the environment variable HEDON_KERNEL names.
+
+    Raises:
+        ValueError: The kernel is unknown or not for this processor.
+        RuntimeError: The initial agents or foods find no place.
+    """
+
+    def __init__(self, config: Config, seeds: Sequence[int], threads: int = 0, kernel: str = "") -> None:
+        self.config = config
+        self.seeds = tuple(seeds)
+        self.engine = _engine.Simulation(
+            engine_config(config),
+            walls(config.arena),
+            outer_count(config.arena),
+            list(seeds),
+            threads,
+            kernel or os.environ.get(KERNEL_VARIABLE, ""),
+        )
+        self.worlds = tuple(World(self.engine, i, config, seed) for i, seed in enumerate(seeds))
+
+    def run(self, steps: int) -> None:
+        """Advances every world that is not extinct; learning happens at the end of each window.
+
+        Other Python threads go on meanwhile.
+
+        Args:
+            steps: How many steps; any number, not only whole windows.
+
+        Raises:
+            RuntimeError: A world reports an error; it names the world, the step and the agent.
+        """
+        self.engine.run(steps)
+
+    @property
+    def extinct(self) -> bool:
+        """Whether nobody lives in any world."""
+        return all(world.extinct for world in self.worlds)
+
+
+class World:
+    """One world of a simulation, read between runs."""
+
+    def __init__(self, engine: Any, index: int, config: Config, seed: int) -> None:
+        self._engine = engine
+        self.index = index
+        self.config = config
+        self.seed = seed
+
+    @property
+    def step(self) -> int:
+        """Steps completed; it stands still after extinction."""
+        return self._engine.clock(self.index)["step"]
+
+    @property
+    def alive(self) -> int:
+        """Agents alive."""
+        return self._engine.clock(self.index)["living_count"]
+
+    @property
+    def extinct_step(self) -> int | None:
+        """The step at whose end the last agent died, or None."""
+        step = self._engine.clock(self.index)["extinct_step"]
+        return None if step < 0 else step
+
+    @property
+    def extinct(self) -> bool:
+        """Whether nobody lives."""
+        return self.extinct_step is not None
+
+    @property
+    def counters(self) -> dict[str, Any]:
+        """Births, deaths, failures and the energy ledger since the world began."""
+        return self._engine.counters(self.index)
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent in each part of a step by the world's first thread [s]."""
+        return self._engine.seconds(self.index)
+
+    @property
+    def living(self) -> NDArray[np.int32]:
+        """Slots of the living in the order of their ids, (alive,): the rows to take from the views."""
+        return self.view("living")[: self.alive]
+
+    def view(self, path: str) -> NDArray[Any]:
+        """A read-only view of one array of the state, by slot; valid until the next `run`.
+
+        Args:
+            path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`
+                (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists them all.
+
+        Raises:
+            KeyError: There is no such array.
+        """
+        return self._engine.view(self.index, path)
+
+    def agents(self) -> dict[str, NDArray[Any]]:
+        """Copies of what is known of each living agent, (alive,) each, with `genome` (alive, genes)."""
+        rows = self._engine.living_rows(self.index)
+        living = self.living
+        rows["age"] = self.step - rows["birth_step"]
+        for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
+            rows[name] = self.view(f"physics.bodies.{name}")[living]
+        return rows
+
+    def foods(self) -> dict[str, NDArray[Any]]:
+        """Kind (index in the config's order) and place [u] of each food present, (foods,) each."""
+        present = self.view("physics.circles.present").astype(bool)
+        capacities = [food.capacity for food in self.config.food.values()]
+        kind = np.repeat(np.arange(len(capacities), dtype=np.int32), capacities)
+        circles = {name: self.view(f"physics.circles.{name}")[present] for name in ("x", "y")}
+        return {"kind": kind[present], **circles}
+
+    def observations(self) -> NDArray[np.float32]:
+        """What each living agent senses now, (alive, observation size)."""
+        return self._engine.observations(self.index)
+
+    def rays(self) -> NDArray[np.float32]:
+        """The ray part of the observations: (alive, rays, types), types being agent, each food kind, wall."""
+        rays, types = self.config.sensor.ray_count, len(self.config.food) + 2
+        return self.observations()[:, : rays * types].reshape(-1, rays, types)
+
+    def digest(self) -> str:
+        """A hash of all the world's state: equal for equal bits."""
+        return f"{self._engine.digest(self.index):016x}"

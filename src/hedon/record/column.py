@@ -1,0 +1,53 @@
+"""What a column and a table are: the types that the schema is written in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+POLARS_TYPES: dict[str, type[pl.DataType]] = {
+    "i32": pl.Int32,
+    "i64": pl.Int64,
+    "f32": pl.Float32,
+    "f64": pl.Float64,
+    "string": pl.String,
+}
+NUMPY_TYPES: dict[str, type[np.generic]] = {
+    "i32": np.int32,
+    "i64": np.int64,
+    "f32": np.float32,
+    "f64": np.float64,
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table.
+
+    Attributes:
+        name: as in the files.
+        dtype: "i32", "i64", "f32", "f64" or "string".
+        unit: "1" for counts and pure numbers.
+        meaning: one phrase.
+        nullable: whether a value may be missing; given to the writer as −1 (integers) or NaN (floats).
+    """
+
+    name: str
+    dtype: str
+    unit: str
+    meaning: str
+    nullable: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table: its folder's name, what a row stands for, and its columns in order."""
+
+    name: str
+    row: str
+    columns: tuple[Column, ...]
+
+    @property
+    def polars_schema(self) -> dict[str, type[pl.DataType]]:
+        """The columns as Polars writes them, in order."""
+        return {column.name: POLARS_TYPES[column.dtype] for column in self.columns}

@@ -1,0 +1,107 @@
+"""What a run was made with: enough to repeat it, to judge it and to read its tables."""
+
+import json
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.folder import MANIFEST
+from hedon.record.schema import FORMAT_VERSION
+
+STATUSES = ("running", "finished", "interrupted", "failed")
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The manifest of a run. Update it with `dataclasses.replace`.
+
+    Attributes:
+        food_kinds: names, in the order of the config; fixes the columns of the tables.
+        neutral_count: number of neutral markers; fixes the columns of the tables.
+        seeds: one per world.
+        steps_asked: steps that each world was to make [step].
+        preset: name of the preset that the config began with.
+        fidelity: "corrected", "released" or "text".
+        config_digest: digest of the resolved config.
+        kernel: instruction set that the engine used.
+        threads: threads that the engine used.
+        hedon_version, python, platform, cpu_count, git_revision, git_modified, command_line: the
+            provenance; the revision is that of hedon's source checkout, None for an installed package.
+        started, ended: ISO 8601, UTC; `ended` is None while the run goes on.
+        status: one of `STATUSES`.
+        steps_done: steps made, per world [step].
+        extinct_steps: per world the step at which nobody was left, or None.
+        run_seconds: time spent in stepping, for steps per second; None where it was not measured [s].
+        food_colors: color per food kind for figures, as Matplotlib reads it; empty for the default colors.
+        format_version: of the run folder.
+    """
+
+    food_kinds: tuple[str, ...]
+    neutral_count: int
+    seeds: tuple[int, ...]
+    steps_asked: int
+    preset: str | None = None
+    fidelity: str | None = None
+    config_digest: str | None = None
+    kernel: str | None = None
+    threads: int | None = None
+    hedon_version: str | None = None
+    python: str | None = None
+    platform: str | None = None
+    cpu_count: int | None = None
+    git_revision: str | None = None
+    git_modified: bool | None = None
+    command_line: tuple[str, ...] = ()
+    started: str | None = None
+    ended: str | None = None
+    status: str = "running"
+    steps_done: tuple[int, ...] = ()
+    extinct_steps: tuple[int | None, ...] = ()
+    run_seconds: float | None = None
+    food_colors: tuple[str, ...] = ()
+    format_version: int = FORMAT_VERSION
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, list):
+                object.__setattr__(self, field.name, tuple(value))
+        if self.status not in STATUSES:
+            raise RecordError(f"manifest: status {self.status!r} is not one of {', '.join(STATUSES)}")
+
+
+def save_manifest(folder: Path, manifest: Manifest) -> None:
+    """Writes the manifest atomically.
+
+    Raises:
+        RecordError: it cannot be written.
+    """
+    text = json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n"
+    try:
+        write_atomically(folder / MANIFEST, lambda file: file.write(text.encode()))
+    except OSError as error:
+        raise RecordError(f"cannot write the manifest in {folder}: {error}") from error
+
+
+def load_manifest(folder: Path) -> Manifest:
+    """Reads the manifest of a run. Fields that this version does not know are ignored.
+
+    Raises:
+        RecordError: there is none, it is damaged, or it is of a newer format.
+    """
+    path = folder / MANIFEST
+    try:
+        values: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        version = values["format_version"]
+        if version > FORMAT_VERSION:
+            raise RecordError(
+                f"{path}: format {version} is newer than this hedon reads ({FORMAT_VERSION}): update hedon"
+            )
+        known = {field.name for field in fields(Manifest)}
+        return Manifest(**{name: value for name, value in values.items() if name in known})
+    except OSError as error:
+        raise RecordError(f"cannot read the manifest {path}: {error}") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise RecordError(f"damaged manifest {path}: {error!r}") from error

@@ -1,0 +1,137 @@
+"""Reads a run's folder, also while the run goes on."""
+
+import difflib
+from dataclasses import dataclass
+from pathlib import Path
+
+import polars as pl
+
+from hedon.record.column import Table
+from hedon.record.error import RecordError
+from hedon.record.folder import CONFIG, LIVING, MANIFEST, holds_run, part_paths
+from hedon.record.manifest import Manifest, load_manifest
+from hedon.record.schema import food_weight_names, neutral_names, run_tables, weight_names
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run on disk. Tables are read anew at each call, so that a run that goes on shows what it has written.
+
+    Attributes:
+        path: the folder.
+        manifest: as it was when the run was opened.
+        config_text: the resolved config, as TOML.
+    """
+
+    path: Path
+    manifest: Manifest
+    config_text: str
+
+    @property
+    def food_kinds(self) -> tuple[str, ...]:
+        """Names of the food kinds, in the order of the config."""
+        return self.manifest.food_kinds
+
+    @property
+    def weight_names(self) -> tuple[str, ...]:
+        """Names of all genome columns, in order."""
+        return weight_names(self.food_kinds, self.manifest.neutral_count)
+
+    @property
+    def reward_names(self) -> tuple[str, ...]:
+        """Names of the genome columns that enter the reward: food kinds, then action."""
+        return (*food_weight_names(self.food_kinds), "w_action")
+
+    @property
+    def neutral_names(self) -> tuple[str, ...]:
+        """Names of the neutral markers."""
+        return neutral_names(self.manifest.neutral_count)
+
+    def agents(self, *, skip_damaged: bool = False) -> pl.DataFrame:
+        """All agents: the dead, in the order in which they were written, then those alive at the last flush.
+
+        Raises:
+            RecordError: a part is damaged, and `skip_damaged` is false.
+        """
+        table = self._tables["agents"]
+        # The living first: an agent that dies in between is then seen twice, and dropped below, never missed.
+        path = self.path / LIVING
+        living = _read([path] if path.exists() else [], table, skip_damaged)
+        dead = _read(part_paths(self.path, "agents"), table, skip_damaged)
+        return pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
+
+    def population(self, *, skip_damaged: bool = False) -> pl.DataFrame:
+        """One row per world and interval, by world and step.
+
+        Raises:
+            RecordError: a part is damaged, and `skip_damaged` is false.
+        """
+        rows = _read(part_paths(self.path, "population"), self._tables["population"], skip_damaged)
+        return rows.sort("world", "step", maintain_order=True)
+
+    def frames(self) -> pl.LazyFrame:
+        """The frames, lazily: they can be larger than memory. Empty where none were recorded."""
+        table = self._tables["frames"]
+        paths = part_paths(self.path, "frames")
+        return pl.scan_parquet(paths) if paths else pl.LazyFrame(schema=table.polars_schema)
+
+    def damaged_parts(self) -> list[Path]:
+        """The files of the tables agents and population that cannot be read."""
+        paths = [*part_paths(self.path, "agents"), *part_paths(self.path, "population")]
+        paths += [self.path / LIVING] if (self.path / LIVING).exists() else []
+        return [path for path in paths if _fault(path) is not None]
+
+    @property
+    def _tables(self) -> dict[str, Table]:
+        return run_tables(self.manifest.food_kinds, self.manifest.neutral_count)
+
+
+def open_run(path: Path | str) -> Run:
+    """Opens a run's folder.
+
+    Raises:
+        RecordError: it is no run folder, or its manifest or config cannot be read.
+    """
+    folder = Path(path)
+    if not (folder / MANIFEST).is_file():
+        raise RecordError(f"{folder} is not a run folder: it has no {MANIFEST}{_nearest(folder)}")
+    try:
+        config_text = (folder / CONFIG).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordError(f"cannot read {folder / CONFIG}: {error}") from error
+    return Run(folder, load_manifest(folder), config_text)
+
+
+def _read(paths: list[Path], table: Table, skip_damaged: bool) -> pl.DataFrame:
+    frames, faults = [pl.DataFrame(schema=table.polars_schema)], []
+    for path in paths:
+        try:
+            frames.append(pl.read_parquet(path, columns=[column.name for column in table.columns]))
+        except (pl.exceptions.PolarsError, OSError) as error:
+            faults.append(f"{path} ({error})")
+    if faults and not skip_damaged:
+        raise RecordError(
+            f"damaged part {'; '.join(faults)}: read the others with skip_damaged=True, or remove the file"
+        )
+    return pl.concat(frames)
+
+
+def _fault(path: Path) -> str | None:
+    try:
+        pl.read_parquet(path)
+    except (pl.exceptions.PolarsError, OSError) as error:
+        return str(error)
+    return None
+
+
+def _nearest(folder: Path) -> str:
+    """A hint at runs that may have been meant: around the folder, within it, or of a similar name."""
+    if folder.is_dir():
+        around = [parent for parent in folder.resolve().parents[:2] if holds_run(parent)]
+        inside = sorted(child for child in folder.iterdir() if child.is_dir() and holds_run(child))
+        found = around or inside[-1:]
+    else:
+        siblings = [c for c in folder.parent.iterdir() if holds_run(c)] if folder.parent.is_dir() else []
+        close = difflib.get_close_matches(folder.name, [child.name for child in siblings], n=1)
+        found = [folder.parent / name for name in close]
+    return f"; did you mean {found[0]}?" if found else ""

@@ -1,0 +1,68 @@
+"""From the arrays that the engine hands over to a table as it is stored."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import polars as pl
+from numpy.typing import ArrayLike
+
+from hedon.record.column import NUMPY_TYPES, Column, Table
+from hedon.record.error import RecordError
+
+MISSING_INTEGER = -1  # how the engine says "none" in a nullable integer column
+
+
+def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
+    """Checks rows against the schema and copies them.
+
+    Args:
+        table: the schema.
+        rows: one array of shape (n,) per column, in any order; a scalar stands for n equal values; a
+            nullable column may be left out. In nullable columns −1 (integers) and NaN (floats) become
+            missing values.
+
+    Returns:
+        The rows with exactly the table's columns and types; it shares no memory with `rows`.
+
+    Raises:
+        RecordError: a column is missing, unknown, of another length, or holds a value that its type cannot.
+    """
+    known = {column.name for column in table.columns}
+    unknown = sorted(set(rows) - known)
+    missing = [c.name for c in table.columns if c.name not in rows and not c.nullable]
+    if unknown or missing:
+        raise RecordError(f"rows of {table.name}: unknown columns {unknown}, missing columns {missing}")
+    arrays = {name: np.asarray(values) for name, values in rows.items()}
+    lengths = {name: len(array) for name, array in arrays.items() if array.ndim == 1}
+    if any(array.ndim > 1 for array in arrays.values()) or len(set(lengths.values())) > 1:
+        raise RecordError(f"rows of {table.name}: columns need one length and one dimension, got {lengths}")
+    count = next(iter(lengths.values()), 1)
+    return pl.DataFrame([_series(table, column, arrays.get(column.name), count) for column in table.columns])
+
+
+def _series(table: Table, column: Column, array: np.ndarray | None, count: int) -> pl.Series:
+    dtype = table.polars_schema[column.name]
+    if array is None:
+        return pl.Series(column.name, [None] * count, dtype=dtype)
+    if column.dtype == "string":
+        return pl.Series(column.name, np.broadcast_to(array, (count,)).tolist(), dtype=dtype)
+    values = np.broadcast_to(_cast(table, column, array), (count,)).copy()
+    series = pl.Series(column.name, values, dtype=dtype)
+    if not column.nullable:
+        return series
+    gone = np.isnan(values) if values.dtype.kind == "f" else values == MISSING_INTEGER
+    return series.set(pl.Series(gone), None) if gone.any() else series
+
+
+def _cast(table: Table, column: Column, array: np.ndarray) -> np.ndarray:
+    wanted: np.dtype = np.dtype(NUMPY_TYPES[column.dtype])
+    if array.dtype == wanted:
+        return array
+    if wanted.kind == "i":
+        limits = np.iinfo(wanted)
+        outside = array.size > 0 and (array.min() < limits.min or array.max() > limits.max)
+        if array.dtype.kind not in "iub" or outside:
+            raise RecordError(f"rows of {table.name}: {column.name} needs integers of type {column.dtype}")
+    elif array.dtype.kind not in "fiub":
+        raise RecordError(f"rows of {table.name}: {column.name} needs numbers, got {array.dtype}")
+    return array.astype(wanted)

@@ -1,0 +1,160 @@
+"""Every table of a run, column by column: the single source of the writer, the reader and the documentation.
+
+Columns that depend on the setting are generated: one `eaten_<kind>`, `w_<kind>` and so on for each food
+kind, in the order of the config, and one `neutral_<i>` for each neutral marker.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from hedon.record.column import Column, Table
+from hedon.record.error import RecordError
+
+FORMAT_VERSION = 1  # of the run folder; raised when an older reader would misread a newer folder
+
+WORLD = Column("world", "i32", "1", "index of the world in the run")
+SEED = Column("seed", "i64", "1", "seed of the world")
+
+
+def food_weight_names(food_kinds: Sequence[str]) -> tuple[str, ...]:
+    """Names of the reward weights for food, in genome order."""
+    return tuple(f"w_{kind}" for kind in food_kinds)
+
+
+def neutral_names(neutral_count: int) -> tuple[str, ...]:
+    """Names of the neutral markers, in genome order."""
+    return tuple(f"neutral_{i + 1}" for i in range(neutral_count))
+
+
+def weight_names(food_kinds: Sequence[str], neutral_count: int) -> tuple[str, ...]:
+    """Names of the whole genome, in order: one weight per food kind, action, the neutral markers."""
+    return (*food_weight_names(food_kinds), "w_action", *neutral_names(neutral_count))
+
+
+def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
+    """One row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
+    return _table(
+        "agents",
+        "one agent; those that live have no death_step",
+        WORLD,
+        SEED,
+        Column("agent_id", "i64", "1", "unique within the world, never used again"),
+        Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
+        Column("generation", "i32", "1", "depth below the founders, who have 0"),
+        Column("birth_step", "i64", "step", "step at whose end the agent was born; 0 for founders"),
+        Column(
+            "death_step", "i64", "step", "step at whose end it died; missing while it lives", nullable=True
+        ),
+        Column("birth_energy", "f32", "energy", "energy at birth"),
+        Column("energy", "f32", "energy", "energy at death, or at the last flush"),
+        *(Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten") for kind in food_kinds),
+        Column("energy_gained", "f32", "energy", "energy of all food eaten; poison counts negative"),
+        Column("energy_spent", "f32", "energy", "energy charged for living and for action"),
+        Column("children", "i32", "1", "children born"),
+        Column("distance", "f32", "u", "length of the path traveled"),
+        Column("mean_force_left", "f32", "u·mass/s²", "mean force of the left motor over its life"),
+        Column("mean_force_right", "f32", "u·mass/s²", "mean force of the right motor over its life"),
+        Column("reward_sum", "f32", "1", "sum of all rewards received"),
+        *(_weight_column(name, food_kinds) for name in weight_names(food_kinds, neutral_count)),
+    )
+
+
+def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
+    """One row per world and interval: state at its end, counts and the energy ledger over it."""
+    return _table(
+        "population",
+        "one world over one interval of steps",
+        WORLD,
+        SEED,
+        Column("step", "i64", "step", "end of the interval"),
+        Column("steps", "i32", "step", "length of the interval"),
+        Column("alive", "i32", "1", "agents alive at the end"),
+        Column("agent_steps", "i64", "agent·step", "sum over the interval's steps of the agents alive"),
+        Column("births", "i32", "1", "births in the interval"),
+        Column("deaths", "i32", "1", "deaths in the interval"),
+        Column("births_failed_full", "i32", "1", "births that failed because the world was at capacity"),
+        Column("births_failed_space", "i32", "1", "births that failed because no candidate place was free"),
+        *_spread("energy", "energy", "of the living at the end"),
+        *_spread("age", "step", "of the living at the end"),
+        Column("generation_mean", "f32", "1", "mean generation of the living at the end", nullable=True),
+        Column("generation_max", "i32", "1", "largest generation of the living at the end", nullable=True),
+        *(
+            Column(f"{name}_{statistic}", "f32", "1", f"{word} of {name} among the living at the end", True)
+            for name in weight_names(food_kinds, neutral_count)
+            for statistic, word in (("mean", "mean"), ("sd", "standard deviation"))
+        ),
+        *(
+            Column(f"food_{kind}", "i32", "1", f"foods of kind {kind} present at the end")
+            for kind in food_kinds
+        ),
+        *(
+            Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten in the interval")
+            for kind in food_kinds
+        ),
+        Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
+        Column("energy_eaten", "f64", "energy", "taken up with food in the interval; poison counts negative"),
+        Column("energy_basic", "f64", "energy", "charged for living in the interval"),
+        Column("energy_action", "f64", "energy", "charged for action in the interval"),
+        Column(
+            "energy_forgiven", "f64", "energy", "charged but not paid, because energy cannot fall below 0"
+        ),
+        Column("energy_capped", "f64", "energy", "eaten but destroyed at the capacity for energy"),
+        Column("energy_lost", "f64", "energy", "held by those who died in the interval"),
+        Column("energy_shared", "f64", "energy", "given by parents to children in the interval"),
+        Column("energy_total", "f64", "energy", "held by the living at the end"),
+    )
+
+
+def frame_table() -> Table:
+    """One row per agent or food and frame; written only where frames were asked for."""
+    return _table(
+        "frames",
+        "one agent or one food in one frame",
+        WORLD,
+        Column("step", "i64", "step", "when the frame was taken"),
+        Column("kind", "string", "", '"agent", or the name of the food kind'),
+        Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
+        Column("x", "f32", "u", "position of the center"),
+        Column("y", "f32", "u", "position of the center"),
+        Column(
+            "angle", "f32", "rad", "heading, 0 along +y, counter-clockwise; missing for food", nullable=True
+        ),
+        Column("energy", "f32", "energy", "energy; missing for food", nullable=True),
+    )
+
+
+def run_tables(food_kinds: Sequence[str], neutral_count: int) -> dict[str, Table]:
+    """All tables of a run by name: agents, population and frames."""
+    tables = (
+        agent_table(food_kinds, neutral_count),
+        population_table(food_kinds, neutral_count),
+        frame_table(),
+    )
+    return {table.name: table for table in tables}
+
+
+def _weight_column(name: str, food_kinds: Sequence[str]) -> Column:
+    if name in food_weight_names(food_kinds):
+        return Column(name, "f32", "1", f"reward weight for a food of kind {name.removeprefix('w_')}")
+    if name == "w_action":
+        return Column(name, "f32", "1", "reward weight for motor action")
+    return Column(name, "f32", "1", "neutral marker: inherited and mutated, enters no reward")
+
+
+def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:
+    words = {"mean": "mean", "sd": "standard deviation", "min": "minimum", "q25": "lower quartile"}
+    words |= {"median": "median", "q75": "upper quartile", "max": "maximum"}
+    return tuple(
+        Column(f"{quantity}_{name}", "f32", unit, f"{word} of {quantity} {whose}", nullable=True)
+        for name, word in words.items()
+    )
+
+
+def _table(name: str, row: str, *columns: Column) -> Table:
+    counts = Counter(column.name for column in columns)
+    twice = [column for column, count in counts.items() if count > 1]
+    if twice:
+        raise RecordError(
+            f"table {name}: the food kinds make the column {twice[0]} appear twice; rename the food kind"
+        )
+    return Table(name, row, columns)

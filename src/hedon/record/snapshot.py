@@ -1,0 +1,115 @@
+"""The state of one world at one moment, for pictures: `final.npz`, plain arrays without pickle."""
+
+import zipfile
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.folder import SNAPSHOT
+
+_ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays and t types)
+    "agent_id": (np.int64, "n"),
+    "x": (np.float32, "n"),
+    "y": (np.float32, "n"),
+    "angle": (np.float32, "n"),
+    "energy": (np.float32, "n"),
+    "rays": (np.float32, "nrt"),
+    "food_kind": (np.int32, "m"),
+    "food_x": (np.float32, "m"),
+    "food_y": (np.float32, "m"),
+    "walls": (np.float32, "w4"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """One world at one moment.
+
+    Attributes:
+        world: its index in the run.
+        seed: its seed.
+        step: when [step].
+        agent_id: of the n living agents, shape (n,).
+        x, y: their positions [u], shape (n,).
+        angle: their headings [rad], 0 along +y, counter-clockwise, shape (n,).
+        energy: their energies, shape (n,).
+        rays: what their rays read, shape (n, rays, types): 1 − distance / ray length for the type that is
+            hit, −1 elsewhere; types are agent, each food kind, wall. Without agents (0, rays, types).
+        food_kind: index into `food_kinds` of the m foods present, shape (m,).
+        food_x, food_y: their positions [u], shape (m,).
+        walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4).
+        food_kinds: names, in the order of the config.
+        radius, food_radius: of the bodies [u].
+        ray_length: [u].
+        ray_spread: angle of the outermost rays, either side of the heading [degree].
+        mouth_spread: half the opening of the mouth [degree].
+        energy_capacity: largest energy that an agent can hold.
+    """
+
+    world: int
+    seed: int
+    step: int
+    agent_id: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    angle: np.ndarray
+    energy: np.ndarray
+    rays: np.ndarray
+    food_kind: np.ndarray
+    food_x: np.ndarray
+    food_y: np.ndarray
+    walls: np.ndarray
+    food_kinds: tuple[str, ...]
+    radius: float = 10.0
+    food_radius: float = 4.0
+    ray_length: float = 200.0
+    ray_spread: float = 60.0
+    mouth_spread: float = 60.0
+    energy_capacity: float = 400.0
+
+    def __post_init__(self) -> None:
+        sizes: dict[str, int] = {"4": 4}
+        for name, (dtype, letters) in _ARRAYS.items():
+            array = np.asarray(getattr(self, name), dtype)
+            if array.ndim != len(letters) or any(
+                sizes.setdefault(a, n) != n for a, n in zip(letters, array.shape, strict=True)
+            ):
+                raise RecordError(f"snapshot: {name} has shape {array.shape}, which does not fit the others")
+            object.__setattr__(self, name, array)
+
+
+def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
+    """Writes `final.npz` into a run's folder, atomically.
+
+    Raises:
+        RecordError: it cannot be written.
+    """
+    arrays: dict[str, Any] = {
+        field.name: np.asarray(getattr(snapshot, field.name)) for field in fields(Snapshot)
+    }
+    try:
+        write_atomically(folder / SNAPSHOT, lambda file: np.savez_compressed(file, **arrays))
+    except OSError as error:
+        raise RecordError(f"cannot write {folder / SNAPSHOT}: {error}") from error
+
+
+def load_snapshot(folder: Path) -> Snapshot | None:
+    """Reads `final.npz` of a run; None where there is none.
+
+    Raises:
+        RecordError: the file is damaged.
+    """
+    path = folder / SNAPSHOT
+    if not path.exists():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            values = {field.name: file[field.name] for field in fields(Snapshot)}
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise RecordError(f"damaged snapshot {path}: {error}") from error
+    scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
+    return Snapshot(**{**values, **scalars, "food_kinds": tuple(values["food_kinds"].tolist())})

@@ -1,0 +1,186 @@
+"""Writes a run's folder while the engine computes on: rows go through a bounded queue to a thread."""
+
+import queue
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+
+import polars as pl
+from numpy.typing import ArrayLike
+
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.folder import CONFIG, holds_run
+from hedon.record.manifest import Manifest, save_manifest
+from hedon.record.part_writer import PartWriter
+from hedon.record.rows import rows_to_frame
+from hedon.record.schema import run_tables
+
+Rows = Mapping[str, ArrayLike]
+
+_CLOSE = object()
+
+
+class Writer:
+    """The one way to write a run's folder.
+
+    Use it as a context manager. Rows may be reused by the caller as soon as a call returns. A fault of the
+    writing thread (a full disk) is raised as `RecordError` by the next call, `close` at the latest; what
+    was written before stays readable. A caller that computes faster than the disk writes is made to wait:
+    no row is ever dropped.
+
+    Args:
+        folder: made where it does not exist; must not hold a run already.
+        config_text: the complete config, as TOML.
+        manifest: its food kinds and its number of neutral markers fix the columns.
+        part_rows: rows after which a part is written at once.
+        flush_seconds: rows are on disk after this time at the latest [s]; after 200 times it, the wait
+            grows with the age of the run (0.5 %), so that a long run does not leave thousands of small parts.
+        queue_size: calls that may wait for the thread.
+
+    Raises:
+        RecordError: the folder holds a run already, or cannot be written.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        config_text: str,
+        manifest: Manifest,
+        *,
+        part_rows: int = 20_000,
+        flush_seconds: float = 30.0,
+        queue_size: int = 64,
+    ) -> None:
+        self.folder = Path(folder)
+        self.tables = run_tables(manifest.food_kinds, manifest.neutral_count)
+        self._prepare(config_text, manifest)
+        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds)
+        self._queue: queue.Queue = queue.Queue(queue_size)
+        self._fault: Exception | None = None
+        self._closed = False
+        self._thread = threading.Thread(target=self._work, name="hedon-record", daemon=True)
+        self._thread.start()
+
+    def append(self, table: str, rows: Rows) -> None:
+        """Appends rows to a table.
+
+        Args:
+            table: "agents", "population" or "frames".
+            rows: one array of shape (n,) per column of the schema; a scalar stands for n equal values.
+                Missing values of nullable columns are −1 (integers) or NaN (floats).
+
+        Raises:
+            RecordError: the rows do not fit the schema, an earlier write failed, or the writer is closed.
+        """
+        if table not in self.tables:
+            raise RecordError(f"no table {table!r}: there are {', '.join(self.tables)}")
+        self._put((table, rows_to_frame(self.tables[table], rows)))
+
+    def replace_living(self, *rows: Rows) -> None:
+        """Replaces the rows of the living agents of all worlds.
+
+        Args:
+            rows: rows of the table `agents`, for instance one mapping per world; none where nobody lives.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        table = self.tables["agents"]
+        frames = [rows_to_frame(table, each) for each in rows]
+        self._put(("living", pl.concat([pl.DataFrame(schema=table.polars_schema), *frames])))
+
+    def save_manifest(self, manifest: Manifest) -> None:
+        """Replaces the manifest, at once.
+
+        Raises:
+            RecordError: it cannot be written.
+        """
+        save_manifest(self.folder, manifest)
+
+    def flush(self) -> None:
+        """Returns when all rows given so far are on disk.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        done = threading.Event()
+        self._put(done)
+        done.wait()
+        self._raise_fault()
+
+    def close(self) -> None:
+        """Writes what waits and ends the thread. A second call does nothing.
+
+        Raises:
+            RecordError: something could not be written.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        self._queue.put(_CLOSE)
+        self._thread.join()
+        self._raise_fault()
+
+    def __enter__(self) -> "Writer":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.close()
+        except RecordError:
+            if not isinstance(error, RecordError):  # else the same fault is on its way already
+                raise
+
+    def _prepare(self, config_text: str, manifest: Manifest) -> None:
+        if holds_run(self.folder):
+            raise RecordError(f"{self.folder} holds a run already: choose another folder, or remove it first")
+        try:
+            for table in self.tables:
+                (self.folder / table).mkdir(parents=True)
+            write_atomically(self.folder / CONFIG, lambda file: file.write(config_text.encode()))
+        except OSError as error:
+            raise RecordError(f"cannot write the run's folder {self.folder}: {error}") from error
+        save_manifest(self.folder, manifest)
+
+    def _put(self, item: object) -> None:
+        self._raise_fault()
+        if self._closed:
+            raise RecordError(f"the writer of {self.folder} is closed")
+        self._queue.put(item)
+
+    def _raise_fault(self) -> None:
+        if self._fault is not None:
+            raise RecordError(
+                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable"
+            ) from self._fault
+
+    def _work(self) -> None:
+        """The thread: takes items until it is closed, also after a fault, so that no caller hangs."""
+        item = None
+        while item is not _CLOSE:
+            try:
+                item = self._queue.get(timeout=max(self._parts.seconds_to_flush(), 0.0))
+            except queue.Empty:
+                item = None
+            if self._fault is None:
+                try:
+                    self._handle(item)
+                except Exception as error:  # handed to the caller by _raise_fault
+                    self._fault = error
+            if isinstance(item, threading.Event):
+                item.set()
+
+    def _handle(self, item: object) -> None:
+        if isinstance(item, tuple):
+            table, rows = item
+            if table == "living":
+                self._parts.replace_living(rows)
+            else:
+                self._parts.append(table, rows)
+        urgent = item is _CLOSE or isinstance(item, threading.Event)
+        if urgent or self._parts.seconds_to_flush() <= 0:
+            self._parts.flush()

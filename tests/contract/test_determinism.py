@@ -1,0 +1,82 @@
+"""A seed gives the same life, bit for bit, however it is computed."""
+
+import numpy as np
+import pytest
+
+from hedon.config.load import load_config
+from hedon.experiment.simulation import Simulation
+from tests.worlds import QUICK, make_engine, make_simulation
+
+STEPS = 200  # three windows of 64 and a rest
+LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
+"""Births and deaths in every few steps, so that slots are reused."""
+
+
+def _digests(seeds=(7,), threads=1, pieces=(STEPS,), preset="baseline"):
+    simulation = make_simulation(*LIVELY, preset=preset, seeds=seeds, threads=threads)
+    for steps in pieces:
+        simulation.run(steps)
+    assert simulation.worlds[0].counters["births"] > 20
+    return dict(zip(seeds, (world.digest() for world in simulation.worlds), strict=True))
+
+
+def test_the_same_seed_repeats_itself_and_another_does_not():
+    first, second = _digests((7, 8)), _digests((7, 8))
+    assert first == second
+    assert first[7] != first[8]
+
+
+@pytest.mark.parametrize("threads", [2, 3, 5])
+def test_threads_change_nothing(threads):
+    assert _digests(threads=threads) == _digests()
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_company_changes_nothing(threads):
+    together = _digests((7, 3, 11, 4, 5), threads)
+    for seed in (7, 4):
+        assert together[seed] == _digests((seed,))[seed]
+
+
+@pytest.mark.parametrize("pieces", [(1,) * STEPS, (63, 1, 1, 135), (64, 64, 72)])
+def test_the_size_of_the_pieces_changes_nothing(pieces):
+    assert _digests(pieces=pieces) == _digests()
+
+
+@pytest.mark.parametrize("preset", ["relocation", "poison"])
+def test_other_presets_repeat_themselves_on_any_threads(preset):
+    assert _digests(preset=preset, threads=2) == _digests(preset=preset)
+
+
+def test_which_slot_an_agent_gets_changes_nothing():
+    plain = make_engine(*LIVELY)
+    shuffled = make_engine(*LIVELY, slot_order=np.random.default_rng(0).permutation(200).tolist())
+    for engine in (plain, shuffled):
+        engine.run(STEPS)
+    a, b = plain.living_rows(0), shuffled.living_rows(0)
+    assert len(a["agent_id"]) > 20
+    for name in a:
+        np.testing.assert_array_equal(a[name], b[name], err_msg=name)
+    np.testing.assert_array_equal(plain.observations(0), shuffled.observations(0))
+    slots = [engine.view(0, "living")[: len(a["agent_id"])] for engine in (plain, shuffled)]
+    assert not np.array_equal(*slots)
+    for name in ("physics.bodies.x", "physics.bodies.angular_velocity", "params", "second_moment"):
+        np.testing.assert_array_equal(
+            plain.view(0, name)[slots[0]], shuffled.view(0, name)[slots[1]], err_msg=name
+        )
+    assert plain.counters(0) == shuffled.counters(0)
+
+
+def test_a_second_caller_is_refused_while_the_engine_runs():
+    import threading
+
+    simulation = Simulation(load_config("baseline"), [1], threads=1)
+    thread = threading.Thread(target=simulation.run, args=(400,))
+    thread.start()
+    try:
+        with pytest.raises(RuntimeError, match="busy"):
+            while thread.is_alive():
+                _ = simulation.worlds[0].step
+    finally:
+        thread.join()
+    assert simulation.worlds[0].step == 400

@@ -1,0 +1,44 @@
+"""Digests of short lives: results that change do so knowingly.
+
+After a change that is meant to change results: `python -m tests.golden.test_digest` writes the digests anew.
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from hedon import _engine
+from tests.worlds import make_simulation
+
+GOLDEN = Path(__file__).with_name("digest.json")
+PRESETS = ("baseline", "small", "relocation", "poison")
+STEPS = 1100  # one whole window with its learning, and the beginning of the next
+
+
+def digest(preset: str, fidelity: str, kernel: str) -> str:
+    """The digest of one short life."""
+    critic = 'learning.critic_target="batch_mean"' if fidelity == "released" else 'learning.critic_target="per_state"'
+    simulation = make_simulation(critic, preset=preset, seeds=(1,), threads=2, kernel=kernel)
+    simulation.run(STEPS)
+    return simulation.worlds[0].digest()
+
+
+def cases() -> list[tuple[str, str]]:
+    """Conditions whose lives are recorded."""
+    return [*((preset, "corrected") for preset in PRESETS), ("baseline", "released")]
+
+
+@pytest.mark.parametrize("kernel", _engine.learning.kernel_names())
+@pytest.mark.parametrize(("preset", "fidelity"), cases())
+def test_short_lives_keep_their_bits(preset, fidelity, kernel):
+    recorded = json.loads(GOLDEN.read_text())[kernel]
+    assert digest(preset, fidelity, kernel) == recorded[f"{preset}-{fidelity}"]
+
+
+if __name__ == "__main__":
+    table = {
+        kernel: {f"{preset}-{fidelity}": digest(preset, fidelity, kernel) for preset, fidelity in cases()}
+        for kernel in _engine.learning.kernel_names()
+    }
+    GOLDEN.write_text(json.dumps(table, indent=2) + "\n")

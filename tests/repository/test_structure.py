@@ -1,0 +1,88 @@
+"""The house rules that a script can hold: sizes of files, who includes whom, what the step path may use."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LONGEST = 400
+
+# What each part of the engine may include, besides itself.
+ALLOWED = {
+    "base": set(),
+    "lanes": set(),
+    "learning": {"base", "kernel"},
+    "kernel": {"base", "lanes", "learning"},
+    "physics": {"base"},
+    "evolution": {"base"},
+    "world": {"base", "physics", "evolution", "learning", "kernel"},
+    "simulation": {"base", "physics", "evolution", "learning", "kernel", "world"},
+    "binding": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
+}
+STEP_PATH = ("physics", "evolution", "learning", "world", "kernel")
+FORBIDDEN_IN_STEP = re.compile(
+    r"#include <(vector|string|map|set|functional|memory|iostream|mutex|thread|chrono|random|algorithm)>"
+    r"|\b(new|malloc|calloc|virtual|throw|try|dynamic_cast)\b[^\w]"
+)
+
+
+def sources(*suffixes: str) -> list[Path]:
+    names = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    return [
+        ROOT / name
+        for name in names.stdout.splitlines()
+        if name.endswith(suffixes) and (ROOT / name).exists()
+    ]
+
+
+def code_without_comments(path: Path) -> str:
+    return re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+
+
+def test_no_file_is_too_long():
+    long = {
+        str(p.relative_to(ROOT)): n
+        for p in sources(".py", ".h", ".cpp")
+        if (n := len(p.read_text().splitlines())) > LONGEST
+    }
+    assert not long
+
+
+@pytest.mark.parametrize("part", sorted(ALLOWED))
+def test_engine_parts_include_only_what_they_may(part):
+    files = [p for p in sources(".h", ".cpp") if p.parent == ROOT / "engine" / part]
+    assert files
+    for path in files:
+        for target in re.findall(r'#include "([\w/]+)/[\w.]+"', path.read_text()):
+            assert target == part or target in ALLOWED[part], f"{path.relative_to(ROOT)} includes {target}"
+
+
+def test_the_step_path_owns_nothing_and_throws_nothing():
+    for part in STEP_PATH:
+        for path in (ROOT / "engine" / part).glob("*.h"):
+            found = FORBIDDEN_IN_STEP.search(code_without_comments(path))
+            assert found is None, f"{path.relative_to(ROOT)}: {found.group()}"
+
+
+def test_intrinsics_stand_in_lanes_alone():
+    for path in sources(".h", ".cpp"):
+        if path.parent.name not in ("lanes", "base"):
+            assert not re.search(r"\b_mm\d*_", path.read_text()), path.relative_to(ROOT)
+
+
+def test_every_engine_file_says_what_it_is_for():
+    for path in sources(".h", ".cpp"):
+        first = path.read_text().splitlines()[0]
+        twin = path.with_suffix(".h").exists() and path.suffix == ".cpp"
+        assert first.startswith("///") or twin, path.relative_to(ROOT)
+
+
+def test_the_project_speaks_of_itself_alone():
+    words = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
+    for path in sources(".py", ".h", ".cpp", ".md", ".toml"):
+        if path != Path(__file__):
+            assert not words.search(path.read_text(encoding="utf-8")), path.relative_to(ROOT)

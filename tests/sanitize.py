@@ -1,0 +1,56 @@
+"""Builds the engine with sanitizers and runs tests on that build: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+RUNTIMES = {"asan": ("libasan.so", "libubsan.so"), "tsan": ("libtsan.so",)}
+TESTS = {
+    "asan": ["tests/unit/test_life.py", "tests/crosscheck/test_sensor.py", "tests/property/test_world.py", "tests/physics"],
+    "tsan": ["tests/contract/test_determinism.py"],
+}
+OPTIONS = {
+    # The interpreter itself never frees everything, and its own threads are not what is tested here.
+    "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:abort_on_error=0",
+    "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+    "TSAN_OPTIONS": "halt_on_error=1:exitcode=66",
+}
+RUN_TESTS = """
+import importlib.util, sys
+import hedon
+spec = importlib.util.spec_from_file_location("hedon._engine", sys.argv[1])
+module = importlib.util.module_from_spec(spec)
+sys.modules["hedon._engine"] = hedon._engine = module
+spec.loader.exec_module(module)
+import pytest
+sys.exit(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *sys.argv[2:]]))
+"""
+
+
+def build(preset: str) -> Path:
+    """Builds the extension module with a preset of CMakePresets.json and returns its path."""
+    configure = ["cmake", "--preset", preset, f"-DPython_EXECUTABLE={sys.executable}"]
+    subprocess.run(configure, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    folder = ROOT / "build" / preset
+    subprocess.run(["cmake", "--build", str(folder), "--target", "_engine"], check=True, stdout=subprocess.DEVNULL)
+    return next(folder.glob("_engine*.so"))
+
+
+def runtime(name: str) -> str:
+    """Path of a sanitizer's runtime library, as the compiler knows it."""
+    return subprocess.run(["g++", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
+
+
+def main(preset: str, arguments: list[str]) -> int:
+    """Builds, then runs the tests in a process that loads the sanitizer's runtime first."""
+    module = build(preset)
+    libraries = [runtime(name) for name in (*RUNTIMES[preset], "libstdc++.so")]
+    environment = os.environ | OPTIONS | {"LD_PRELOAD": " ".join(libraries)}
+    command = [sys.executable, "-c", RUN_TESTS, str(module), *(arguments or TESTS[preset])]
+    return subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2:]))

@@ -1,0 +1,260 @@
+"""Energy, birth and death, food: each rule alone, in a scene made for it."""
+
+import numpy as np
+import pytest
+from hedon.analysis.demography import birth_rate, hazard
+
+from hedon.config.load import load_config
+from tests.worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
+
+SAFE = (*DEATHLESS, *CHILDLESS)
+
+
+def _agents(simulation):
+    return simulation.worlds[0].agents()
+
+
+def test_living_costs_the_basic_rate():
+    simulation = make_simulation(*STILL, *SAFE)
+    set_scene(simulation, [(240, 180, 0.0)], energy=10.0)
+    simulation.run(100)
+    assert _agents(simulation)["energy"][0] == pytest.approx(10.0 - 100 * 1e-3, abs=1e-6)
+
+
+def test_action_costs_in_proportion_to_the_norm_of_the_forces():
+    simulation = make_simulation("motor.min_force=79.999", "motor.max_force=80", "energy.basic_cost=0", *SAFE)
+    set_scene(simulation, [(240, 180, 0.0)], energy=10.0)
+    simulation.run(50)
+    assert _agents(simulation)["energy"][0] == pytest.approx(10.0 - 50 * 2e-5 * 80 * np.sqrt(2), abs=1e-5)
+
+
+def test_energy_stops_at_zero_and_what_could_not_be_paid_is_forgiven():
+    simulation = make_simulation(*STILL, *SAFE)
+    set_scene(simulation, [(240, 180, 0.0)], energy=0.05)
+    simulation.run(100)
+    assert _agents(simulation)["energy"][0] == 0.0
+    assert simulation.worlds[0].counters["energy_forgiven"] == pytest.approx(0.05, abs=1e-6)
+
+
+def test_starvation_can_kill():
+    simulation = make_simulation(*STILL, *SAFE, 'energy.starvation="death"')
+    set_scene(simulation, [(240, 180, 0.0)], energy=0.05)
+    simulation.run(200)
+    assert simulation.worlds[0].extinct_step == 51  # 50 steps are paid for, the next is not
+    assert simulation.engine.take_rows(0)["death_step"][0] == 51
+
+
+def test_energy_above_the_capacity_is_destroyed():
+    simulation = make_simulation(
+        *STILL, *SAFE, "food.normal.energy=5", "energy.capacity=42", "food.normal.growth_rate=0"
+    )
+    set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
+    simulation.run(1)
+    assert _agents(simulation)["energy"][0] == 42.0
+    assert simulation.worlds[0].counters["energy_capped"] == pytest.approx(3.0 - 1e-3, abs=1e-6)
+
+
+def test_food_in_the_mouth_is_eaten_and_gone():
+    simulation = make_simulation(
+        *STILL, *SAFE, "food.normal.growth_rate=0", "genome.initial_mean_food=2", "genome.initial_sd=0"
+    )
+    set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
+    simulation.run(1)
+    agents = _agents(simulation)
+    assert agents["eaten"].tolist() == [[1]]
+    assert agents["energy"][0] == pytest.approx(41.0 - 1e-3)
+    assert agents["reward"][0] == pytest.approx(2.0)
+    assert len(simulation.worlds[0].foods()["x"]) == 0
+
+
+@pytest.mark.parametrize(("degrees", "eaten"), [(0, 1), (55, 1), (-55, 1), (65, 0), (-65, 0), (180, 0)])
+def test_the_mouth_spans_sixty_degrees_to_either_side(degrees, eaten):
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0")
+    angle = np.radians(degrees)
+    set_scene(simulation, [(240, 180, 0.0)], [(240 - 13.9 * np.sin(angle), 180 + 13.9 * np.cos(angle))])
+    simulation.run(1)
+    assert _agents(simulation)["eaten"][0, 0] == eaten
+
+
+@pytest.mark.parametrize("nearer", [0, 1])
+def test_one_food_feeds_the_nearer_of_two_agents(nearer):
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0")
+    gap = (13.5, 13.8) if nearer == 0 else (13.8, 13.5)
+    set_scene(simulation, [(240, 180 - gap[0], 0.0), (240, 180 + gap[1], np.pi)], [(240, 180)])
+    simulation.run(1)
+    assert _agents(simulation)["eaten"][:, 0].tolist() == [int(nearer == 0), int(nearer == 1)]
+    assert simulation.worlds[0].counters["energy_eaten"] == 1.0
+
+
+def test_an_agent_may_eat_several_foods_at_once():
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0")
+    foods = [(240 + 13.5 * np.sin(a), 180 + 13.5 * np.cos(a)) for a in (-0.8, 0.0, 0.8)]
+    set_scene(simulation, [(240, 180, 0.0)], foods)
+    simulation.run(1)
+    assert _agents(simulation)["eaten"][0, 0] == 3
+
+
+def test_food_grows_by_the_true_floor_of_its_number():
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0.2")
+    set_scene(simulation, [(240, 180, 0.0)])
+    present = []
+    for _ in range(16):
+        simulation.run(1)
+        present.append(len(simulation.worlds[0].foods()["x"]))
+    assert present == [0, 0, 0, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 3, 3]
+
+
+def test_food_stops_at_its_capacity():
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=3", "food.normal.capacity=25")
+    set_scene(simulation, [(240, 180, 0.0)])
+    simulation.run(40)
+    assert len(simulation.worlds[0].foods()["x"]) == 25
+    assert simulation.worlds[0].view("food_stock.number")[0] == 25
+
+
+def test_gaussian_food_lies_around_its_center():
+    simulation = make_simulation(*SAFE, "food.normal.growth_rate=5", preset="centered", seeds=(1, 2, 3, 4))
+    simulation.run(64)
+    foods = [world.foods() for world in simulation.worlds]
+    x, y = (np.concatenate([food[name] for food in foods]) for name in ("x", "y"))
+    assert x.mean() == pytest.approx(240, abs=4 * 48 / np.sqrt(len(x)))
+    assert y.mean() == pytest.approx(180, abs=4 * 36 / np.sqrt(len(y)))
+    assert 30 < x.std() < 70
+
+
+def test_switching_food_moves_on_after_the_meals():
+    switching = ("food.normal.placement.switch_after=2", "food.normal.growth_rate=0")
+    simulation = make_simulation(*STILL, *SAFE, *switching, preset="relocation")
+    set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
+    simulation.run(1)
+    assert simulation.worlds[0].view("food_stock.center")[0] == 0
+    set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5), (230, 189)])
+    simulation.run(1)
+    assert simulation.worlds[0].view("food_stock.center")[0] == 1
+
+
+@pytest.mark.parametrize("energy", [0.0, 5.0, 20.0])
+def test_deaths_follow_the_hazard(energy):
+    simulation = make_simulation(
+        *STILL, *CHILDLESS, "hazard.kappa=0.5", "energy.basic_cost=0", "energy.action_cost=0", seeds=(3,)
+    )
+    config = load_config("baseline", overrides=("hazard.kappa=0.5",))
+    expected = float(hazard(config.hazard, 1.0, energy))
+    places = [(20 + 30 * (i % 15), 20 + 30 * (i // 15), 0.0) for i in range(150)]
+    deaths = trials = 0
+    set_scene(simulation, places, energy=energy)
+    for _ in range(300):
+        before = simulation.worlds[0].alive
+        simulation.run(1)
+        deaths += before - simulation.worlds[0].alive
+        trials += before
+    spread = 4 * np.sqrt(trials * expected * (1 - expected))
+    assert deaths == pytest.approx(trials * expected, abs=spread + 1)
+
+
+def test_births_follow_the_birth_function_and_share_the_energy():
+    simulation = make_simulation(
+        *STILL, *DEATHLESS, "birth.kappa=0.1", "energy.basic_cost=0", "energy.action_cost=0"
+    )
+    config = load_config("baseline", overrides=("birth.kappa=0.1",))
+    set_scene(simulation, [(60 + 60 * (i % 7), 60 + 60 * (i // 7), 0.0) for i in range(30)], energy=20.0)
+    simulation.run(1)
+    agents, counters = _agents(simulation), simulation.worlds[0].counters
+    tried = counters["births"] + counters["births_failed_space"]
+    rate = float(birth_rate(config.birth, 20.0))
+    assert tried == pytest.approx(30 * rate, abs=4 * np.sqrt(30 * rate))
+    assert counters["births"] > 0
+    children = agents["parent_id"] >= 0
+    assert np.all(agents["energy"][children] == pytest.approx(8.0))
+    parents = agents["children"] > 0
+    assert np.all(agents["energy"][parents] == pytest.approx(12.0))
+    assert np.all(agents["generation"][children] == 1)
+    assert np.all(agents["age"][children] == 0)
+    assert counters["energy_shared"] == pytest.approx(8.0 * counters["births"])
+    # A newborn feels nothing and is at rest.
+    assert np.all(simulation.worlds[0].observations()[children][:, 72:92] == 0)
+
+
+def test_a_full_world_lets_nobody_be_born():
+    full = ("population.capacity=30", "population.initial_count=30", "birth.kappa=1", *DEATHLESS)
+    simulation = make_simulation(*full)
+    simulation.run(5)
+    counters = simulation.worlds[0].counters
+    assert counters["births"] == counters["births_failed_space"] == 0
+    assert counters["births_failed_full"] > 100
+    assert simulation.worlds[0].alive == 30
+
+
+def test_without_room_births_fail_and_cost_nothing():
+    simulation = make_simulation("birth.kappa=1", "birth.distance_sd=1", *DEATHLESS, *STILL)
+    set_scene(simulation, [(240, 180, 0.0)], energy=40.0)
+    simulation.run(20)
+    counters = simulation.worlds[0].counters
+    assert counters["births"] == 0
+    assert counters["births_failed_space"] > 10
+    assert counters["energy_shared"] == 0.0
+
+
+def test_children_stand_free_and_inside():
+    simulation = make_simulation("birth.kappa=0.02", *DEATHLESS, *STILL)
+    simulation.run(60)
+    agents, foods = _agents(simulation), simulation.worlds[0].foods()
+    assert simulation.worlds[0].alive > 80
+    x, y = agents["x"], agents["y"]
+    apart = np.hypot(x[:, None] - x, y[:, None] - y) + 1e3 * np.eye(len(x))
+    assert apart.min() >= 20 - 1e-3
+    assert np.hypot(x[:, None] - foods["x"], y[:, None] - foods["y"]).min() >= 14 - 0.5
+    assert np.all((x >= 10) & (x <= 470) & (y >= 10) & (y <= 350))
+
+
+def test_extinction_ends_a_world_and_leaves_the_others():
+    simulation = make_simulation(
+        "hazard.kappa=1", "hazard.alpha_energy=0.02", "energy.initial=0", *CHILDLESS, seeds=(1, 2)
+    )
+    simulation.run(5000)
+    world = simulation.worlds[0]
+    assert world.extinct
+    assert world.step == world.extinct_step
+    assert len(simulation.engine.take_rows(0)["agent_id"]) == 50
+    assert simulation.worlds[1].extinct_step != world.extinct_step
+    simulation.run(100)
+    assert world.step == world.extinct_step
+
+
+def test_only_those_who_lived_through_the_window_learn():
+    simulation = make_simulation(*QUICK, "birth.kappa=0.01", *DEATHLESS)
+    simulation.run(63)
+    world = simulation.worlds[0]
+    born = world.agents()["birth_step"]
+    assert (born > 0).sum() > 5
+    before = world.view("params")[world.living].copy()
+    simulation.run(1)
+    after = world.view("params")[world.living][: len(before)]
+    changed = np.any(after != before, axis=1)
+    np.testing.assert_array_equal(changed, born[: len(changed)] == 0)
+    assert world.counters["learners"] == 50
+
+
+def test_event_overflow_is_named():
+    lethal = (
+        "population.capacity=4",
+        "population.initial_count=4",
+        "birth.kappa=2",
+        "hazard.kappa=20",
+        "energy.initial=0",
+    )
+    simulation = make_simulation(
+        *lethal, "hazard.alpha_energy=0.02", "food.normal.initial_count=0", seeds=(5,)
+    )
+    with pytest.raises(RuntimeError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
+        simulation.run(20_000)
+
+
+def test_no_place_for_the_founders_is_named():
+    with pytest.raises(RuntimeError, match="initial_placement"):
+        make_simulation(
+            "arena.width=110",
+            "arena.height=110",
+            "population.initial_count=20",
+            "food.normal.initial_count=0",
+        )

@@ -1,0 +1,56 @@
+"""Simulations for tests: small, quick, and from the same configs that users have."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hedon import _engine
+from hedon.config.arena import outer_count, walls
+from hedon.config.load import load_config
+from hedon.config.native import engine_config
+from hedon.experiment.simulation import Simulation
+
+QUICK = ("learning.rollout_steps=64", "learning.minibatch_size=32", "learning.update_epochs=2")
+"""Short windows, so that a test sees several of them."""
+STILL = ("motor.min_force=-1e-6", "motor.max_force=1e-6")
+"""Motors so weak that nobody moves."""
+DEATHLESS = ("hazard.kappa=0", "hazard.alpha_age=0")
+CHILDLESS = ("birth.kappa=0",)
+
+
+def make_simulation(
+    *overrides: str, preset: str = "baseline", seeds: Sequence[int] = (1,), threads: int = 1, kernel: str = ""
+) -> Simulation:
+    """A simulation of a preset with overrides, on one thread unless asked otherwise."""
+    return Simulation(load_config(preset, overrides=overrides), seeds, threads, kernel)
+
+
+def make_engine(*overrides: str, slot_order: Sequence[int] = (), seeds: Sequence[int] = (1,)) -> Any:
+    """The bare engine, for what the Python class does not offer."""
+    config = load_config("baseline", overrides=overrides)
+    return _engine.Simulation(
+        engine_config(config),
+        walls(config.arena),
+        outer_count(config.arena),
+        list(seeds),
+        1,
+        "",
+        list(slot_order),
+    )
+
+
+def set_scene(
+    simulation: Simulation,
+    agents: Sequence[tuple[float, float, float]],
+    foods: Sequence[tuple[float, float]] = (),
+    kinds: Sequence[int] | None = None,
+    energy: float = 40.0,
+) -> None:
+    """Replaces world 0 by agents (x, y, angle) and foods (x, y), the latter of kind 0 unless told."""
+    body = np.asarray(agents, np.float32).reshape(-1, 3)
+    food = np.asarray(foods, np.float32).reshape(-1, 2)
+    kind = np.zeros(len(food), np.int32) if kinds is None else np.asarray(kinds, np.int32)
+    columns = [np.ascontiguousarray(column) for column in body.T]
+    places = [np.ascontiguousarray(column) for column in food.T]
+    simulation.engine.set_scene(0, *columns, np.full(len(body), energy, np.float32), *places, kind)
