@@ -42,6 +42,18 @@ HEDON_FN void insert(const Grid& grid, int32_t item, float x, float y) {
   head = item;
 }
 
+/// Takes an item out of the cell of the place at which it was put.
+HEDON_FN void remove(const Grid& grid, int32_t item, float x, float y) {
+  const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
+  const int32_t row = cell_along(y, grid.inverse_cell, grid.rows);
+  int32_t* at = &grid.head[static_cast<int64_t>(row) * grid.columns + column];
+  while (*at != item) {
+    if (*at < 0) return;
+    at = &grid.next[*at];
+  }
+  *at = grid.next[item];
+}
+
 /// Calls f(item) for each item of the cells that the rectangle touches: a superset of the items within it.
 template <class F>
 HEDON_FN void for_each_in(const Grid& grid, float low_x, float low_y, float high_x, float high_y, F&& f) {

@@ -6,6 +6,8 @@ from typing import Annotated
 import typer
 
 from hedon.cli import config
+from hedon.cli.report import report
+from hedon.cli.run import run
 from hedon.error import HedonError
 
 app = typer.Typer(
@@ -17,6 +19,8 @@ app = typer.Typer(
 )
 
 # One file per command or group of commands; they stand in the help in this order.
+app.command()(run)
+app.command()(report)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 
@@ -40,6 +44,9 @@ def _hedon(
 
     \b
     Examples:
+      hedon run baseline
+      hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+      hedon report runs/poison
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
     """
