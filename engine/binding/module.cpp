@@ -7,6 +7,7 @@ NB_MODULE(_engine, module) {
   module.doc() = "The native engine of hedon: the simulation and nothing else.";
   hedon::bind_kernel(module);
   hedon::bind_learning(module);
+  hedon::bind_physics(module);
   hedon::bind_random(module);
   hedon::bind_simulation(module);
 }

@@ -7,6 +7,7 @@ namespace hedon {
 
 void bind_kernel(nanobind::module_& module);
 void bind_learning(nanobind::module_& module);
+void bind_physics(nanobind::module_& module);
 void bind_random(nanobind::module_& module);
 void bind_simulation(nanobind::module_& module);
 

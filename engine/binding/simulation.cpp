@@ -112,7 +112,7 @@ class PythonSimulation {
     gather_scene(from);
     for (size_t i = 0; i < count; ++i) {
       PackedObservation packed{};
-      observe(from, static_cast<int32_t>(i), packed);
+      observe(from, static_cast<int32_t>(i), from.scene.found_by(0), packed);
       unpack(shape, packed, &full[i * size]);
     }
     return copy_array(std::move(full), {count, size});

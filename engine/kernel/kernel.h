@@ -56,6 +56,14 @@ struct RayScene {
   float length;  ///< of a ray, from its start [u]
 };
 
+/// The sector of the plane that one agent's rays can reach.
+struct Fan {
+  float x, y;                          ///< the agent's center [u]
+  float reach;                         ///< of the rays, from the center [u]
+  float right_x, right_y;              ///< direction of the right-most ray; 0 where the fan is not convex
+  float left_x, left_y;                ///< direction of the left-most ray; 0 where the fan is not convex
+};
+
 struct Kernel {
   const char* name;
 
@@ -76,6 +84,11 @@ struct Kernel {
   /// All epochs and minibatches of one learner; returns the means of the last epoch.
   PpoLoss (*update)(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
                     const Learner& learner);
+
+  /// Indices of the circles that a fan may touch, in order; returns how many. The arrays, `found` too, have room up to
+  /// the next multiple of 16.
+  int32_t (*cull_circles)(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count,
+                          int32_t* found);
 
   /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type` likewise.
   /// Both have PACKED_RAYS entries, 0 past the scene's rays.

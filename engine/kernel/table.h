@@ -3,6 +3,7 @@
 
 #include "kernel/calibrate.h"
 #include "kernel/cast_rays.h"
+#include "kernel/cull_circles.h"
 #include "kernel/kernel.h"
 #include "kernel/network_forward.h"
 #include "kernel/ppo_update.h"
@@ -12,8 +13,8 @@ namespace {
 
 template <class Shape>
 constexpr Kernel make_table(const char* name) {
-  return {name, fold_bias,     forward<Shape>, gradient_of_minibatch<Shape>,
-          adam, update<Shape>, cast_rays,      multiply_adds<Shape>};
+  return {name, fold_bias, forward<Shape>, gradient_of_minibatch<Shape>, adam, update<Shape>, cull_circles, cast_rays,
+          multiply_adds<Shape>};
 }
 
 }  // namespace

@@ -44,6 +44,9 @@ HEDON_INLINE LaneMask both(LaneMask a, LaneMask b) {
   return {_mm256_and_ps(a.low, b.low), _mm256_and_ps(a.high, b.high)};
 }
 HEDON_INLINE bool any(LaneMask m) { return _mm256_movemask_ps(_mm256_or_ps(m.low, m.high)) != 0; }
+HEDON_INLINE uint32_t to_bits(LaneMask m) {
+  return static_cast<uint32_t>(_mm256_movemask_ps(m.low)) | static_cast<uint32_t>(_mm256_movemask_ps(m.high)) << 8;
+}
 HEDON_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) {
   return {_mm256_blendv_ps(no.low, yes.low, m.low), _mm256_blendv_ps(no.high, yes.high, m.high)};
 }

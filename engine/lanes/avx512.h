@@ -2,7 +2,7 @@
 ///
 /// The operations, the same in each file of this folder: `load` and `store` need 64-byte alignment; `multiply_add(a, b,
 /// c)` is a*b + c, rounded once; `smaller` and `larger` give b where either is NaN; comparisons with NaN are false;
-/// `sum` adds in a fixed tree (halves of 8, 4, 2, 1).
+/// `sum` adds in a fixed tree (halves of 8, 4, 2, 1); `to_bits` gives one bit per lane, the first the lowest.
 #pragma once
 
 // GCC before 13 takes the undefined operands inside its own AVX-512 header for mistakes (GCC bug 105593).
@@ -37,6 +37,7 @@ HEDON_INLINE LaneMask operator<(Lanes a, Lanes b) { return _mm512_cmp_ps_mask(a.
 HEDON_INLINE LaneMask operator<=(Lanes a, Lanes b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
 HEDON_INLINE LaneMask both(LaneMask a, LaneMask b) { return static_cast<LaneMask>(a & b); }
 HEDON_INLINE bool any(LaneMask m) { return m != 0; }
+HEDON_INLINE uint32_t to_bits(LaneMask m) { return m; }
 HEDON_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) { return {_mm512_mask_blend_ps(m, no.v, yes.v)}; }
 
 /// a * 2^n, where n is the integer in the low bits of `shifted` = n + 1.5 * 2^23.

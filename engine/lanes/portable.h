@@ -63,6 +63,11 @@ HEDON_INLINE bool any(LaneMask m) {
   const Int4 all = m.part[0] | m.part[1] | m.part[2] | m.part[3];
   return (all[0] | all[1] | all[2] | all[3]) != 0;
 }
+HEDON_INLINE uint32_t to_bits(LaneMask m) {
+  uint32_t bits = 0;
+  for (int i = 0; i < 16; ++i) bits |= (m.part[i / 4][i % 4] != 0 ? 1u : 0u) << i;
+  return bits;
+}
 HEDON_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) {
   return each_part([&](int i) HEDON_INLINED {
     return reinterpret_cast<Float4>((m.part[i] & reinterpret_cast<Int4>(yes.part[i])) |

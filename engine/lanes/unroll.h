@@ -1,6 +1,8 @@
 /// Loops over compile-time indices, so that arrays of lanes stay in registers.
 #pragma once
 
+#include <cstdint>
+
 #include "base/device.h"
 
 /// The same for lambdas: written after their parameters.

@@ -9,7 +9,7 @@ PhysicsCapacity world_physics_capacity(const World& world) {
                           world.constants->body, config.physics.neighbor_skin);
 }
 
-void set_counts(World& world) {
+void set_counts(World& world, int members) {
   const WorldShape& shape = *world.shape;
   const int64_t slots = shape.slots, kinds = shape.kinds, genes = shape.genome.size(), params = shape.network.size();
   const int64_t rows = slots * shape.steps;
@@ -39,6 +39,7 @@ void set_counts(World& world) {
   world.scratch.meal.count = slots * kinds;
   world.scratch.eater.count = world.scratch.eater_distance.count = shape.foods;
 
+  world.scene.found.count = members * (slots + shape.foods + 16);
   world.scene.x.count = world.scene.y.count = world.scene.radius.count = world.scene.type.count = slots + shape.foods;
 }
 

@@ -82,7 +82,7 @@ int64_t lay_out(Struct& fields, char* at) {
 /// How many bodies, circles, walls and pairs the physics of a world must hold.
 PhysicsCapacity world_physics_capacity(const World& world);
 
-/// Sets how many items each array of a world holds.
-void set_counts(World& world);
+/// Sets how many items each array of a world holds, for teams of up to `members`.
+void set_counts(World& world, int members);
 
 }  // namespace hedon

@@ -47,7 +47,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     world.constants = &constants_;
     world.kernel = kernel_;
     world.seed = seeds[i];
-    set_counts(world);
+    set_counts(world, threads);
     const auto lay_out_all = [&](char* at) {
       int64_t bytes = 0;
       const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };

@@ -26,7 +26,7 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
     PackedObservation& next = world.observation(slot, shape.steps);
-    observe(world, i, next);
+    observe(world, i, world.scene.found_by(group.rank()), next);
     float output[16];
     world.kernel->forward(shape.network, world.params(slot), world.folded_bias(slot), next, output);
 

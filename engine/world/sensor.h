@@ -39,10 +39,8 @@ HEDON_FN void gather_scene(World& world) {
 struct Candidates {
   static constexpr int32_t CIRCLES = 512;
   static constexpr int32_t WALLS = 128;
-  alignas(64) float x[CIRCLES];
-  alignas(64) float y[CIRCLES];
-  alignas(64) float radius[CIRCLES];
-  alignas(64) int32_t type[CIRCLES];
+  float x[CIRCLES], y[CIRCLES], radius[CIRCLES];
+  int32_t type[CIRCLES];
   float ax[WALLS], ay[WALLS], bx[WALLS], by[WALLS];
 };
 
@@ -59,14 +57,21 @@ HEDON_FN void cast_candidates(const World& world, RayScene& rays, PackedObservat
   rays.circles = rays.segments = 0;
 }
 
-/// Casts the rays of the agent at position `self` of the living order.
-HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, PackedObservation& out) {
+/// True where the fan cannot touch the segment from `a` to `b`, both relative to the fan's center.
+HEDON_FN bool misses(const Fan& fan, Vec2 a, Vec2 b) {
+  const Vec2 right{fan.right_x, fan.right_y}, left{fan.left_x, fan.left_y};
+  if (cross(right, a) < 0.0f && cross(right, b) < 0.0f) return true;
+  if (cross(a, left) < 0.0f && cross(b, left) < 0.0f) return true;
+  return squared_length(nearest_on_segment(a, b, {0.0f, 0.0f})) > fan.reach * fan.reach;
+}
+
+/// Casts the rays of the agent at position `self` of the living order. `scratch` holds indices of circles.
+HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, int32_t* scratch, PackedObservation& out) {
   const SensorConfig& sensor = world.config->sensor;
   const WorldConstants& constants = *world.constants;
   const Scene& scene = world.scene;
   const Vec2 center{scene.x[self], scene.y[self]};
   const Vec2 left{-forward.y, forward.x};
-  const float reach = world.config->body.radius + sensor.ray_length;
 
   alignas(64) float direction_x[MAX_RAYS], direction_y[MAX_RAYS];
   for (int32_t r = 0; r < MAX_RAYS; ++r) {
@@ -76,36 +81,33 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, Pa
     out.ray[r] = 0.0f;
     out.ray_type[r] = 0;
   }
-  // The fan's edges cull what lies wholly outside it, where the fan is convex.
-  const Vec2 edge_left = constants.fan_left.x * forward + constants.fan_left.y * left;
-  const Vec2 edge_right = constants.fan_right.x * forward + constants.fan_right.y * left;
-  const bool convex = constants.fan_convex;
+  Fan fan{center.x, center.y, world.config->body.radius + sensor.ray_length, 0.0f, 0.0f, 0.0f, 0.0f};
+  if (constants.fan_convex) {
+    const int32_t last = sensor.ray_count - 1;
+    fan.right_x = direction_x[0], fan.right_y = direction_y[0];
+    fan.left_x = direction_x[last], fan.left_y = direction_y[last];
+  }
 
-  Candidates seen;
+  alignas(64) Candidates seen;
   RayScene rays{seen.x, seen.y, seen.radius, seen.type, 0, seen.ax, seen.ay, seen.bx, seen.by, 0,
                 world.shape->wall_type(), direction_x, direction_y, sensor.ray_count, world.config->body.radius,
                 sensor.ray_length};
-  for (int32_t i = 0; i < scene.count; ++i) {
-    const Vec2 to{scene.x[i] - center.x, scene.y[i] - center.y};
-    const float radius = scene.radius[i];
-    bool near = squared_length(to) <= (reach + radius) * (reach + radius);
-    if (convex) near = near & (cross(edge_right, to) >= -radius) & (cross(to, edge_left) >= -radius);
-    if (!near || i == self) continue;
+  const int32_t found = world.kernel->cull_circles(fan, scene.x.data, scene.y.data, scene.radius.data,
+                                                   static_cast<int32_t>(scene.count), scratch);
+  for (int32_t f = 0; f < found; ++f) {
+    const int32_t i = scratch[f];
+    if (i == self) continue;
     if (rays.circles == Candidates::CIRCLES) cast_candidates(world, rays, out);
     const int32_t n = rays.circles++;
-    seen.x[n] = to.x;
-    seen.y[n] = to.y;
-    seen.radius[n] = radius;
+    seen.x[n] = scene.x[i] - center.x;
+    seen.y[n] = scene.y[i] - center.y;
+    seen.radius[n] = scene.radius[i];
     seen.type[n] = scene.type[i];
   }
   for (int32_t w = 0; w < world.shape->walls; ++w) {
     const Vec2 a = world.state.physics.walls[w].a - center;
     const Vec2 b = world.state.physics.walls[w].b - center;
-    if (squared_length(nearest_on_segment(a, b, {0.0f, 0.0f})) > reach * reach) continue;
-    if (convex && ((cross(edge_right, a) < 0.0f && cross(edge_right, b) < 0.0f) ||
-                   (cross(a, edge_left) < 0.0f && cross(b, edge_left) < 0.0f))) {
-      continue;
-    }
+    if (misses(fan, a, b)) continue;
     if (rays.segments == Candidates::WALLS) cast_candidates(world, rays, out);
     const int32_t n = rays.segments++;
     seen.ax[n] = a.x;
@@ -116,15 +118,15 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, Pa
   cast_candidates(world, rays, out);
 }
 
-/// Writes the observation of the agent at position `self` of the living order.
-HEDON_FN void observe(const World& world, int32_t self, PackedObservation& out) {
+/// Writes the observation of the agent at position `self` of the living order. `scratch`: see `cast_agent_rays`.
+HEDON_FN void observe(const World& world, int32_t self, int32_t* scratch, PackedObservation& out) {
   const WorldState& state = world.state;
   const int32_t slot = state.living[self];
   const BodyState& body = state.physics.bodies;
   const float angle = body.angle[slot];
   float sine, cosine;
   sincos_float(angle, &sine, &cosine);
-  cast_agent_rays(world, self, {-sine, cosine}, out);
+  cast_agent_rays(world, self, {-sine, cosine}, scratch, out);
   out.touch = state.touch[slot];
   const float energy = static_cast<float>(state.life[slot].energy);
   const float vx = body.velocity_x[slot], vy = body.velocity_y[slot], omega = body.angular_velocity[slot];

@@ -60,7 +60,6 @@ struct WorldConstants {
   float mouth_cosine;           ///< cosine of the mouth's half angle
   float ray_sine[MAX_RAYS];     ///< of each ray's angle to the heading; past the last ray the last repeats
   float ray_cosine[MAX_RAYS];
-  Vec2 fan_left, fan_right;     ///< outermost rays in the body's frame (x forward, y left)
   bool fan_convex;              ///< the fan spans less than half a turn, so that its edges can cull
   float sector_sine[65];        ///< of each touch sector's first edge, counter-clockwise of the heading
   float sector_cosine[65];
@@ -86,8 +85,6 @@ HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
     c.ray_cosine[r] = static_cast<float>(cosine);
   }
   c.fan_convex = config.sensor.ray_spread < 90.0f;
-  c.fan_right = {c.ray_cosine[0], c.ray_sine[0]};
-  c.fan_left = {c.ray_cosine[rays - 1], c.ray_sine[rays - 1]};
   for (int32_t s = 0; s <= config.sensor.touch_sectors; ++s) {
     sincos_double(2.0 * PI * s / config.sensor.touch_sectors, &sine, &cosine);
     c.sector_sine[s] = static_cast<float>(sine);

@@ -28,7 +28,7 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
   group.for_each(clock.living_count, [&](int32_t i) {
     const int32_t slot = state.living[i];
     PackedObservation& observation = world.observation(slot, t);
-    observe(world, i, observation);
+    observe(world, i, world.scene.found_by(group.rank()), observation);
     sample_action(world, slot, t, observation);
     drive(world, slot, t);
   });

@@ -16,9 +16,12 @@ namespace hedon {
 struct Scene {
   Array<float> x, y, radius;  // (slots + foods)
   Array<int32_t> type;
+  Array<int32_t> found;  // (members, slots + foods) for each member of the team: what one agent may see
   int64_t count;
 
-  HEDON_FIELDS(Scene, x, y, radius, type, count)
+  HEDON_FN int32_t* found_by(int rank) const { return found.data + rank * (x.count + 16); }
+
+  HEDON_FIELDS(Scene, x, y, radius, type, found, count)
 };
 
 /// What an agent does and meets within one step, by slot. Means nothing between steps.

@@ -91,7 +91,7 @@ def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_birth_in_window(no
         *QUICK,
         "birth.kappa=0.05",
         "hazard.kappa=0",
-        "genome.weight_limit=1e6",
+        "genome.weight_limit=1000",
         f'genome.mutation_noise="{noise}"',
     )
     simulation = make_simulation(

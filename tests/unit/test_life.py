@@ -5,6 +5,7 @@ import pytest
 from hedon.analysis.demography import birth_rate, hazard
 
 from hedon.config.load import load_config
+from hedon.experiment.simulation import EngineError
 from tests.worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 SAFE = (*DEATHLESS, *CHILDLESS)
@@ -246,12 +247,12 @@ def test_event_overflow_is_named():
     simulation = make_simulation(
         *lethal, "hazard.alpha_energy=0.02", "food.normal.initial_count=0", seeds=(5,)
     )
-    with pytest.raises(RuntimeError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
+    with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
         simulation.run(20_000)
 
 
 def test_no_place_for_the_founders_is_named():
-    with pytest.raises(RuntimeError, match="initial_placement"):
+    with pytest.raises(EngineError, match="initial_placement"):
         make_simulation(
             "arena.width=110",
             "arena.height=110",

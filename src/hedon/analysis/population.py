@@ -9,31 +9,34 @@ TAIL = 0.1  # share of a run, at its end, over which its state is averaged
 _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
 
 
-def history(population: pl.DataFrame, food_kinds: Sequence[str], points: int = 400) -> pl.DataFrame:
+def history(
+    population: pl.DataFrame, food_kinds: Sequence[str], weight_names: Sequence[str] = (), points: int = 200
+) -> pl.DataFrame:
     """The course of each world, in at most `points` intervals of equal length.
 
     Args:
         population: table `population`.
         food_kinds: names.
+        weight_names: genome columns whose means are wanted.
         points: rows per world at most.
 
     Returns:
-        By world and step (the interval's end [step]): alive, energy_mean and generation_mean (means over the
-        interval), births, deaths, births_failed_full and births_failed_space per 1000 steps, and
-        eaten_<kind> per step lived. Where nobody lived the last are null.
+        By world and bin (index of the interval): step (its end [step]); alive, energy_mean, generation_mean
+        and <weight>_mean (means over the interval); births, deaths, births_failed_full and
+        births_failed_space per 1000 steps; eaten_<kind> per 1000 steps lived. What has no value, since
+        nobody lived, is null.
     """
-    if population.is_empty():
-        return population.select("world", "step")
-    width = max(int(population["step"].max()) / points, 1.0)  # type: ignore[arg-type]
-    groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().alias("bin"))
+    width = max((_last_step(population) + 1) / points, 1.0)
+    groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin"))
     rates = [(1000.0 * pl.col(name).sum() / pl.col("steps").sum()).alias(name) for name in _COUNTS]
     lived = pl.col("agent_steps").sum()
     eaten = [
-        pl.when(lived > 0).then(pl.col(f"eaten_{kind}").sum() / lived).alias(f"eaten_{kind}")
+        pl.when(lived > 0).then(1000.0 * pl.col(f"eaten_{kind}").sum() / lived).alias(f"eaten_{kind}")
         for kind in food_kinds
     ]
-    means = [pl.col(name).mean() for name in ("alive", "energy_mean", "generation_mean")]
-    return groups.agg(pl.col("step").max(), *means, *rates, *eaten).sort("world", "step").drop("bin")
+    names = ("alive", "energy_mean", "generation_mean", *(f"{name}_mean" for name in weight_names))
+    means = [pl.col(name).mean() for name in names]
+    return groups.agg(pl.col("step").max(), *means, *rates, *eaten).sort("world", "bin")
 
 
 def run_tail(population: pl.DataFrame) -> pl.DataFrame:
@@ -69,3 +72,7 @@ def extinct_step(population: pl.DataFrame) -> int | None:
     """End of the first interval at whose end nobody lived [step]; None while somebody lives."""
     empty = population.filter(pl.col("alive") == 0)
     return None if empty.is_empty() else int(empty["step"][0])
+
+
+def _last_step(population: pl.DataFrame) -> int:
+    return 0 if population.is_empty() else int(population["step"].to_numpy().max())

@@ -21,7 +21,7 @@ RUN_KEYS: dict[str, str] = {
     "generation": "worlds' `generation` as mean and interval",
     "weights": "by genome column: worlds' mean weight as mean and interval; neutral markers show drift alone",
     "pooled": "over the dead of all worlds, each agent alike: agents, mean_lifetime, food_per_step",
-    "surviving": "the same means and intervals over the worlds that are not extinct: the paper replaced extinct seeds",
+    "surviving": "the same means and intervals without the extinct worlds, which the paper replaced",
     "paper": "of this preset: mean_lifetime, food_per_step, population, generation, claim; or null",
     "damaged_parts": "files that could not be read and are missing in all numbers",
     "worlds": "list, one entry per world, see below",
@@ -37,7 +37,7 @@ INTERVAL_KEYS: dict[str, str] = {
 WORLD_KEYS: dict[str, str] = {
     "seed": "of the world",
     "steps": "steps made",
-    "steps_per_second": "steps of this world per second, while all worlds of the run shared the machine; or null",
+    "steps_per_second": "steps of this world per second, all worlds sharing the machine; or null",
     "alive": "agents alive at the end",
     "alive_mean": "agents alive, mean over the last tenth of the steps made",
     "extinct": "true if nobody is left",
@@ -55,6 +55,6 @@ WORLD_KEYS: dict[str, str] = {
     "mean_energy": "energy of the living, mean over the last tenth of the steps made",
     "generation": "mean generation of the living at the end, or when somebody lived last",
     "weights": "by genome column: mean and sd over the 5000 agents born last, dead or alive",
-    "ledger": "energy, sums: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and residual, the "
-    "largest gap in an interval, only rounding where the ledger closes",
+    "ledger": "sums of energy: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and "
+    "residual, the largest gap in an interval, only rounding where the ledger closes",
 }

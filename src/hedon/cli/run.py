@@ -37,20 +37,21 @@ def run(
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
 ) -> None:
-    """Run a condition: simulate its worlds, keep records, and end with a table and figures.
+    """Run a condition: simulate its worlds, keep records, end with a table and figures.
 
     Ctrl-C ends the run after the current window; all results so far are kept.
 
+    \b
     Examples:
-
       hedon run baseline
-
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
-
       hedon run baseline --fidelity released --set population.capacity=100
-
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
+
+    HEDON_KERNEL forces an instruction set: avx512, avx2 or portable.
     """
+    import json
+
     from rich.console import Console
 
     from hedon.analysis.report import write_report
@@ -81,9 +82,8 @@ def run(
             f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.",
             highlight=False,
         )
-    finished = open_run(folder)
-    files = write_report(finished)
-    console.print(summary_table(finished))
+    files = write_report(open_run(folder))
+    console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
     took = duration(manifest.run_seconds or 0.0)
     console.print(
         f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}", highlight=False

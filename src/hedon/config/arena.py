@@ -15,13 +15,21 @@ if TYPE_CHECKING:
 class ArenaConfig:
     """Where the agents live."""
 
-    width: Annotated[float, Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5))] = 480.0
-    height: Annotated[float, Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5))] = 360.0
+    width: Annotated[
+        float,
+        Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5)),
+    ] = 480.0
+    height: Annotated[
+        float,
+        Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5)),
+    ] = 360.0
     corner_radius: Annotated[
-        float, Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0))
+        float,
+        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0)),
     ] = 19.0
     corner_chords: Annotated[
-        int, Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64))
+        int,
+        Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64)),
     ] = 4
     inner_walls: Annotated[
         tuple[tuple[float, float, float, float], ...],

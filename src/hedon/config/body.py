@@ -3,16 +3,25 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+from hedon.config.field import EITHER, OURS, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
 class BodyConfig:
     """Sizes and mass."""
 
-    radius: Annotated[float, Doc("of an agent", "u", PAPER, Range(gt=0, le=1e3))] = 10.0
-    density: Annotated[float, Doc("mass of an agent per area", "mass/u²", CODE, Range(gt=0, le=1e3))] = 0.1
-    food_radius: Annotated[float, Doc("of a piece of food", "u", PAPER, Range(gt=0, le=1e3))] = 4.0
+    radius: Annotated[
+        float,
+        Doc("of an agent", "u", EITHER, Range(gt=0, le=1e3)),
+    ] = 10.0
+    density: Annotated[
+        float,
+        Doc("mass of an agent per area", "mass/u²", EITHER, Range(gt=0, le=1e3)),
+    ] = 0.1
+    food_radius: Annotated[
+        float,
+        Doc("of a piece of food", "u", EITHER, Range(gt=0, le=1e3)),
+    ] = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +29,16 @@ class MotorConfig:
     """The two motors at the rear: force = min_force + (max_force − min_force)·sigmoid(action)."""
 
     min_force: Annotated[
-        float, Doc("force of each motor as the action falls", "mass·u/s²", PAPER, Range(ge=-1e4, le=1e4))
+        float,
+        Doc("force of each motor as the action falls", "mass·u/s²", EITHER, Range(ge=-1e4, le=1e4)),
     ] = -20.0
     max_force: Annotated[
-        float, Doc("force of each motor as the action rises", "mass·u/s²", PAPER, Range(gt=0, le=1e4))
+        float,
+        Doc("force of each motor as the action rises", "mass·u/s²", EITHER, Range(gt=0, le=1e4)),
     ] = 80.0
     angle: Annotated[
-        float, Doc("where the motors sit, to either side of the heading", "degree", CODE, Range(ge=0, le=180))
+        float,
+        Doc("where the motors sit, to either side of the heading", "degree", EITHER, Range(ge=0, le=180)),
     ] = 135.0
 
 
@@ -35,24 +47,33 @@ class SensorConfig:
     """Range rays, touch and the mouth."""
 
     ray_count: Annotated[
-        int, Doc("range rays; the first is the right-most", "", PAPER, Range(ge=1, le=32))
+        int,
+        Doc("range rays; the first is the right-most", "", EITHER, Range(ge=1, le=32)),
     ] = 24
     ray_spread: Annotated[
         float,
         Doc(
-            "angle of the outermost rays, to either side of the heading", "degree", PAPER, Range(ge=0, le=180)
+            "angle of the outermost rays, to either side of the heading",
+            "degree",
+            EITHER,
+            Range(ge=0, le=180),
         ),
     ] = 60.0
-    ray_length: Annotated[float, Doc("reach of a ray from the surface", "u", PAPER, Range(gt=0, le=1e5))] = (
-        200.0
-    )
+    ray_length: Annotated[
+        float,
+        Doc("reach of a ray from the surface", "u", EITHER, Range(gt=0, le=1e5)),
+    ] = 200.0
     touch_sectors: Annotated[
         int,
-        Doc("equal sectors of the surface that feel touch, counter-clockwise", "", PAPER, Range(ge=1, le=16)),
+        Doc(
+            "equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)
+        ),
     ] = 6
     mouth_spread: Annotated[
         float,
-        Doc("half-width of the mouth: food touched within it is eaten", "degree", PAPER, Range(gt=0, le=180)),
+        Doc(
+            "half-width of the mouth: food touched within it is eaten", "degree", EITHER, Range(gt=0, le=180)
+        ),
     ] = 60.0
     scaling: Annotated[
         Literal["raw", "unit"],

@@ -2,17 +2,21 @@
 
 import math
 import re
+import struct
 from collections.abc import Iterator
 
-from hedon.config.arena import is_inside
+from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.config import PROVENANCE, Config
+from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
-from hedon.config.problem import Problem
+from hedon.config.problem import Problem, format_value
 
 MAX_TOUCH_BITS = 64
 """Types times touch sectors that the engine has room for."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap jams at 0.547 (Feder 1980)."""
+MIN_WALL = 0.01
+"""Length of the shortest outer wall that float32 still gives a direction [u]."""
 RESERVED_KINDS = ("agent", "wall", "action")
 """Names that stand for something else in sensor channels or in the columns of records."""
 
@@ -20,6 +24,7 @@ RESERVED_KINDS = ("agent", "wall", "action")
 def contradictions(config: Config) -> Iterator[Problem]:
     """Everything in a config that cannot be true at the same time."""
     yield from _names(config)
+    yield from _rounding(config)
     yield from _arena(config)
     yield from _bodies(config)
     yield from _kinds(config)
@@ -30,24 +35,42 @@ def _names(config: Config) -> Iterator[Problem]:
     for field in PROVENANCE:
         text = getattr(config, field)
         if not text or len(text) > 200 or not text.isprintable():
-            yield Problem(field, "must be a text of 1 to 200 printable characters", repr(text))
+            yield Problem(field, "must be a text of 1 to 200 printable characters", format_value(text))
+
+
+def _rounding(config: Config) -> Iterator[Problem]:
+    """Numbers that leave their range when they are rounded to the engine's 32 bits."""
+    for path, setting, value in leaves(config):
+        if setting.type is float:
+            rounded = struct.unpack("f", struct.pack("f", value))[0]
+            if rounded not in setting.doc.range:
+                message = f"is {rounded:g} in the engine's 32-bit numbers, but must be {setting.allowed}"
+                yield Problem(path, message, format_value(value))
 
 
 def _arena(config: Config) -> Iterator[Problem]:
     arena = config.arena
-    most = min(arena.width, arena.height) / 2
-    if arena.corner_radius > most:
-        yield _problem(
-            config, "arena.corner_radius", f"must be at most half of the shorter side, {most:g} [u]"
-        )
-        return
-    for i, (ax, ay, bx, by) in enumerate(arena.inner_walls):
-        if not (is_inside(arena, ax, ay) and is_inside(arena, bx, by)):
-            yield Problem(
-                f"arena.inner_walls[{i}]", "lies outside the arena", f"[{ax:g}, {ay:g}, {bx:g}, {by:g}]"
-            )
+    if not _corners_fit(arena):
+        side = min(arena.width, arena.height)
+        rule = f"must be 0 or below {side / 2:g} [u], with no wall shorter than {MIN_WALL:g} [u]"
+        yield _problem(config, "arena.corner_radius", rule)
+    for i, wall in enumerate(arena.inner_walls):
+        ax, ay, bx, by = wall
+        if _is_outside(arena, ax, ay) or _is_outside(arena, bx, by):
+            yield Problem(f"arena.inner_walls[{i}]", "lies outside the arena", format_value(wall))
         if (ax, ay) == (bx, by):
-            yield Problem(f"arena.inner_walls[{i}]", "has no length", f"[{ax:g}, {ay:g}, {bx:g}, {by:g}]")
+            yield Problem(f"arena.inner_walls[{i}]", "has no length", format_value(wall))
+
+
+def _corners_fit(arena: ArenaConfig) -> bool:
+    chord = 2 * arena.corner_radius * math.sin(math.pi / 4 / arena.corner_chords)
+    straight = min(arena.width, arena.height) - 2 * arena.corner_radius
+    return straight >= MIN_WALL and (arena.corner_radius == 0 or chord >= MIN_WALL)
+
+
+def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
+    """Whether a point lies outside; none does while the outline itself is wrong, which is said elsewhere."""
+    return _corners_fit(arena) and not is_inside(arena, x, y)
 
 
 def _bodies(config: Config) -> Iterator[Problem]:
@@ -84,19 +107,21 @@ def _kinds(config: Config) -> Iterator[Problem]:
             yield Problem(path, f"{rule} and not be one of " + ", ".join(RESERVED_KINDS))
         if not re.fullmatch(r"#[0-9a-f]{6}", food.color):
             yield Problem(
-                f"{path}.color", 'must be "#rrggbb" in lower-case hexadecimal digits', repr(food.color)
+                f"{path}.color",
+                'must be "#rrggbb" in lower-case hexadecimal digits',
+                format_value(food.color),
             )
         if food.initial_count > food.capacity:
             message = f"must be at most {path}.capacity = {food.capacity}"
-            yield Problem(f"{path}.initial_count", message, str(food.initial_count))
+            yield Problem(f"{path}.initial_count", message, format_value(food.initial_count))
         yield from _placement(config, food, f"{path}.placement")
 
 
 def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]:
     place = food.placement
     for i, (x, y) in enumerate(place.centers):
-        if not is_inside(config.arena, x, y):
-            yield Problem(f"{path}.centers[{i}]", "lies outside the arena", f"[{x:g}, {y:g}]")
+        if _is_outside(config.arena, x, y):
+            yield Problem(f"{path}.centers[{i}]", "lies outside the arena", format_value((x, y)))
     if place.form == "uniform":
         return
     if place.form == "gaussian" and len(place.centers) != 1:
@@ -104,7 +129,7 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
     if place.form == "switching" and len(place.centers) < 2:
         yield Problem(f"{path}.centers", f'"switching" takes at least two centers, not {len(place.centers)}')
     if min(place.sd) <= 0:
-        yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', str(list(place.sd)))
+        yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', format_value(place.sd))
 
 
 def _life(config: Config) -> Iterator[Problem]:
@@ -132,4 +157,4 @@ def _life(config: Config) -> Iterator[Problem]:
 
 def _problem(config: Config, path: str, message: str) -> Problem:
     section, name = path.split(".")
-    return Problem(path, message, f"{getattr(getattr(config, section), name):g}")
+    return Problem(path, message, format_value(getattr(getattr(config, section), name)))

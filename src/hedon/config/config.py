@@ -25,9 +25,18 @@ class Config:
     # For the validator: no conversion between types, no unknown names, no NaN or infinity, in any section.
     __pydantic_config__: ClassVar[Any] = {"strict": True, "extra": "forbid", "allow_inf_nan": False}
 
-    name: Annotated[str, Doc("what the run is called", "", OURS)] = "baseline"
-    preset: Annotated[str, Doc("the preset that it started from", "", OURS)] = "baseline"
-    fidelity: Annotated[str, Doc("the overlay that was laid on the preset", "", OURS)] = "corrected"
+    name: Annotated[
+        str,
+        Doc("what the run is called", "", OURS),
+    ] = "baseline"
+    preset: Annotated[
+        str,
+        Doc("the preset that it started from", "", OURS),
+    ] = "baseline"
+    fidelity: Annotated[
+        str,
+        Doc("the overlay that was laid on the preset", "", OURS),
+    ] = "corrected"
     arena: ArenaConfig = field(default_factory=ArenaConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     body: BodyConfig = field(default_factory=BodyConfig)

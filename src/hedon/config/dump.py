@@ -2,12 +2,12 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Iterator
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.field import sections, settings
+from hedon.config.field import leaves, sections, settings
+from hedon.config.problem import format_value
 
 _HEAD = "# Complete: every setting stands here, and nothing is taken from the preset or the fidelity.\n"
 
@@ -41,7 +41,7 @@ def section_paths(config: Config) -> list[str]:
 
 def flatten(config: Config) -> dict[str, Any]:
     """Every setting by its path, in order, without the names of preset and fidelity."""
-    return {path: value for path, value in _leaves(asdict(config), "") if path not in PROVENANCE}
+    return {path: value for path, _, value in leaves(config) if path not in PROVENANCE}
 
 
 def digest(config: Config) -> str:
@@ -83,20 +83,3 @@ def _tables(config: Config) -> Iterator[tuple[str, str]]:
                 yield from write(f"{below}.{kind}".rstrip("."), item)
 
     return write("", config)
-
-
-def format_value(value: Any) -> str:
-    """A value as TOML."""
-    if isinstance(value, tuple):
-        return "[" + ", ".join(format_value(item) for item in value) + "]"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    return repr(value)
-
-
-def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, Mapping):
-        for name, inner in value.items():
-            yield from _leaves(inner, f"{path}.{name}".lstrip("."))
-    else:
-        yield path, value

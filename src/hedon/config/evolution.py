@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,18 +20,25 @@ class GenomeConfig:
         ),
     ] = 1
     initial_mean_food: Annotated[
-        float, Doc("mean of the founders' food weights", "", PAPER, Range(ge=-1e3, le=1e3))
+        float,
+        Doc("mean of the founders' food weights", "", EITHER, Range(ge=-1e3, le=1e3)),
     ] = 0.0
     initial_mean_action: Annotated[
-        float, Doc("mean of the founders' action weight", "", PAPER, Range(ge=-1e3, le=1e3))
+        float,
+        Doc("mean of the founders' action weight", "", EITHER, Range(ge=-1e3, le=1e3)),
     ] = 0.0
     initial_sd: Annotated[
-        float, Doc("standard deviation of every founder's weights", "", PAPER, Range(ge=0, le=1e3))
+        float,
+        Doc("standard deviation of every founder's weights", "", EITHER, Range(ge=0, le=1e3)),
     ] = 0.1
     mutation_scale: Annotated[
-        float, Doc("scale of the Cauchy noise added to every weight at birth", "", PAPER, Range(ge=0, le=1e3))
+        float,
+        Doc("scale of the Cauchy noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
     ] = 0.02
-    weight_limit: Annotated[float, Doc("weights are clipped to ± this", "", CODE, Range(gt=0, le=1e3))] = 10.0
+    weight_limit: Annotated[
+        float,
+        Doc("weights are clipped to ± this", "", EITHER, Range(gt=0, le=1e3)),
+    ] = 10.0
     mutation_noise: Annotated[
         Literal["independent", "frozen"],
         Doc(
@@ -46,9 +53,10 @@ class GenomeConfig:
 class RewardConfig:
     """Reward in a step: Σ weight·eaten over food kinds + action_coef·weight·|force|/norm."""
 
-    action_coef: Annotated[float, Doc("factor of the action's part", "", PAPER, Range(ge=-1e3, le=1e3))] = (
-        0.01
-    )
+    action_coef: Annotated[
+        float,
+        Doc("factor of the action's part", "", EITHER, Range(ge=-1e3, le=1e3)),
+    ] = 0.01
     action_norm: Annotated[
         Literal["max_force", "none"],
         Doc("|force| in units of its largest value, or as it is", "", CODE + '; the paper prints "none"'),

@@ -7,9 +7,11 @@ from types import MappingProxyType
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 PAPER = "paper"
-"""Printed in Kanagawa & Doya (2024)."""
+"""Printed in Kanagawa & Doya (2024), ALIFE."""
 CODE = "code"
-"""Not printed, or printed otherwise: the value that the paper's released code was configured with."""
+"""The value that the paper's released code was configured with, where the paper prints another or none."""
+EITHER = "paper or code"
+"""The paper's where it prints one, else that of its released code; the two do not differ."""
 OURS = "ours"
 """A choice of this project."""
 
@@ -23,6 +25,14 @@ class Range:
     le: float | None = None
     lt: float | None = None
     max_items: int | None = None
+
+    def __contains__(self, value: float) -> bool:
+        return (
+            (self.ge is None or value >= self.ge)
+            and (self.gt is None or value > self.gt)
+            and (self.le is None or value <= self.le)
+            and (self.lt is None or value < self.lt)
+        )
 
     def __str__(self) -> str:
         if self.max_items is not None:
@@ -40,7 +50,7 @@ class Doc:
     Attributes:
         meaning: What the value does, as a phrase.
         unit: Its unit, or "" where it has none.
-        source: `PAPER`, `CODE` or `OURS`, with a remark where there is one to make.
+        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark where there is one to make.
         range: The allowed values, apart from their type.
     """
 
@@ -147,3 +157,13 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
             parts.pop(0)
         here = sections(here)[name].type
     return here
+
+
+def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
+    """Every setting in a section and below by its path, in order, with its value."""
+    for name, setting in settings(type(section)).items():
+        yield f"{path}{name}", setting, getattr(section, name)
+    for name, inner in sections(type(section)).items():
+        below = getattr(section, name)
+        for kind, item in below.items() if inner.repeated else [("", below)]:
+            yield from leaves(item, f"{path}{name}.{kind}." if kind else f"{path}{name}.")

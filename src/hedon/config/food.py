@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 MAX_KINDS = 8
 """Kinds that the engine has room for."""
@@ -27,7 +27,8 @@ class PlacementConfig:
         ),
     ] = ()
     sd: Annotated[
-        tuple[float, float], Doc("standard deviations of the Gaussians along x and y", "u", PAPER)
+        tuple[float, float],
+        Doc("standard deviations of the Gaussians along x and y", "u", PAPER),
     ] = (0.0, 0.0)
     switch_after: Annotated[
         int,
@@ -44,7 +45,10 @@ class PlacementConfig:
 class FoodConfig:
     """One kind of food."""
 
-    energy: Annotated[float, Doc("gained by eating one", "energy", PAPER, Range(ge=-1e4, le=1e4))] = 1.0
+    energy: Annotated[
+        float,
+        Doc("gained by eating one", "energy", PAPER, Range(ge=-1e4, le=1e4)),
+    ] = 1.0
     growth_rate: Annotated[
         float,
         Doc(
@@ -54,14 +58,20 @@ class FoodConfig:
             Range(ge=0, le=1000),
         ),
     ] = 0.2
-    capacity: Annotated[int, Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=10_000))] = 100
+    capacity: Annotated[
+        int,
+        Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=10_000)),
+    ] = 100
     initial_count: Annotated[
-        int, Doc("supply and food present at first", "food", CODE, Range(ge=0, le=10_000))
+        int,
+        Doc("supply and food present at first", "food", EITHER, Range(ge=0, le=10_000)),
     ] = 20
     candidates: Annotated[
-        int, Doc("places tried for new food in each step; else it waits", "", CODE, Range(ge=1, le=1000))
+        int,
+        Doc("places tried for new food in each step; else it waits", "", EITHER, Range(ge=1, le=1000)),
     ] = 10
     color: Annotated[
-        str, Doc("in figures and in the viewer: #rrggbb; the agents do not see it", "", OURS)
+        str,
+        Doc("in figures and in the viewer: #rrggbb; the agents do not see it", "", OURS),
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)

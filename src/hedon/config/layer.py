@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from hedon.config.problem import Problem, nearest
+from hedon.config.problem import Problem, format_value, nearest
 
 Table = dict[str, Any]
 EVERY = "*"
@@ -20,7 +20,7 @@ def stack(layers: Iterable[Table]) -> Table:
     for layer in layers:
         food, added = result.get("food", {}), layer.get("food", {})
         result = _lay(result, layer)
-        if isinstance(food, dict) and isinstance(added, dict):
+        if isinstance(food, dict) and isinstance(added, dict) and (food or added):
             result["food"] = _lay_food(food, added)
     return result
 
@@ -32,7 +32,7 @@ def settle_food(tables: Table) -> Iterator[Problem]:
         return
     every = food.pop(EVERY, {})
     if not isinstance(every, dict):
-        yield Problem(f'food."{EVERY}"', "must be a table", repr(every))
+        yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))
     for kind, value in list(food.items()):
         others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
         if value is False:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,28 +15,53 @@ class LearningConfig:
         Doc(
             "steps of a window, at whose end every agent that lived through it learns",
             "step",
-            PAPER,
+            EITHER,
             Range(ge=1, le=65_536),
         ),
     ] = 1024
     minibatch_size: Annotated[
-        int, Doc("steps in one gradient; must divide rollout_steps", "step", PAPER, Range(ge=1, le=65_536))
+        int,
+        Doc("steps in one gradient; must divide rollout_steps", "step", EITHER, Range(ge=1, le=65_536)),
     ] = 256
-    update_epochs: Annotated[int, Doc("passes over a rollout", "", PAPER, Range(ge=0, le=1000))] = 10
-    gamma: Annotated[float, Doc("discount of later rewards", "1/step", PAPER, Range(ge=0, le=1))] = 0.999
+    update_epochs: Annotated[
+        int,
+        Doc("passes over a rollout", "", EITHER, Range(ge=0, le=1000)),
+    ] = 10
+    gamma: Annotated[
+        float,
+        Doc("discount of later rewards", "1/step", EITHER, Range(ge=0, le=1)),
+    ] = 0.999
     gae_lambda: Annotated[
-        float, Doc("decay of the advantage estimate", "1/step", PAPER, Range(ge=0, le=1))
+        float,
+        Doc("decay of the advantage estimate", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 0.95
-    clip_coef: Annotated[float, Doc("clip of the probability ratio", "", PAPER, Range(gt=0, le=10))] = 0.2
-    learning_rate: Annotated[float, Doc("of Adam", "", PAPER, Range(ge=0, le=1))] = 3e-4
-    adam_beta1: Annotated[float, Doc("decay of Adam's first moment", "", CODE, Range(ge=0, lt=1))] = 0.9
-    adam_beta2: Annotated[float, Doc("decay of Adam's second moment", "", CODE, Range(ge=0, lt=1))] = 0.999
+    clip_coef: Annotated[
+        float,
+        Doc("clip of the probability ratio", "", EITHER, Range(gt=0, le=10)),
+    ] = 0.2
+    learning_rate: Annotated[
+        float,
+        Doc("of Adam", "", EITHER, Range(ge=0, le=1)),
+    ] = 3e-4
+    adam_beta1: Annotated[
+        float,
+        Doc("decay of Adam's first moment", "", EITHER, Range(ge=0, lt=1)),
+    ] = 0.9
+    adam_beta2: Annotated[
+        float,
+        Doc("decay of Adam's second moment", "", EITHER, Range(ge=0, lt=1)),
+    ] = 0.999
     adam_epsilon: Annotated[
-        float, Doc("added to the root of Adam's second moment", "", PAPER, Range(gt=0, le=1))
+        float,
+        Doc("added to the root of Adam's second moment", "", EITHER, Range(gt=0, le=1)),
     ] = 1e-7
-    value_coef: Annotated[float, Doc("weight of the value loss", "", CODE, Range(ge=0, le=1e3))] = 1.0
+    value_coef: Annotated[
+        float,
+        Doc("weight of the value loss", "", EITHER, Range(ge=0, le=1e3)),
+    ] = 1.0
     entropy_coef: Annotated[
-        float, Doc("weight of the entropy bonus", "", CODE + "; the paper prints 0", Range(ge=0, le=1e3))
+        float,
+        Doc("weight of the entropy bonus", "", CODE + "; the paper prints 0", Range(ge=0, le=1e3)),
     ] = 0.001
     critic_target: Annotated[
         Literal["per_state", "batch_mean"],

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,23 +11,35 @@ class HazardConfig:
     """Chance of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age)."""
 
     kappa: Annotated[
-        float, Doc("scale of the part that energy lowers", "1/step", PAPER, Range(ge=0, le=1))
+        float,
+        Doc("scale of the part that energy lowers", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 0.01
-    alpha_energy: Annotated[float, Doc("weight of the energy part", "", PAPER, Range(ge=0, le=1e6))] = 0.02
+    alpha_energy: Annotated[
+        float,
+        Doc("weight of the energy part", "", EITHER, Range(ge=0, le=1e6)),
+    ] = 0.02
     beta_energy: Annotated[
-        float, Doc("how fast energy lowers the chance", "1/energy", PAPER, Range(ge=0, le=100))
+        float,
+        Doc("how fast energy lowers the chance", "1/energy", EITHER, Range(ge=0, le=100)),
     ] = 0.2
-    alpha_age: Annotated[float, Doc("chance from age at age 0", "1/step", PAPER, Range(ge=0, le=1))] = 2e-7
-    beta_age: Annotated[float, Doc("how fast age raises the chance", "1/step", PAPER, Range(ge=0, le=1))] = (
-        4e-6
-    )
+    alpha_age: Annotated[
+        float,
+        Doc("chance from age at age 0", "1/step", EITHER, Range(ge=0, le=1)),
+    ] = 2e-7
+    beta_age: Annotated[
+        float,
+        Doc("how fast age raises the chance", "1/step", EITHER, Range(ge=0, le=1)),
+    ] = 4e-6
 
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
     """Chance of a child: kappa/(1 + exp(−beta·energy)); the child is born at a free place near its parent."""
 
-    kappa: Annotated[float, Doc("chance at high energy", "1/step", PAPER, Range(ge=0, le=1))] = 4e-4
+    kappa: Annotated[
+        float,
+        Doc("chance at high energy", "1/step", EITHER, Range(ge=0, le=1)),
+    ] = 4e-4
     beta: Annotated[
         float,
         Doc(
@@ -38,7 +50,8 @@ class BirthConfig:
         ),
     ] = 0.1
     attempts: Annotated[
-        int, Doc("places tried; if none is free, the birth fails", "", CODE, Range(ge=1, le=1000))
+        int,
+        Doc("places tried; if none is free, the birth fails", "", EITHER, Range(ge=1, le=1000)),
     ] = 10
     distance_sd: Annotated[
         float,
@@ -49,6 +62,7 @@ class BirthConfig:
             Range(gt=0, le=1e5),
         ),
     ] = 100.0
-    distance_unit: Annotated[Literal["u", "arena_width"], Doc("what distance_sd is counted in", "", CODE)] = (
-        "u"
-    )
+    distance_unit: Annotated[
+        Literal["u", "arena_width"],
+        Doc("what distance_sd is counted in", "", EITHER),
+    ] = "u"

@@ -9,7 +9,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.layer import Table, settle_food, stack
 from hedon.config.override import parse_override
-from hedon.config.problem import ConfigError, Problem, nearest
+from hedon.config.problem import ConfigError, Problem, format_value, nearest
 from hedon.config.validate import from_tables
 
 _FOLDER = Path(__file__).parent
@@ -101,7 +101,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
             problems.append(Problem("--fidelity", message, fidelity))
         return []
     if "complete" in own:
-        problems.append(Problem("complete", "must be true or left out", repr(own["complete"])))
+        problems.append(Problem("complete", "must be true or left out", format_value(own["complete"])))
     own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
     own.setdefault("preset", DEFAULT_PRESET)
     good = [
@@ -117,7 +117,7 @@ def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Pr
     if value in names:
         return True
     near = nearest(value, names) if isinstance(value, str) else None
-    problems.append(Problem(field, "must be one of " + ", ".join(names), repr(value), near))
+    problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
     return False
 
 

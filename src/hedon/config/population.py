@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from hedon.config.field import PAPER, Doc, Range
+from hedon.config.field import EITHER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,8 +12,9 @@ class PopulationConfig:
 
     capacity: Annotated[
         int,
-        Doc("agents that can live at a time; births beyond fail", "agent", PAPER, Range(ge=1, le=100_000)),
+        Doc("agents that can live at a time; births beyond fail", "agent", EITHER, Range(ge=1, le=100_000)),
     ] = 200
     initial_count: Annotated[
-        int, Doc("founders, placed uniformly without overlap", "agent", PAPER, Range(ge=1, le=100_000))
+        int,
+        Doc("founders, placed uniformly without overlap", "agent", EITHER, Range(ge=1, le=100_000)),
     ] = 50

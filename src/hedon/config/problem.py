@@ -1,8 +1,10 @@
 """What is wrong with a config: every problem by its place, what is allowed, the nearest valid name."""
 
+import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import Any
 
 from hedon.error import HedonError
 
@@ -45,6 +47,17 @@ class ConfigError(HedonError):
             super().__init__(f"{origin}: {lines[0]}")
         else:
             super().__init__("\n  ".join([f"{origin}: {len(lines)} problems", *lines]))
+
+
+def format_value(value: Any) -> str:
+    """A value as TOML writes it; a table as "a table"."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(format_value(item) for item in value) + "]"
+    return "a table" if isinstance(value, dict) else repr(value)
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hedon.config.check import contradictions
 from hedon.config.config import Config
 from hedon.config.field import Setting, find, sections, settings
-from hedon.config.problem import ConfigError, Problem, format_path, nearest
+from hedon.config.problem import ConfigError, Problem, format_path, format_value, nearest
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -65,9 +65,9 @@ def _problem(details: "ErrorDetails") -> Problem:
     if isinstance(target, Setting):
         given = details["input"]
         near = nearest(given, target.choices) if isinstance(given, str) else None
-        return Problem(path, f"must be {target.allowed}", json.dumps(given, ensure_ascii=False), near)
+        return Problem(path, f"must be {target.allowed}", format_value(given), near)
     if target is not None:
-        return Problem(path, "must be a table", json.dumps(details["input"], ensure_ascii=False))
+        return Problem(path, "must be a table", format_value(details["input"]))
     return Problem(path, details["msg"])
 
 

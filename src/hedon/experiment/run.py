@@ -80,7 +80,7 @@ def run(plan: RunPlan, display: Display) -> Manifest:
 
     Raises:
         RecordError: The folder holds a run already or cannot be written.
-        RuntimeError: A world reports an error; what was recorded before stays readable.
+        EngineError: A world reports an error; what was recorded before stays readable.
     """
     simulation = Simulation(plan.config, plan.seeds, plan.threads)
     manifest = _first_manifest(plan, simulation)

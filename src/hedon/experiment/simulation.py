@@ -11,9 +11,14 @@ from hedon import _engine
 from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
 from hedon.config.native import engine_config
+from hedon.error import HedonError
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
+
+
+class EngineError(HedonError):
+    """What the engine reports: a world that cannot go on, or an instruction set that this processor lacks."""
 
 
 class Simulation:
@@ -34,21 +39,18 @@ class Simulation:
             the one that the environment variable HEDON_KERNEL names.
 
     Raises:
-        ValueError: The kernel is unknown or not for this processor.
-        RuntimeError: The initial agents or foods find no place.
+        EngineError: The kernel is unknown or not for this processor, or the initial agents or foods find no place.
     """
 
     def __init__(self, config: Config, seeds: Sequence[int], threads: int = 0, kernel: str = "") -> None:
         self.config = config
         self.seeds = tuple(seeds)
-        self.engine = _engine.Simulation(
-            engine_config(config),
-            walls(config.arena),
-            outer_count(config.arena),
-            list(seeds),
-            threads,
-            kernel or os.environ.get(KERNEL_VARIABLE, ""),
-        )
+        kernel = kernel or os.environ.get(KERNEL_VARIABLE, "")
+        native, segments, outer = engine_config(config), walls(config.arena), outer_count(config.arena)
+        try:
+            self.engine = _engine.Simulation(native, segments, outer, list(seeds), threads, kernel)
+        except (RuntimeError, ValueError) as error:
+            raise EngineError(str(error)) from None
         self.worlds = tuple(World(self.engine, i, config, seed) for i, seed in enumerate(seeds))
 
     def run(self, steps: int) -> None:
@@ -60,9 +62,13 @@ class Simulation:
             steps: How many steps; any number, not only whole windows.
 
         Raises:
-            RuntimeError: A world reports an error; it names the world, the step and the agent.
+            EngineError: A world reports an error; it names the world, the step and the agent. Or the simulation is
+                running in another thread.
         """
-        self.engine.run(steps)
+        try:
+            self.engine.run(steps)
+        except RuntimeError as error:
+            raise EngineError(str(error)) from None
 
     @property
     def extinct(self) -> bool:

@@ -1,0 +1,47 @@
+/// Contacts of one substep, with all that the solver reads about them in one place.
+///
+/// All bodies are discs of one mass and one inertia, so impulses are kept per mass [u/s], and a normal impulse, which
+/// passes through the center, never turns a body. `arm` is the distance from the center to the contact point, which
+/// lies halfway between the two surfaces.
+#pragma once
+
+#include <cstdint>
+
+namespace hedon {
+
+/// Which two things a pair joins.
+enum class PairKind : int32_t { body, circle, wall };
+
+/// Velocities of one body, side by side because contacts read and write them together.
+struct alignas(16) Motion {
+  float x, y;     ///< velocity [u/s]
+  float angular;  ///< angular velocity [rad/s]
+  float unused;
+};
+
+/// Two bodies that overlap.
+struct BodyContact {
+  int32_t first, second;    ///< places
+  float normal_x, normal_y;  ///< unit vector from the first center to the second
+  float arm;                ///< [u]
+  float tangent_mass;       ///< effective mass along the tangent, per mass of a body
+  float normal_impulse;     ///< accumulated, >= 0 [u/s]
+  float tangent_impulse;    ///< accumulated [u/s]
+  float approach;           ///< normal velocity before solving; negative where they approach [u/s]
+  int32_t pair;             ///< in the list
+};
+
+/// A body that overlaps a static circle or a wall.
+struct StaticContact {
+  int32_t body;             ///< place
+  int32_t other;            ///< slot of the circle or index of the wall
+  float normal_x, normal_y;  ///< unit vector from the body's center to the other's nearest point or center
+  float arm;                ///< [u]
+  float tangent_mass;       ///< effective mass along the tangent, per mass of a body
+  float normal_impulse;     ///< accumulated, >= 0 [u/s]
+  float tangent_impulse;    ///< accumulated [u/s]
+  float approach;           ///< normal velocity before solving; negative where they approach [u/s]
+  int32_t pair;             ///< in the list
+};
+
+}  // namespace hedon

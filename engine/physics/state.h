@@ -1,0 +1,236 @@
+/// All that the physics keeps between steps, and what it needs within one, as views over the caller's memory.
+///
+/// One list names every array: `visit_state` and `visit_scratch` call visit(name, array, count), by which the caller
+/// allocates, saves, compares and binds. The state must survive between steps; scratch need not.
+#pragma once
+
+#include <cstdint>
+
+#include "base/array.h"
+#include "base/fields.h"
+#include "base/vec2.h"
+#include "physics/body.h"
+#include "physics/contact.h"
+#include "physics/grid.h"
+
+namespace hedon {
+
+inline constexpr int MAX_BATCHES = 32;  ///< independent pieces of one step, for as many threads
+
+/// Pairs that may touch before the list is built again. Pairs of one first body stand together.
+struct PairList {
+  Array<int32_t> start;          ///< first pair of each body, by place; (bodies + 1)
+  Array<int32_t> first;          ///< place of the first body
+  Array<int32_t> second;         ///< place of the second body, slot of the circle, or index of the wall
+  Array<float> normal_impulse;   ///< accumulated, per mass of a body, >= 0 [u/s]
+  Array<float> tangent_impulse;  ///< accumulated, per mass of a body [u/s]
+  Array<uint8_t> mark;           ///< what the visitor noted in this step; cleared when a step begins
+
+  HEDON_FIELDS(PairList, start, first, second, normal_impulse, tangent_impulse, mark)
+};
+
+/// The counts and flags of the neighbor list.
+struct NeighborHead {
+  int32_t bodies;                       ///< in the list
+  int32_t batches;                      ///< in use
+  int32_t stale;                        ///< 1: build anew before the next step; the caller sets it too
+  float skin;                           ///< of the last build [u]
+  float free_path;                      ///< of the fastest body in the last step [u]
+  int32_t unused;
+  int64_t builds;                       ///< so far
+  int64_t repeats;                      ///< steps tried again because a body outran the skin
+  int32_t batch_start[MAX_BATCHES + 2];  ///< first place of each batch; the last entry is not used
+
+  HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, unused, builds, repeats, batch_start)
+};
+
+/// Which pairs may touch, and the bodies in the order in which they are worked on (their *place*).
+struct NeighborList {
+  Array<NeighborHead> head;  ///< (1)
+  Array<int32_t> slot;       ///< of the body at each place
+  Array<int32_t> place;      ///< of each slot, -1 where it holds no listed body
+  Array<float> build_x;      ///< where the body at each place was at the last build [u]
+  Array<float> build_y;
+  PairList bodies;   ///< first and second: places
+  PairList circles;  ///< second: slot of the circle
+  PairList walls;    ///< second: index of the wall
+
+  HEDON_FIELDS(NeighborList, head, slot, place, build_x, build_y, bodies, circles, walls)
+};
+
+struct PhysicsState {
+  BodyState bodies;
+  StaticCircles circles;
+  Array<Segment> walls;
+  Grid body_grid;    ///< bodies by slot, where they were at the last build or insertion
+  Grid circle_grid;  ///< circles by slot
+  NeighborList neighbors;
+
+  HEDON_FIELDS(PhysicsState, bodies, circles, walls, body_grid, circle_grid, neighbors)
+};
+
+/// Pairs found while a list is built, and the impulses of the listed pairs while a step is tried.
+struct PairScratch {
+  Array<int32_t> first;   ///< rank
+  Array<int32_t> second;  ///< rank, slot or index
+  Array<float> normal;    ///< [u/s]
+  Array<float> tangent;   ///< [u/s]
+  Array<int32_t> active;  ///< pairs that touch in this substep
+
+  HEDON_FIELDS(PairScratch, first, second, normal, tangent, active)
+};
+
+/// What one batch says about its try of a step.
+struct BatchReport {
+  float squared_moved;  ///< largest squared distance from where a body was at the last build; infinite if not finite
+  float squared_speed;  ///< largest squared speed at the end
+  float squared_force;  ///< largest squared force
+  float unused;
+
+  HEDON_FIELDS(BatchReport, squared_moved, squared_speed, squared_force, unused)
+};
+
+struct PhysicsScratch {
+  Array<int32_t> rank;       ///< of each slot in the caller's order
+  Array<int32_t> parent;     ///< union-find over ranks
+  Array<int32_t> work;       ///< pairs and bodies of the island, by the rank of its root
+  Array<int32_t> batch;      ///< of the island, by the rank of its root
+  Array<int32_t> new_place;  ///< of each rank
+  Array<Vec2> position;      ///< by place [u]
+  Array<Motion> motion;      ///< by place
+  Array<float> angle;        ///< by place, not wrapped within a step [rad]
+  Array<uint32_t> colors;    ///< by place: colors of the contacts of the body
+  Array<uint8_t> color;      ///< of each active body pair
+  PairScratch bodies;
+  PairScratch circles;
+  PairScratch walls;
+  Array<BodyContact> body_contacts;
+  Array<StaticContact> circle_contacts;
+  Array<StaticContact> wall_contacts;
+  Array<BatchReport> reports;  ///< (MAX_BATCHES)
+
+  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, color, bodies,
+               circles, walls, body_contacts, circle_contacts, wall_contacts, reports)
+};
+
+/// How much of everything the arrays hold.
+struct PhysicsCapacity {
+  int64_t bodies;
+  int64_t circles;
+  int64_t walls;
+  int64_t body_pairs;
+  int64_t circle_pairs;
+  int64_t wall_pairs;
+  int32_t columns;
+  int32_t rows;
+  float cell;  ///< side of a grid cell [u]
+  float skin;  ///< that the capacities were made for [u]
+
+  HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin)
+};
+
+/// Capacities for an arena. Discs that do not overlap bound the pairs: within a skin of 20 u (twice the radius) of a
+/// body of radius 10 u lie at most 22 others, half of them counted here; 16 leaves room for overlap. Around a circle
+/// lie fewer than 24 bodies. A convex corner shows a body its chords and two walls.
+HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
+                                          const BodyShape& shape, float skin) {
+  PhysicsCapacity capacity{};
+  capacity.bodies = bodies;
+  capacity.circles = circles;
+  capacity.walls = walls;
+  const auto least = [](int64_t a, int64_t b) { return a < b ? a : b; };
+  capacity.body_pairs = least(16 * bodies, bodies * (bodies - 1) / 2) + 1;
+  capacity.circle_pairs = least(24 * circles, bodies * circles) + 1;
+  capacity.wall_pairs = least(8 * bodies, bodies * walls) + 1;
+  // Cells as wide as the search, but no more than a few per item in an empty arena.
+  const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
+  const float search = 2.0f * shape.radius + skin;
+  capacity.cell = even > search ? even : search;
+  capacity.columns = static_cast<int32_t>(width / capacity.cell) + 1;
+  capacity.rows = static_cast<int32_t>(height / capacity.cell) + 1;
+  capacity.skin = skin;
+  return capacity;
+}
+
+template <class T, class Visit>
+void visit_arrays(T& arrays, int64_t count, Visit&& visit) {
+  T::for_each_field([&](const char* name, auto member) { visit(name, arrays.*member, count); });
+}
+
+template <class Visit>
+void visit_pairs(PairList& list, int64_t bodies, int64_t pairs, Visit&& visit) {
+  visit("start", list.start, bodies + 1);
+  visit("first", list.first, pairs);
+  visit("second", list.second, pairs);
+  visit("normal_impulse", list.normal_impulse, pairs);
+  visit("tangent_impulse", list.tangent_impulse, pairs);
+  visit("mark", list.mark, pairs);
+}
+
+/// Calls visit(name, array, count) for each array that must survive between steps. Names repeat between groups; their
+/// order is fixed. Zeroed memory, `init_physics`, and then bodies make a valid state.
+template <class Visit>
+void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& visit) {
+  const int64_t cells = static_cast<int64_t>(capacity.columns) * capacity.rows;
+  visit_arrays(state.bodies, capacity.bodies, visit);
+  visit_arrays(state.circles, capacity.circles, visit);
+  visit("walls", state.walls, capacity.walls);
+  visit("body_grid.head", state.body_grid.head, cells);
+  visit("body_grid.next", state.body_grid.next, capacity.bodies);
+  visit("circle_grid.head", state.circle_grid.head, cells);
+  visit("circle_grid.next", state.circle_grid.next, capacity.circles);
+  NeighborList& list = state.neighbors;
+  visit("head", list.head, int64_t{1});
+  visit("slot", list.slot, capacity.bodies);
+  visit("place", list.place, capacity.bodies);
+  visit("build_x", list.build_x, capacity.bodies);
+  visit("build_y", list.build_y, capacity.bodies);
+  visit_pairs(list.bodies, capacity.bodies, capacity.body_pairs, visit);
+  visit_pairs(list.circles, capacity.bodies, capacity.circle_pairs, visit);
+  visit_pairs(list.walls, capacity.bodies, capacity.wall_pairs, visit);
+}
+
+/// Calls visit(name, array, count) for each array that is needed within a step only.
+template <class Visit>
+void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Visit&& visit) {
+  visit("rank", scratch.rank, capacity.bodies);
+  visit("parent", scratch.parent, capacity.bodies);
+  visit("work", scratch.work, capacity.bodies);
+  visit("batch", scratch.batch, capacity.bodies);
+  visit("new_place", scratch.new_place, capacity.bodies);
+  visit("position", scratch.position, capacity.bodies);
+  visit("motion", scratch.motion, capacity.bodies);
+  visit("angle", scratch.angle, capacity.bodies);
+  visit("colors", scratch.colors, capacity.bodies);
+  visit("color", scratch.color, capacity.body_pairs);
+  visit_arrays(scratch.bodies, capacity.body_pairs, visit);
+  visit_arrays(scratch.circles, capacity.circle_pairs, visit);
+  visit_arrays(scratch.walls, capacity.wall_pairs, visit);
+  visit("body_contacts", scratch.body_contacts, capacity.body_pairs);
+  visit("circle_contacts", scratch.circle_contacts, capacity.circle_pairs);
+  visit("wall_contacts", scratch.wall_contacts, capacity.wall_pairs);
+  visit("reports", scratch.reports, int64_t{MAX_BATCHES});
+}
+
+/// Makes zeroed memory a valid state without bodies or circles: empty grids of the capacity's shape, a stale list.
+/// After a restore only the shapes of the grids need setting: `set_grid_shape`.
+HEDON_FN void set_grid_shape(PhysicsState& state, const PhysicsCapacity& capacity) {
+  for (Grid* grid : {&state.body_grid, &state.circle_grid}) {
+    grid->inverse_cell = 1.0f / capacity.cell;
+    grid->columns = capacity.columns;
+    grid->rows = capacity.rows;
+  }
+}
+
+HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity) {
+  set_grid_shape(state, capacity);
+  clear_grid(state.body_grid);
+  clear_grid(state.circle_grid);
+  for (int64_t slot = 0; slot < state.neighbors.place.count; ++slot) state.neighbors.place[slot] = -1;
+  state.neighbors.head[0].stale = 1;
+}
+
+/// Says that the caller changed the order, a place, a circle or a wall: the next step lists its neighbors anew.
+HEDON_FN void mark_stale(const PhysicsState& state) { state.neighbors.head[0].stale = 1; }
+
+}  // namespace hedon

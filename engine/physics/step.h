@@ -1,0 +1,258 @@
+/// One step of the physics: forces, damping, contacts, and the motion that they leave.
+///
+/// The caller's visitor hears of every contact in every substep:
+///   visitor.on_start(slot)   before a body's first substep of each try of a step: forget what it noted about it
+///   visitor.on_contact(kind, body, other, direction, angle, mark)
+///     body       slot of the body; a pair of bodies is reported for each of them
+///     other      slot of the other body or circle, or index of the wall
+///     direction  from the body's center to the contact, unit vector in the world's frame
+///     angle      of the body in this substep [rad]: its angle before the step plus what it has turned since
+///     mark       a byte of the pair, 0 when the step begins, free for the visitor's use
+/// Both are called by the thread that works on the body's island, so they may write what belongs to body or pair.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "base/status.h"
+#include "base/team.h"
+#include "physics/detect.h"
+#include "physics/neighbor.h"
+#include "physics/solver.h"
+#include "physics/state.h"
+
+namespace hedon {
+
+/// Copies a batch's bodies and impulses to where the substeps change them, and adds the forces of the first one.
+template <class Visitor>
+HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range,
+                         const SolverConstants& c, const BodyForce& force, BatchReport& report, Visitor& visitor) {
+  const NeighborList& list = state.neighbors;
+  const BodyState& bodies = state.bodies;
+  for (int32_t place = range.first_place; place < range.last_place; ++place) {
+    const int32_t slot = list.slot[place];
+    const float push_x = force.x[slot], push_y = force.y[slot];
+    scratch.position[place] = {bodies.x[slot], bodies.y[slot]};
+    scratch.angle[place] = bodies.angle[slot];
+    scratch.motion[place] = {bodies.velocity_x[slot] + push_x * c.inverse_mass * c.dt,
+                             bodies.velocity_y[slot] + push_y * c.inverse_mass * c.dt,
+                             bodies.angular_velocity[slot] + force.torque[slot] * c.inverse_inertia * c.dt, 0.0f};
+    const float squared_force = push_x * push_x + push_y * push_y;
+    if (squared_force > report.squared_force) report.squared_force = squared_force;
+    visitor.on_start(slot);
+  }
+  const auto load_pairs = [](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
+    for (int32_t pair = first; pair < last; ++pair) {
+      work.normal[pair] = pairs.normal_impulse[pair];
+      work.tangent[pair] = pairs.tangent_impulse[pair];
+      pairs.mark[pair] = 0;
+    }
+  };
+  load_pairs(list.bodies, scratch.bodies, range.first_body_pair, range.last_body_pair);
+  load_pairs(list.circles, scratch.circles, range.first_circle_pair, range.last_circle_pair);
+  load_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
+}
+
+/// Writes back what a successful try of a batch computed.
+HEDON_FN void commit_batch(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range) {
+  const NeighborList& list = state.neighbors;
+  const BodyState& bodies = state.bodies;
+  for (int32_t place = range.first_place; place < range.last_place; ++place) {
+    const int32_t slot = list.slot[place];
+    bodies.x[slot] = scratch.position[place].x;
+    bodies.y[slot] = scratch.position[place].y;
+    bodies.angle[slot] = wrap_angle(scratch.angle[place]);
+    bodies.velocity_x[slot] = scratch.motion[place].x;
+    bodies.velocity_y[slot] = scratch.motion[place].y;
+    bodies.angular_velocity[slot] = scratch.motion[place].angular;
+  }
+  const auto store_pairs = [](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
+    for (int32_t pair = first; pair < last; ++pair) {
+      pairs.normal_impulse[pair] = work.normal[pair];
+      pairs.tangent_impulse[pair] = work.tangent[pair];
+    }
+  };
+  store_pairs(list.bodies, scratch.bodies, range.first_body_pair, range.last_body_pair);
+  store_pairs(list.circles, scratch.circles, range.first_circle_pair, range.last_circle_pair);
+  store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
+}
+
+/// Caps the velocities, moves the bodies by them.
+HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
+  for (int32_t place = range.first_place; place < range.last_place; ++place) {
+    Motion motion = scratch.motion[place];
+    motion.x = clamp(motion.x, -c.max_speed, c.max_speed);
+    motion.y = clamp(motion.y, -c.max_speed, c.max_speed);
+    motion.angular = clamp(motion.angular, -c.max_angular_speed, c.max_angular_speed);
+    scratch.motion[place] = motion;
+    scratch.position[place].x += motion.x * c.dt;
+    scratch.position[place].y += motion.y * c.dt;
+    scratch.angle[place] += motion.angular * c.dt;
+  }
+}
+
+/// Largest squared distance of a batch's bodies from where they were at the last build; infinite if one is not finite.
+HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scratch, const BatchRange& range) {
+  float largest = 0.0f;
+  for (int32_t place = range.first_place; place < range.last_place; ++place) {
+    const Vec2 moved = scratch.position[place] - Vec2{list.build_x[place], list.build_y[place]};
+    const float squared = squared_length(moved);
+    if (!(squared <= largest)) largest = squared == squared ? squared : std::numeric_limits<float>::infinity();
+  }
+  return largest;
+}
+
+/// Tries all substeps of one batch in the scratch memory. Stops early where a body outran the skin.
+template <class Visitor>
+HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
+                        const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
+                        float squared_limit, int32_t batch, Visitor& visitor) {
+  const NeighborList& list = state.neighbors;
+  const BatchRange range = batch_range(list, batch);
+  BatchReport report{};
+  load_batch(state, scratch, range, c, force, report, visitor);
+  Motion* motion = scratch.motion.data;
+  Vec2* position = scratch.position.data;
+  BodyContact* bodies = scratch.body_contacts.data + range.first_body_pair;
+  StaticContact* circles = scratch.circle_contacts.data + range.first_circle_pair;
+  StaticContact* walls = scratch.wall_contacts.data + range.first_wall_pair;
+  const float body_touch = 2.0f * shape.radius;
+  const float circle_touch = shape.radius + shape.circle_radius;
+  const auto circle_center = [&](int32_t circle, Vec2) {
+    return Vec2{state.circles.x[circle], state.circles.y[circle]};
+  };
+  const auto wall_point = [&](int32_t wall, Vec2 center) {
+    return nearest_on_segment(state.walls[wall].a, state.walls[wall].b, center);
+  };
+
+  for (int32_t substep = 0; substep < config.substeps; ++substep) {
+    for (int32_t place = range.first_place; place < range.last_place; ++place) {
+      motion[place].x *= c.linear_decay;
+      motion[place].y *= c.linear_decay;
+      motion[place].angular *= c.angular_decay;
+    }
+    const FoundContacts body = find_body_contacts(list, scratch, range, c, shape.radius, visitor);
+    const FoundContacts circle = find_static_contacts(
+        PairKind::circle, list, list.circles, scratch.circles, scratch, range.first_circle_pair,
+        range.last_circle_pair, c, shape.radius, circle_touch, circles, visitor, circle_center);
+    const FoundContacts wall = find_static_contacts(PairKind::wall, list, list.walls, scratch.walls, scratch,
+                                                    range.first_wall_pair, range.last_wall_pair, c, shape.radius,
+                                                    shape.radius, walls, visitor, wall_point);
+
+    warm_start(bodies, body.count, c, motion);
+    warm_start(circles, circle.count, c, motion);
+    warm_start(walls, wall.count, c, motion);
+    for (int32_t pass = 0; pass < config.velocity_passes; ++pass) {
+      solve_velocity(bodies, body.count, c, motion);
+      solve_velocity(circles, circle.count, c, motion);
+      solve_velocity(walls, wall.count, c, motion);
+    }
+    if (body.fast) apply_restitution(bodies, body.count, c, motion);
+    if (circle.fast) apply_restitution(circles, circle.count, c, motion);
+    if (wall.fast) apply_restitution(walls, wall.count, c, motion);
+    const auto keep_impulses = [](const auto* contacts, int32_t count, const PairScratch& work) {
+      for (int32_t i = 0; i < count; ++i) {
+        work.normal[contacts[i].pair] = contacts[i].normal_impulse;
+        work.tangent[contacts[i].pair] = contacts[i].tangent_impulse;
+      }
+    };
+    keep_impulses(bodies, body.count, scratch.bodies);
+    keep_impulses(circles, circle.count, scratch.circles);
+    keep_impulses(walls, wall.count, scratch.walls);
+
+    integrate(scratch, range, c);
+    for (int32_t pass = 0; pass < config.position_passes; ++pass) {
+      correct_positions(bodies, body.count, c, body_touch, position);
+      correct_positions(circles, circle.count, c, circle_touch, position, circle_center);
+      correct_positions(walls, wall.count, c, shape.radius, position, wall_point);
+    }
+    const float moved = squared_moved(list, scratch, range);
+    if (moved > report.squared_moved) report.squared_moved = moved;
+    if (report.squared_moved > squared_limit) break;
+  }
+  for (int32_t place = range.first_place; place < range.last_place; ++place) {
+    const float squared = motion[place].x * motion[place].x + motion[place].y * motion[place].y;
+    if (squared > report.squared_speed) report.squared_speed = squared;
+  }
+  scratch.reports[batch] = report;
+}
+
+/// Where the largest of all batches stand.
+HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batches) {
+  BatchReport all{};
+  for (int32_t batch = 0; batch < batches; ++batch) {
+    const BatchReport& one = scratch.reports[batch];
+    if (one.squared_moved > all.squared_moved) all.squared_moved = one.squared_moved;
+    if (one.squared_speed > all.squared_speed) all.squared_speed = one.squared_speed;
+    if (one.squared_force > all.squared_force) all.squared_force = one.squared_force;
+  }
+  return all;
+}
+
+/// Part of the skin that a body may use up: half, less what rounding may hide.
+inline constexpr float SKIN_SHARE = 0.49f;
+/// Doublings of the skin within a step before it is given up.
+inline constexpr int MAX_REPEATS = 8;
+
+/// One step of the physics. All members of the group call it with the same arguments.
+///
+/// order    slots of the living bodies, `count` of them; everything follows this order, so that renaming slots changes
+///          no bit. After any change of the order, of the circles or walls, or of positions by the caller, the caller
+///          sets `state.neighbors.head[0].stale` (`mark_stale`).
+/// force    pushes in the first substep
+/// fault    neighbor_overflow; not_finite; contact_outside_skin where even a skin 2^8 times as wide does not suffice.
+///          The bodies are then as they were before the step.
+///
+/// A step is tried in scratch memory. If a body moves further than the neighbor list allows for, the list is built
+/// again with twice the skin and the step tried anew, so that no contact is ever missed.
+template <class Group, class Visitor>
+HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyShape& shape,
+                           const PhysicsState& state, const PhysicsScratch& scratch, const Array<int32_t>& order,
+                           int32_t count, const BodyForce& force, Visitor& visitor, Fault& fault) {
+  NeighborHead& head = state.neighbors.head[0];
+  const SolverConstants c = make_constants(config, shape);
+  bool build = head.stale != 0;
+  const float spare = 2.5f * head.free_path;
+  const float usual_skin = config.neighbor_skin > spare ? config.neighbor_skin : spare;
+  float skin = usual_skin;
+  BatchReport report{};
+  int repeat = 0;
+  for (;; ++repeat) {
+    if (build) {
+      group.once([&] { build_neighbors(state, shape, scratch, order.data, count, skin, fault); });
+      if (fault.status != Status::ok) return;
+    }
+    skin = head.skin;
+    const float limit = SKIN_SHARE * skin;
+    group.for_each_claimed(head.batches, [&](int32_t batch) {
+      try_batch(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+    });
+    report = largest_report(scratch, head.batches);
+    if (report.squared_moved <= limit * limit) break;
+    const bool finite = report.squared_moved < std::numeric_limits<float>::infinity();
+    if (!finite || repeat == MAX_REPEATS) {
+      group.once([&] {
+        raise_fault(fault, finite ? Status::contact_outside_skin : Status::not_finite, report.squared_moved);
+        head.stale = 1;
+      });
+      return;
+    }
+    // A list that was fresh was too narrow; one that had been used may do as it is.
+    skin = build ? 2.0f * skin : usual_skin;
+    build = true;
+  }
+  // The free path of the fastest body, pushed as hard as any was in this step, from where the furthest one is.
+  const float speed = sqrtf(report.squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
+  const float free_path = speed * c.glide;
+  const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
+  group.for_each_claimed(head.batches, [&](int32_t batch) {
+    commit_batch(state, scratch, batch_range(state.neighbors, batch));
+    if (batch == 0) {
+      head.stale = stale;
+      head.free_path = free_path;
+      head.repeats += repeat;
+    }
+  });
+}
+
+}  // namespace hedon

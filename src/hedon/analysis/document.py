@@ -1,0 +1,118 @@
+"""Makes `docs/records.md` from the schema: `python -m hedon.analysis.document > docs/records.md`."""
+
+import sys
+from collections.abc import Mapping
+from dataclasses import fields
+
+from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
+from hedon.record.column import Table
+from hedon.record.manifest import Manifest
+from hedon.record.schema import FORMAT_VERSION, run_tables
+from hedon.record.snapshot import Snapshot
+
+_HEAD = f"""\
+# What a run leaves behind
+
+This page is made from the schema by `python -m hedon.analysis.document > docs/records.md`.
+Format {FORMAT_VERSION}.
+
+```
+RUN/
+  config.toml                    the complete config; loadable again
+  manifest.json                  with what the run was made
+  agents/part-000000.parquet …   agents that have died
+  agents/living.parquet          agents alive when records were last written
+  population/part-….parquet      one row per world and interval
+  frames/part-….parquet          positions, only where frames were asked for
+  final.npz                      last state of one world, for a picture
+  summary.json, figures/*.png    made at the end of the run, and again by `hedon report RUN`
+```
+
+Files appear whole or not at all, so a run can be read while it goes on, and what was written before a crash
+stays readable. From Python:
+
+```python
+from hedon.record.reader import open_run
+
+run = open_run("runs/baseline")
+run.agents()      # polars.DataFrame: the dead, then the living (death_step is null)
+run.population()  # polars.DataFrame, by world and step
+run.frames()      # polars.LazyFrame
+```
+
+Types: i32, i64, f32, f64 are integers and floats of that many bits; "null" says that a value may be
+missing. The tables are shown for one food kind `normal` and one neutral marker. With more kinds,
+`eaten_<kind>`, `food_<kind>`, `w_<kind>`, `w_<kind>_mean` and `w_<kind>_sd` repeat in the order of the
+config; with more markers so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`.
+"""
+
+_LEDGER = """\
+The ledger closes in each interval, but for rounding:
+energy_total = energy_total before + energy_eaten + energy_forgiven - energy_basic - energy_action -
+energy_capped - energy_lost. What parents share stays within the world. `energy_eaten` is what food holds,
+also where part of it is destroyed at the cap; `energy_basic` and `energy_action` are what was charged, also
+where part of it was forgiven.
+"""
+
+_SUMMARY = """\
+Written by `hedon report`. A number that does not exist (nobody died, one world) is null.
+Means over worlds are objects with these keys:
+"""
+
+
+def records_page() -> str:
+    """The page, as Markdown."""
+    tables = run_tables(("normal",), 1)
+    parts = [_HEAD]
+    for table in tables.values():
+        parts.append(_table_section(table))
+        if table.name == "population":
+            parts.append(_LEDGER)
+    parts.append(f"## manifest.json\n\n{_attributes(Manifest)}")
+    parts.append(f"## final.npz\n\nPlain NumPy arrays, one per field.\n\n{_attributes(Snapshot)}")
+    parts.append(f"## summary.json\n\n{_SUMMARY}\n{_key_table(INTERVAL_KEYS)}")
+    parts.append(f"### The run\n\n{_key_table(RUN_KEYS)}")
+    parts.append(f"### Each of `worlds`\n\n{_key_table(WORLD_KEYS)}")
+    return "\n".join(parts)
+
+
+def _table_section(table: Table) -> str:
+    rows = [
+        f"## {table.name}",
+        "",
+        f"A row is {table.row}.",
+        "",
+        "| column | type | unit | meaning |",
+        "|---|---|---|---|",
+    ]
+    for column in table.columns:
+        dtype = f"{column.dtype}, null" if column.nullable else column.dtype
+        rows.append(f"| `{column.name}` | {dtype} | {column.unit} | {column.meaning} |")
+    return "\n".join(rows) + "\n"
+
+
+def _key_table(keys: Mapping[str, str]) -> str:
+    rows = [f"| `{key}` | {meaning} |" for key, meaning in keys.items()]
+    return "\n".join(["| key | meaning |", "|---|---|", *rows]) + "\n"
+
+
+def _attributes(kind: type) -> str:
+    """The attributes of a dataclass, as its docstring describes them."""
+    section = (kind.__doc__ or "").split("Attributes:\n")[1]
+    entries: list[str] = []
+    for line in section.rstrip().splitlines():
+        if line.startswith(" " * 12):
+            entries[-1] += " " + line.strip()
+        elif line.strip():
+            entries.append(line.strip())
+    rows = [entry.split(": ", 1) for entry in entries]
+    described = {name for names, _ in rows for name in names.split(", ")}
+    missing = {field.name for field in fields(kind)} ^ described
+    if missing:
+        raise ValueError(f"{kind.__name__}: fields and docstring differ in {sorted(missing)}")
+    cells = [f"| {', '.join(f'`{n}`' for n in names.split(', '))} | {text} |" for names, text in rows]
+    return "\n".join(["| field | meaning |", "|---|---|", *cells]) + "\n"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(records_page())

@@ -1,0 +1,58 @@
+"""How did the worlds fare over time?"""
+
+from collections.abc import Mapping, Sequence
+
+import polars as pl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hedon.analysis.population import history
+from hedon.analysis.style import BLUE, INK, ORANGE, VERMILION, VIOLET, new_figure, say_empty, styled
+from hedon.analysis.trace import draw_time_axis, draw_traces
+
+_POINTS = 100  # few enough that chance does not hide the course
+
+
+def draw_population(population: pl.DataFrame, food_kinds: Sequence[str], colors: Mapping[str, str]) -> Figure:
+    """Six panels: alive, births and deaths, failed births, energy, food eaten, generation.
+
+    Args:
+        population: table `population`.
+        food_kinds: names.
+        colors: per food kind.
+    """
+    rows = history(population, food_kinds, points=_POINTS)
+    with styled():
+        figure = new_figure(8.6, 4.9)
+        panels = figure.subplots(2, 3, sharex=True)
+        _draw(panels[0, 0], rows, "agents alive", {"alive": ("", INK)})
+        births = {"births": ("births", BLUE), "deaths": ("deaths", VERMILION)}
+        _draw(panels[0, 1], rows, "births and deaths per 1000 steps", births)
+        failed = {
+            "births_failed_full": ("world full", VIOLET),
+            "births_failed_space": ("no free place", ORANGE),
+        }
+        _draw(panels[0, 2], rows, "failed births per 1000 steps", failed)
+        _draw(panels[1, 0], rows, "mean energy of the living", {"energy_mean": ("", INK)})
+        eaten = {f"eaten_{kind}": (kind if len(food_kinds) > 1 else "", colors[kind]) for kind in food_kinds}
+        _draw(panels[1, 1], rows, "foods eaten per 1000 steps of life", eaten)
+        _draw(panels[1, 2], rows, "mean generation", {"generation_mean": ("", INK)})
+        for axes in panels[1]:
+            draw_time_axis(axes, rows)
+    return figure
+
+
+def _draw(axes: Axes, rows: pl.DataFrame, title: str, shown: Mapping[str, tuple[str, str]]) -> None:
+    axes.set_title(title, fontsize=9)
+    for column, (label, color) in shown.items():
+        draw_traces(axes, rows, column, color, label or None, thin=len(shown) == 1)
+    axes.set_ylim(bottom=0, top=None if _largest(rows, shown) > 0 else 1)
+    if any(label for label, _ in shown.values()):
+        axes.legend(loc="best")
+    if rows.is_empty():
+        say_empty(axes, "nothing recorded yet")
+
+
+def _largest(rows: pl.DataFrame, shown: Mapping[str, object]) -> float:
+    values = [rows[column].max() for column in shown]
+    return max((float(value) for value in values if value is not None), default=0.0)  # type: ignore[arg-type]

@@ -1,0 +1,138 @@
+"""Which combinations of rewards evolved? Weights of the agents that were born last, as in the paper."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import polars as pl
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from hedon.analysis.style import (
+    NEUTRAL_COLOR,
+    PALE,
+    new_figure,
+    say_empty,
+    seed_color,
+    step_unit,
+    styled,
+)
+from hedon.analysis.weight import LAST_AGENTS, last_agents
+
+_MIN_HALF_RANGE = 1.0  # of the weight axes
+_BINS = 60
+_DENSITY_COLOR = "#6b7884"
+_LEGEND_SEEDS = 10  # more would hide the data
+
+
+def draw_weights(
+    agents: pl.DataFrame, food_kinds: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
+) -> Figure:
+    """One panel per food kind: its weight against the weight of action, a point per agent.
+
+    Colors tell worlds apart, or the time of birth where there is one world. The curves beyond the axes are
+    the distributions over all agents, with that of the first neutral marker behind them in gray.
+
+    Args:
+        agents: table `agents`.
+        food_kinds: names.
+        neutral_names: genome columns.
+        count: agents per world.
+    """
+    rows = last_agents(agents, count)
+    names = [f"w_{kind}" for kind in food_kinds]
+    reach = max(_MIN_HALF_RANGE, 1.08 * _largest(rows, [*names, "w_action"]))
+    neutral = rows[neutral_names[0]].to_numpy() if neutral_names else np.array([])
+    with styled():
+        figure = new_figure(3.3 * len(names) + 1.3, 4.5)
+        grid = figure.add_gridspec(
+            2,
+            len(names) + 1,
+            width_ratios=[*[4] * len(names), 0.9],
+            height_ratios=[0.9, 4],
+            wspace=0,
+            hspace=0,
+        )
+        for i, (kind, name) in enumerate(zip(food_kinds, names, strict=True)):
+            axes = figure.add_subplot(grid[1, i])
+            _scatter(figure, axes, rows, name)
+            axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=f"weight of {kind} food")
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.set_major_locator(MaxNLocator(5))
+            if i == 0:
+                axes.set_ylabel("weight of action")
+            _marginal(figure.add_subplot(grid[0, i], sharex=axes), rows[name].to_numpy(), neutral, reach)
+            if i == len(names) - 1:
+                side = figure.add_subplot(grid[1, i + 1], sharey=axes)
+                _marginal(side, rows["w_action"].to_numpy(), neutral, reach, upright=True)
+        _legend(figure, rows, bool(len(neutral)))
+        if rows.is_empty():
+            say_empty(figure.axes[0], "no agents recorded")
+    return figure
+
+
+def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
+    for draw in (axes.axhline, axes.axvline):
+        draw(0, color=PALE, linewidth=1.0, zorder=0.5)
+    # Worlds in random order, so that the last does not cover the others.
+    order = np.random.default_rng(0).permutation(rows.height)
+    x, y = rows[name].to_numpy()[order], rows["w_action"].to_numpy()[order]
+    size = float(np.clip(6e4 / max(rows.height, 1), 3.0, 14.0))
+    look = {"s": size, "linewidths": 0, "alpha": 0.45, "rasterized": True}
+    if rows["world"].n_unique() > 1:
+        axes.scatter(x, y, c=[seed_color(world) for world in rows["world"].to_numpy()[order]], **look)
+    elif rows["birth_step"].n_unique() < 2:
+        axes.scatter(x, y, color=seed_color(0), **look)
+    else:
+        unit, unit_name = step_unit(float(rows["birth_step"].to_numpy().max()))
+        births = rows["birth_step"].to_numpy()[order] / unit
+        points = axes.scatter(x, y, c=births, cmap="viridis", **look)
+        if name == next(column for column in rows.columns if column.startswith("w_")):
+            bar = figure.colorbar(points, ax=axes, location="bottom", shrink=0.7, aspect=40, pad=0.02)
+            bar.set_label(f"born at [{unit_name}]")
+            bar.solids.set_alpha(1)  # type: ignore[union-attr]
+            bar.outline.set_visible(False)  # type: ignore[operator]
+
+
+def _marginal(
+    axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float, *, upright: bool = False
+) -> None:
+    edges = np.linspace(-reach, reach, _BINS + 1)
+    orientation = "horizontal" if upright else "vertical"
+    look = {"bins": edges, "density": True, "orientation": orientation, "histtype": "stepfilled"}
+    if len(values):
+        axes.hist(values, color=_DENSITY_COLOR, linewidth=0, **look)
+    if len(neutral):
+        axes.hist(
+            neutral,
+            **{**look, "histtype": "step"},
+            color=NEUTRAL_COLOR,
+            linewidth=1.2,
+            label="neutral marker",
+        )
+    axes.axis("off")
+
+
+def _legend(figure: Figure, rows: pl.DataFrame, neutral: bool) -> None:
+    handles: list[Artist] = []
+    worlds = rows.select("world", "seed").unique().sort("world").rows()
+    if 1 < len(worlds) <= _LEGEND_SEEDS:
+        dot = {"marker": "o", "linestyle": "", "markersize": 4.5}
+        handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
+    handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
+    if neutral:
+        handles.append(
+            Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label="neutral marker")
+        )
+    columns = 4 if len(figure.axes) < 5 else len(handles)
+    figure.legend(
+        handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.2, handletextpad=0.5
+    )
+
+
+def _largest(rows: pl.DataFrame, names: Sequence[str]) -> float:
+    values = np.abs(rows.select(names).to_numpy())
+    return float(values.max()) if values.size else 0.0

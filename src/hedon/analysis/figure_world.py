@@ -1,0 +1,182 @@
+"""What does a world look like at one moment, and what does an agent see?"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection, PatchCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon, Wedge
+
+from hedon.analysis.outline import wall_outline
+from hedon.analysis.style import INK, MUTED, PALE, new_figure, styled
+from hedon.record.snapshot import Snapshot
+
+_FLOOR = "#fbfbf8"
+_WALL = "#3b4854"
+_AGENT_RAY = "#1f63a0"
+_NEAR = 0.85  # reading of a ray above which what it sees hides the view
+_WIDTH = 7.2  # of the figure [inch]
+_ENERGY_COLORS = LinearSegmentedColormap.from_list(
+    "energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"]
+)
+
+
+def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[int] = ()) -> Figure:
+    """Draws the arena, its foods and its agents with heading, mouth and energy, and the rays of some agents.
+
+    Args:
+        snapshot: the state.
+        colors: per food kind.
+        rays_of: indices of agents in the snapshot whose rays are drawn up to what they hit.
+    """
+    low = snapshot.walls.reshape(-1, 2).min(axis=0)
+    high = snapshot.walls.reshape(-1, 2).max(axis=0)
+    width, height = high - low
+    with styled():
+        figure = new_figure(_WIDTH, _WIDTH * 0.86 * height / width + 0.8)
+        axes = figure.subplots()
+        _draw_walls(axes, snapshot)
+        for index in rays_of:
+            _draw_rays(axes, snapshot, index, colors)
+        _draw_food(axes, snapshot, colors)
+        _draw_agents(figure, axes, snapshot, rays_of)
+        _draw_scale(axes, low, width)
+        axes.set_title(
+            f"seed {snapshot.seed}, step {snapshot.step:,}: "
+            f"{len(snapshot.x)} agents, {len(snapshot.food_x)} foods",
+            fontsize=9,
+        )
+        _legend(figure, snapshot, colors, bool(len(rays_of)))
+        margin = 0.012 * width
+        axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
+        axes.set_aspect("equal")
+        axes.axis("off")
+    return figure
+
+
+def telling_agent(snapshot: Snapshot) -> int | None:
+    """Index of the agent whose rays see the most that is not near; None where nobody lives."""
+    if len(snapshot.x) == 0:
+        return None
+    hits = ((snapshot.rays >= 0) & (snapshot.rays < _NEAR)).sum(axis=1)  # (agents, types)
+    weights = np.ones(hits.shape[1])
+    weights[1:-1], weights[-1] = 2.0, 0.2  # food is what an agent looks for; walls are everywhere
+    return int(np.argmax(hits @ weights))
+
+
+def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """The rays of one agent, from the surface of its body to what they hit or to their end.
+
+    Args:
+        snapshot: the state.
+        index: of the agent in the snapshot.
+
+    Returns:
+        Segments [u], shape (rays, 2, 2), and the type hit per ray, shape (rays,), −1 where nothing is hit.
+    """
+    readings = snapshot.rays[index]
+    spread = np.radians(snapshot.ray_spread)
+    angle = snapshot.angle[index] + np.linspace(-spread, spread, len(readings))
+    direction = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+    best = readings.max(axis=1)
+    kind = np.where(best >= 0, readings.argmax(axis=1), -1)
+    length = np.where(kind >= 0, (1 - best) * snapshot.ray_length, snapshot.ray_length)
+    center = np.array([snapshot.x[index], snapshot.y[index]])
+    start = center + snapshot.radius * direction
+    return np.stack([start, start + length[:, None] * direction], axis=1), kind
+
+
+def _draw_walls(axes: Axes, snapshot: Snapshot) -> None:
+    outline = wall_outline(snapshot.walls)
+    if outline is not None:
+        axes.add_patch(Polygon(outline, closed=True, facecolor=_FLOOR, edgecolor="none", zorder=0))
+    segments = list(snapshot.walls.reshape(-1, 2, 2))
+    axes.add_collection(LineCollection(segments, colors=_WALL, linewidths=2.4, capstyle="round", zorder=5))
+
+
+def _draw_food(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> None:
+    places = np.stack([snapshot.food_x, snapshot.food_y], axis=-1)
+    for i, kind in enumerate(snapshot.food_kinds):
+        mine = places[snapshot.food_kind == i]
+        _discs(axes, mine, snapshot.food_radius, facecolors=colors[kind], edgecolors="white", linewidths=0.5)
+
+
+def _draw_agents(figure: Figure, axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
+    if len(snapshot.x) == 0:
+        return
+    centers = np.stack([snapshot.x, snapshot.y], axis=-1)
+    top = max(
+        float(np.quantile(snapshot.energy, 0.95)), 40.0
+    )  # a newcomer's 40 stays in sight in poor worlds
+    discs = _discs(axes, centers, snapshot.radius, edgecolors=MUTED, linewidths=0.5)
+    discs.set(array=snapshot.energy, cmap=_ENERGY_COLORS, norm=Normalize(0, top))
+    degree = np.degrees(snapshot.angle) + 90.0  # Matplotlib counts from +x
+    mouths = [
+        Wedge((x, y), snapshot.radius, a - snapshot.mouth_spread, a + snapshot.mouth_spread, width=1.9)
+        for (x, y), a in zip(centers, degree, strict=True)
+    ]
+    axes.add_collection(PatchCollection(mouths, facecolor=INK, edgecolor="none", zorder=4))
+    ahead = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
+    noses = np.stack([centers, centers + 0.82 * snapshot.radius * ahead], axis=1)
+    axes.add_collection(LineCollection(list(noses), colors=INK, linewidths=0.9, zorder=4))
+    if len(rays_of):
+        chosen = centers[list(rays_of)]
+        _discs(axes, chosen, snapshot.radius + 1.5, facecolors="none", edgecolors=INK, linewidths=1.4)
+    over = "max" if snapshot.energy.max() > top else "neither"
+    bar = figure.colorbar(discs, ax=axes, location="right", shrink=0.5, aspect=24, pad=0.015, extend=over)
+    bar.set_label("energy of the agent")
+    bar.outline.set_visible(False)  # type: ignore[operator]
+
+
+def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, str]) -> None:
+    segments, kind = ray_segments(snapshot, index)
+    palette = {-1: PALE, **dict(enumerate(_type_colors(snapshot, colors)))}
+    line_colors = [palette[k] for k in kind.tolist()]
+    widths = np.where(kind >= 0, 1.1, 0.7)
+    axes.add_collection(
+        LineCollection(list(segments), colors=line_colors, linewidths=widths, alpha=0.85, zorder=2)
+    )
+    ends = segments[kind >= 0, 1]
+    ends_colors = [palette[k] for k in kind[kind >= 0].tolist()]
+    axes.scatter(ends[:, 0], ends[:, 1], s=9, c=ends_colors, linewidths=0, zorder=6)
+
+
+def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
+    return [_AGENT_RAY, *(colors[kind] for kind in snapshot.food_kinds), MUTED]
+
+
+def _discs(axes: Axes, centers: np.ndarray, radius: float, **look: object) -> EllipseCollection:
+    size = np.full(len(centers), 2 * radius)
+    discs = EllipseCollection(
+        size,
+        size,
+        np.zeros(len(centers)),
+        units="xy",
+        offsets=centers,
+        offset_transform=axes.transData,
+        **look,
+    )
+    discs.set_zorder(3)
+    axes.add_collection(discs)
+    return discs
+
+
+def _draw_scale(axes: Axes, low: np.ndarray, width: float) -> None:
+    length = 100.0 if width > 200 else 10.0
+    y = low[1] - 0.022 * width
+    axes.plot([low[0], low[0] + length], [y, y], color=MUTED, linewidth=1.6, clip_on=False)
+    axes.text(low[0] + length + 0.01 * width, y, f"{length:.0f} u", color=MUTED, va="center", fontsize=8)
+
+
+def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_rays: bool) -> None:
+    dot = {"marker": "o", "linestyle": "", "markersize": 5}
+    handles = [
+        Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds
+    ]
+    if with_rays:  # rays that see food have its color
+        rays = {"ray that sees an agent": _AGENT_RAY, "a wall": MUTED, "nothing": PALE}
+        handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=1.4)

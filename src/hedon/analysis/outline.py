@@ -1,0 +1,32 @@
+"""Which walls enclose the arena?"""
+
+import numpy as np
+
+_NEAR = 1e-2  # ends of joined walls lie within this distance [u]
+
+
+def wall_outline(walls: np.ndarray) -> np.ndarray | None:
+    """Follows the walls from the first one, end to end, until they close.
+
+    Args:
+        walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4), in any order and direction; inner walls
+            may follow the outer ones.
+
+    Returns:
+        Corners of the closed polygon that the first wall belongs to [u], shape (n, 2); None where it does
+        not close.
+    """
+    if len(walls) == 0:
+        return None
+    ends = walls.reshape(-1, 2, 2).astype(np.float64)
+    free = np.ones(len(ends), bool)
+    free[0] = False
+    corners = [ends[0, 0], ends[0, 1]]
+    while np.abs(corners[-1] - corners[0]).max() > _NEAR:
+        close = (np.abs(ends - corners[-1]).max(axis=2) < _NEAR) & free[:, None]  # (walls, two ends)
+        if not close.any():
+            return None
+        wall, end = np.argwhere(close)[0]
+        free[wall] = False
+        corners.append(ends[wall, 1 - end])
+    return np.array(corners[:-1])

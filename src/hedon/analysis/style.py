@@ -1,0 +1,112 @@
+"""How every figure looks: colors that the color-blind can tell apart, quiet axes, sizes for a page.
+
+Colors: Okabe & Ito (2008), "Color universal design", and grays.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from hedon.record.atomic import write_atomically
+
+INK = "#22303c"
+MUTED = "#6b7884"
+PALE = "#c9d1d8"
+GRID = "#e9edf0"
+BLUE, VERMILION, GREEN, ORANGE = "#0072b2", "#d55e00", "#009e73", "#e69f00"
+SKY, PINK, YELLOW, VIOLET = "#56b4e9", "#cc79a7", "#f0e442", "#5e4fa2"
+
+ACTION_COLOR = BLUE
+NEUTRAL_COLOR = "#8d99a4"
+FOOD_COLORS = (GREEN, ORANGE, PINK, SKY, VERMILION, VIOLET, YELLOW, MUTED)
+SEED_COLORS = (BLUE, VERMILION, GREEN, ORANGE, PINK, SKY, VIOLET, MUTED, YELLOW, INK)
+
+STYLE: dict[Any, Any] = {
+    "figure.facecolor": "white",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],  # comes with Matplotlib: the same figures everywhere
+    "font.size": 9.0,
+    "text.color": INK,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 8.0,
+    "axes.labelsize": 9.0,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": PALE,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.8,
+    "xtick.color": PALE,
+    "ytick.color": PALE,
+    "xtick.labelcolor": MUTED,
+    "ytick.labelcolor": MUTED,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 0.0,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "legend.handlelength": 1.4,
+}
+DOTS_PER_INCH = 160
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """The style for what is drawn within, whatever the caller's own settings are."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(STYLE)
+        yield
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure [inch] that belongs to no window and lays its parts out by itself."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    figure.get_layout_engine().set(wspace=0.05, hspace=0.05)  # type: ignore[union-attr]
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Writes a figure as PNG, atomically, and returns its path."""
+    with styled():
+        write_atomically(path, lambda file: figure.savefig(file, format="png", dpi=DOTS_PER_INCH))
+    return path
+
+
+def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
+    """A color per food kind: the wanted ones, where they are given, else the defaults in order."""
+    given = wanted if len(wanted) == len(food_kinds) else [FOOD_COLORS[i % 8] for i in range(len(food_kinds))]
+    return dict(zip(food_kinds, given, strict=True))
+
+
+def seed_color(index: int) -> str:
+    """The color of a world."""
+    return SEED_COLORS[index % len(SEED_COLORS)]
+
+
+def step_unit(last_step: float) -> tuple[float, str]:
+    """A unit of time in which the numbers of an axis are short: its size [step] and its name."""
+    if last_step >= 2e6:
+        return 1e6, "million steps"
+    if last_step >= 2e3:
+        return 1e3, "thousand steps"
+    return 1.0, "steps"
+
+
+def say_empty(axes: Axes, text: str) -> None:
+    """Writes into the middle of axes why there is nothing to see."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)

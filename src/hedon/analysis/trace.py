@@ -1,0 +1,83 @@
+"""Lines over time: a thin one per world, a thick one for their mean, a band for its interval."""
+
+import numpy as np
+import polars as pl
+from matplotlib.axes import Axes
+
+from hedon.analysis.interval import mean_interval
+from hedon.analysis.style import PALE, step_unit
+
+
+def draw_traces(
+    axes: Axes, history: pl.DataFrame, column: str, color: str, label: str | None = None, *, thin: bool = True
+) -> None:
+    """Draws one column of a history.
+
+    The thick line is the mean over the worlds that have a value at that time, so extinct worlds leave it;
+    the band is the 95 % interval of the mean, where there are at least three worlds. A cross marks where a
+    world ends.
+
+    Args:
+        axes: to draw on; its x axis is in the unit of `draw_time_axis`.
+        history: of `population.history`.
+        column: of the history.
+        color: of all lines.
+        label: of the thick line.
+        thin: whether the worlds' own lines are drawn.
+    """
+    unit, _ = step_unit(last_step(history))
+    worlds = history.partition_by("world")
+    for world in worlds if thin and len(worlds) > 1 else []:
+        rows = world.filter(pl.col(column).is_not_null())
+        x, y = rows["step"].to_numpy() / unit, rows[column].to_numpy()
+        axes.plot(x, y, color=color, linewidth=0.8, alpha=0.35)
+        if len(x) and world["bin"].max() < history["bin"].max():  # type: ignore[operator]
+            axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
+    x, mean, low, high = over_worlds(history, column)
+    if len(worlds) > 2:
+        axes.fill_between(x / unit, low, high, color=color, alpha=0.13, linewidth=0)
+    marker = "o" if len(x) == 1 else ""
+    axes.plot(
+        x / unit,
+        mean,
+        color=color,
+        linewidth=2.0,
+        marker=marker,
+        markersize=4,
+        label=label,
+        clip_on=len(x) > 1,
+    )
+
+
+def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Mean over worlds at each time.
+
+    Returns:
+        Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than three worlds), each
+        (bins,).
+    """
+    rows = []
+    known = history.filter(pl.col(column).is_not_null())
+    for bin_rows in known.partition_by("bin"):
+        interval = mean_interval(bin_rows[column])
+        low, high = (interval.low, interval.high) if interval.worlds > 2 else (None, None)
+        rows.append([bin_rows["step"].to_numpy().max(), interval.mean, low, high])
+    table = np.array(sorted(rows), np.float64).reshape(-1, 4)
+    return table[:, 0], table[:, 1], table[:, 2], table[:, 3]
+
+
+def draw_time_axis(axes: Axes, history: pl.DataFrame) -> None:
+    """Labels the x axis in a unit that suits the length of the run, from 0 on."""
+    unit, name = step_unit(last_step(history))
+    axes.set_xlabel(f"time [{name}]")
+    axes.set_xlim(0, max(last_step(history) / unit * 1.01, 1e-9))
+
+
+def draw_zero_line(axes: Axes) -> None:
+    """A line at 0, under the data."""
+    axes.axhline(0, color=PALE, linewidth=1.0, zorder=0.5)
+
+
+def last_step(history: pl.DataFrame) -> float:
+    """The last step of a history [step]; 0 where it is empty."""
+    return float(history["step"].to_numpy().max()) if history.height else 0.0

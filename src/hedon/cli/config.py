@@ -1,0 +1,124 @@
+"""Commands about configs: what presets there are, what a config holds, how two differ."""
+
+from typing import Annotated, Any
+
+import typer
+
+from hedon.config import Config, ConfigError, Problem, load_config
+from hedon.config.problem import format_value, nearest
+
+app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Show, compare and check configs.")
+
+Source = Annotated[str, typer.Argument(help="A preset, or a file that ends with .toml.", show_default=False)]
+Fidelity = Annotated[
+    str | None,
+    typer.Option("--fidelity", "-f", help="corrected, released or text; wins over the file's."),
+]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", "-s", help="section.name=value, as TOML; may be given many times.", metavar="SETTING"
+    ),
+]
+
+
+def presets() -> None:
+    """List the presets and the fidelities that can be laid on them."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
+
+    table = Table("preset", "what it is", "arena [u]", "food", box=None, pad_edge=False, header_style="bold")
+    for name in PRESETS:
+        config = load_config(name)
+        size = f"{config.arena.width:g} x {config.arena.height:g}"
+        table.add_row(name, describe_preset(name), size, "\n".join(_food_lines(config)))
+    console = Console(highlight=False)
+    console.print(table)
+    table = Table("fidelity", "what it is", box=None, pad_edge=False, header_style="bold")
+    for name in FIDELITIES:
+        table.add_row(name, describe_fidelity(name))
+    console.print()
+    console.print(table)
+
+
+@app.command()
+def show(
+    source: Source,
+    fidelity: Fidelity = None,
+    overrides: Overrides = None,
+    path: Annotated[
+        str | None, typer.Option("--path", "-p", help="Only this section, as in food.normal.")
+    ] = None,
+) -> None:
+    """Print a config as a complete TOML file.
+
+    \b
+    Examples:
+      hedon config show baseline
+      hedon config show poison --fidelity text --path food.poison
+      hedon config show my.toml --set energy.initial=20 --set sensor.scaling=unit > run.toml
+    """
+    from hedon.config.dump import dump_toml, section_paths
+
+    config = load_config(source, fidelity, overrides or ())
+    paths = section_paths(config)
+    if path is not None and path not in paths:
+        near = nearest(path, paths)
+        raise ConfigError(source, [Problem("--path", "there is no such section", format_value(path), near)])
+    typer.echo(dump_toml(config, path), nl=False)
+
+
+@app.command()
+def diff(
+    a: Source,
+    b: Source,
+    fidelity_a: Annotated[str | None, typer.Option(help="Fidelity of the first.")] = None,
+    fidelity_b: Annotated[str | None, typer.Option(help="Fidelity of the second.")] = None,
+) -> None:
+    """Print the settings in which two configs differ.
+
+    \b
+    Examples:
+      hedon config diff baseline relocation
+      hedon config diff baseline baseline --fidelity-b released
+    """
+    from hedon.config.dump import diff as compare
+
+    rows = [
+        (path, _text(x), _text(y))
+        for path, x, y in compare(load_config(a, fidelity_a), load_config(b, fidelity_b))
+    ]
+    if not rows:
+        typer.echo("no setting differs")
+        return
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    for path, x, y in rows:
+        typer.echo(f"{path:{widths[0]}}  {x:>{widths[1]}} -> {y}")
+
+
+@app.command()
+def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
+    """Check a config and print its digest; name everything that is wrong with it.
+
+    \b
+    Example:
+      hedon config check my.toml
+    """
+    from hedon.config import digest
+
+    config = load_config(source, fidelity, overrides or ())
+    typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
+    typer.echo(f"digest {digest(config)}")
+
+
+def _food_lines(config: Config) -> list[str]:
+    return [
+        f"{kind}: energy {food.energy:g}, at most {food.capacity}, {food.placement.form}"
+        for kind, food in config.food.items()
+    ]
+
+
+def _text(value: Any) -> str:
+    return "(absent)" if value is None else format_value(value)

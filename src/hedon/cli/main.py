@@ -1,0 +1,61 @@
+"""The command `hedon`."""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from hedon.cli import config
+from hedon.cli.report import report
+from hedon.cli.run import run
+from hedon.error import HedonError
+
+app = typer.Typer(
+    name="hedon",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+# One file per command or group of commands; they stand in the help in this order.
+app.command()(run)
+app.command()(report)
+app.command()(config.presets)
+app.add_typer(config.app, name="config")
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        typer.echo(f"hedon {version('hedon')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _hedon(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+    ] = False,
+) -> None:
+    """Study how reward systems evolve: agents that live, learn, breed and die in a continuous world.
+
+    \b
+    Examples:
+      hedon run baseline
+      hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+      hedon report runs/poison
+      hedon presets
+      hedon config show baseline --set food.normal.growth_rate=0.5
+    """
+
+
+def main() -> None:
+    """Runs the command line; what the user can put right ends in one message and exit code 2."""
+    try:
+        app()
+    except HedonError as error:
+        typer.echo(f"hedon: {error}", err=True)
+        sys.exit(2)

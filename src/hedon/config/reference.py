@@ -1,0 +1,82 @@
+"""The reference page of all settings: `python -m hedon.config.reference > docs/config.md`."""
+
+import sys
+from collections.abc import Iterator
+from inspect import getdoc
+
+from hedon.config.config import Config
+from hedon.config.field import sections, settings, type_name
+from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
+from hedon.config.problem import format_value
+
+_HEAD = """\
+# Settings
+
+This page is written by `python -m hedon.config.reference > docs/config.md`. Do not edit it.
+
+A config is a TOML file. It may start with `preset` and `fidelity`; after that it gives what differs:
+
+```toml
+preset = "baseline"
+fidelity = "corrected"
+
+[energy]
+initial = 20.0
+
+[food.fungus]        # a new kind of food must give its energy
+energy = 0.5
+
+[food."*"]           # every kind of food
+growth_rate = 0.5
+```
+
+What is said later wins: preset, then fidelity, then file, then `--set section.name=value` on the command
+line. `normal = false` under `[food]` removes a kind of food. The order of the kinds is the order of the
+sensor's channels and of the genome's weights. A file with `complete = true`, as `hedon config show` prints
+it, stands alone and takes nothing from its preset.
+
+Sources: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code,
+"ours" is a choice of this project; "paper or code" is the paper's value where it prints one, else the code's.
+"""
+
+
+def reference() -> str:
+    """The whole page, in Markdown."""
+    names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
+    overlays = _table(
+        ("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES)
+    )
+    return "\n".join([_HEAD, names, overlays, *_sections(Config, "")]).rstrip() + "\n"
+
+
+def _sections(section: type, path: str) -> Iterator[str]:
+    yield f"## `[{path}]`\n" if path else "## At the top\n"
+    yield f"{getdoc(section)}\n"
+    rows = (
+        (
+            f"`{setting.name}`",
+            f"`{format_value(setting.default)}`",
+            setting.doc.meaning,
+            setting.doc.unit,
+            " or ".join(f"`{choice}`" for choice in setting.choices)
+            or f"{type_name(setting.type)} {setting.doc.range}".strip(),
+            setting.doc.source,
+        )
+        for setting in settings(section).values()
+    )
+    yield _table(("name", "default", "meaning", "unit", "allowed", "source"), rows)
+    for name, inner in sections(section).items():
+        below = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
+        yield from _sections(inner.type, below)
+
+
+def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
+    lines = [head, ("---",) * len(head), *rows]
+    return (
+        "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+        + "\n"
+    )
+
+
+if __name__ == "__main__":
+    sys.stdout.write(reference())

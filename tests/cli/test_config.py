@@ -1,0 +1,93 @@
+import os
+import subprocess
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from hedon.config import load_config
+
+HEDON = Path(sysconfig.get_path("scripts")) / "hedon"
+
+
+def hedon(*args: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "COLUMNS": "160"}
+    return subprocess.run(
+        [HEDON, *args],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=environment,
+        encoding="utf-8",
+        check=False,
+    )
+
+
+def test_presets_are_listed() -> None:
+    found = hedon("presets")
+    assert found.returncode == 0
+    for text in ("relocation", "360 x 360", "poison: energy -0.6, at most 40, uniform", "released"):
+        assert text in found.stdout
+
+
+def test_shown_config_is_a_file_that_loads(tmp_path: Path) -> None:
+    found = hedon("config", "show", "poor", "--fidelity", "text", "--set", "sensor.scaling=unit")
+    path = tmp_path / "poor.toml"
+    path.write_text(found.stdout, encoding="utf-8")
+    assert load_config(path) == load_config("poor", "text", ["sensor.scaling=unit"])
+
+
+def test_one_section_is_shown() -> None:
+    assert hedon("config", "show", "poor", "--path", "food.poor").stdout.startswith(
+        "[food.poor]\nenergy = 0.2"
+    )
+    missing = hedon("config", "show", "poor", "--path", "food.por")
+    assert missing.returncode == 2
+    assert (
+        missing.stderr
+        == 'hedon: poor: --path = "food.por": there is no such section; did you mean food.poor?\n'
+    )
+
+
+def test_diff() -> None:
+    assert hedon("config", "diff", "baseline", "small").stdout == "arena.width  480.0 -> 360.0\n"
+    assert hedon("config", "diff", "small", "small").stdout == "no setting differs\n"
+    found = hedon("config", "diff", "small", "small", "--fidelity-b", "released")
+    assert 'genome.mutation_noise    "independent" -> "frozen"\n' in found.stdout
+    assert "food.poor.energy" in hedon("config", "diff", "baseline", "poor").stdout
+
+
+def test_check_names_all_problems(tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text('preset = "small"\n[energy]\ninitial = -1\ninital = 3\n')
+    found = hedon("config", "check", "my.toml", cwd=tmp_path)
+    assert found.returncode == 2
+    assert found.stdout == ""
+    assert found.stderr == (
+        "hedon: my.toml: 2 problems\n"
+        "  energy.initial = -1: must be a number from 0 to 1000000 [energy]\n"
+        "  energy.inital: unknown name; did you mean initial?\n"
+    )
+    (tmp_path / "my.toml").write_text('preset = "small"\n')
+    found = hedon("config", "check", "my.toml", cwd=tmp_path)
+    assert found.stdout.startswith("my.toml: valid (preset small, fidelity corrected)\ndigest ")
+
+
+@pytest.mark.parametrize(
+    ("args", "text"),
+    [
+        (("presett",), "Did you mean 'presets'?"),
+        (("config", "shw"), "Did you mean 'show'?"),
+        (("config", "show", "basline"), "did you mean baseline?"),
+        (("config", "show", "small", "--fidelity", "txt"), "did you mean text?"),
+        (("config", "show", "small", "--set", "energy.initial"), 'must be "section.name=value"'),
+    ],
+)
+def test_typing_errors_name_the_nearest(args: tuple[str, ...], text: str) -> None:
+    found = hedon(*args)
+    assert found.returncode == 2
+    assert text in found.stderr
+    assert "Traceback" not in found.stderr
+
+
+def test_version() -> None:
+    assert hedon("--version").stdout.startswith("hedon ")

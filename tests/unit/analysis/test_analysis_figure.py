@@ -1,0 +1,187 @@
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import polars as pl
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from synthetic_run import synthetic_snapshot, write_run
+
+from hedon.analysis.figure_history import draw_history
+from hedon.analysis.figure_population import draw_population
+from hedon.analysis.figure_weights import draw_weights
+from hedon.analysis.figure_world import draw_world, ray_segments, telling_agent
+from hedon.analysis.outline import wall_outline
+from hedon.analysis.population import history
+from hedon.analysis.report import write_report
+from hedon.analysis.style import food_colors, save_figure, step_unit
+from hedon.analysis.trace import over_worlds
+from hedon.record.error import RecordError
+from hedon.record.reader import open_run
+from hedon.record.snapshot import Snapshot
+
+NAMES = ["summary.json", "weights.png", "history.png", "population.png", "world.png"]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"intervals": 30, "worlds": 3},
+        {"intervals": 30, "worlds": 3, "extinct": 0},
+        {"intervals": 12, "worlds": 1, "extinct": 0},
+        {"intervals": 1, "worlds": 1},
+        {"intervals": 0, "worlds": 1},
+        {"intervals": 5, "worlds": 2, "neutral_count": 0},
+        {"intervals": 5, "worlds": 1, "food_kinds": ("normal", "poor", "poison"), "neutral_count": 3},
+        {"intervals": 2, "worlds": 12},
+    ],
+    ids=[
+        "usual",
+        "one extinct",
+        "all extinct",
+        "one window",
+        "no window",
+        "no marker",
+        "three kinds",
+        "many",
+    ],
+)
+def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:
+    files = write_report(open_run(write_run(tmp_path / "run", **options)))
+    assert [file.name for file in files] == NAMES
+    for file in files[1:]:
+        image = imread(file)
+        assert image.shape[0] > 400
+        assert len(np.unique(image[::3, ::3, :3].sum(axis=-1))) > 20  # lines, letters, colors
+
+
+def test_a_report_is_written_again(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=2, worlds=1, snapshot=False)
+    assert [file.name for file in write_report(open_run(folder))] == NAMES[:-1]
+    before = (folder / "summary.json").read_text()
+    write_report(open_run(folder))
+    assert (folder / "summary.json").read_text() == before
+
+
+def test_a_report_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=1, worlds=1)
+    (folder / "figures").touch()
+    with pytest.raises(RecordError, match="cannot write the report"):
+        write_report(open_run(folder))
+
+
+def test_style_leaves_the_callers_settings_alone(tmp_path: Path) -> None:
+    with mpl.rc_context({"font.size": 33.0}):
+        save_figure(draw_world(synthetic_snapshot(), food_colors(("normal",))), tmp_path / "world.png")
+        assert mpl.rcParams["font.size"] == 33.0
+
+
+def test_weights_have_a_panel_per_kind_and_its_points(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=10, worlds=2, food_kinds=("normal", "poison")))
+    figure = draw_weights(run.agents(), run.food_kinds, run.neutral_names, count=30)
+    labels = [axes.get_xlabel() for axes in figure.axes]
+    assert [label for label in labels if label] == ["weight of normal food", "weight of poison food"]
+    points = np.asarray(figure.axes[0].collections[0].get_offsets())
+    assert len(points) == 60
+    last = run.agents().sort("world", "birth_step", "agent_id").group_by("world").tail(30)
+    assert sorted(points[:, 0]) == pytest.approx(sorted(last["w_normal"]))
+
+
+def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=10, worlds=3))
+    figure = draw_history(run.population(), run.food_kinds, run.neutral_names, food_colors(run.food_kinds))
+    assert [axes.get_title("left") for axes in figure.axes] == [
+        "weight of normal food",
+        "weight of action",
+        "neutral marker",
+    ]
+    thick = [line for line in figure.axes[0].lines if line.get_linewidth() == 2.0]
+    expected = run.population().group_by("step").agg(pl.col("w_normal_mean").mean())
+    assert thick[0].get_ydata() == pytest.approx(expected.sort("step")["w_normal_mean"].to_numpy())
+
+
+def test_band_needs_three_worlds(tmp_path: Path) -> None:
+    rows = history(open_run(write_run(tmp_path / "run", intervals=4, worlds=3)).population(), ("normal",))
+    _, mean, low, high = over_worlds(rows, "alive")
+    assert (low <= mean).all()
+    assert (mean <= high).all()
+    _, mean, low, _ = over_worlds(rows.filter(rows["world"] < 2), "alive")
+    assert np.isfinite(mean).all()
+    assert np.isnan(low).all()
+
+
+def test_population_axes_start_at_zero(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=10, worlds=1))
+    figure = draw_population(run.population(), run.food_kinds, food_colors(run.food_kinds))
+    assert len(figure.axes) == 6
+    assert all(axes.get_ylim()[0] == 0 for axes in figure.axes)
+
+
+def test_world_shows_agents_and_foods_where_they_are(tmp_path: Path) -> None:
+    snapshot = synthetic_snapshot()
+    colors = food_colors(("normal",), ["#ff00ff"])
+    figure = draw_world(snapshot, colors)
+    image = imread(save_figure(figure, tmp_path / "world.png"))[..., :3]
+    assert image.shape[1] == 7.2 * 160
+    for x, y in zip(snapshot.food_x.tolist()[:5], snapshot.food_y.tolist()[:5], strict=True):
+        assert _pixel(figure, image, x, y) == pytest.approx([1, 0, 1], abs=0.02)
+    back = [snapshot.x - 4 * np.sin(snapshot.angle + np.pi), snapshot.y + 4 * np.cos(snapshot.angle + np.pi)]
+    order = np.argsort(snapshot.energy)
+    brightness = [
+        _pixel(figure, image, float(back[0][i]), float(back[1][i])).sum() for i in (order[0], order[-1])
+    ]
+    assert brightness[0] > brightness[1] + 0.5  # the more energy, the darker
+
+
+def test_rays_end_on_the_walls() -> None:
+    snapshot = synthetic_snapshot()  # its rays see walls only
+    for index in range(len(snapshot.x)):
+        segments, kind = ray_segments(snapshot, index)
+        starts = segments[:, 0] - [snapshot.x[index], snapshot.y[index]]
+        assert np.linalg.norm(starts, axis=1) == pytest.approx(np.full(24, 10.0))
+        x, y = segments[kind >= 0, 1].T
+        gap = np.minimum(np.minimum(np.abs(x), np.abs(480 - x)), np.minimum(np.abs(y), np.abs(360 - y)))
+        assert gap == pytest.approx(np.zeros(len(x)), abs=1e-2)
+        assert set(kind.tolist()) <= {-1, 2}
+        assert np.linalg.norm(np.diff(segments[kind < 0], axis=1), axis=-1) == pytest.approx(200.0)
+
+
+def test_the_first_ray_is_the_right_most() -> None:
+    snapshot = replace(synthetic_snapshot(agents=1), angle=np.zeros(1))  # looks along +y
+    segments, _ = ray_segments(snapshot, 0)
+    assert segments[0, 0, 0] > snapshot.x[0] > segments[-1, 0, 0]
+
+
+def test_an_empty_world_is_drawn(tmp_path: Path) -> None:
+    nobody = _without_agents(synthetic_snapshot())
+    assert telling_agent(nobody) is None
+    path = save_figure(draw_world(nobody, food_colors(("normal",))), tmp_path / "world.png")
+    assert path.stat().st_size > 5000
+
+
+def test_outline_follows_walls_in_any_order_and_leaves_inner_walls() -> None:
+    square = np.array([(0, 0, 4, 0), (4, 4, 0, 4), (4, 0, 4, 4), (0, 0, 0, 4), (1, 1, 2, 2)], np.float32)
+    outline = wall_outline(square)
+    assert outline is not None
+    assert outline.tolist() == [[0, 0], [4, 0], [4, 4], [0, 4]]
+    assert wall_outline(square[:2]) is None
+    assert wall_outline(square[:0]) is None
+
+
+def test_colors_and_units() -> None:
+    assert food_colors(("a", "b"), ("red", "blue")) == {"a": "red", "b": "blue"}
+    assert len(set(food_colors(tuple("abcdefgh")).values())) == 8
+    assert [step_unit(n)[1] for n in (100, 2e4, 1e7)] == ["steps", "thousand steps", "million steps"]
+
+
+def _pixel(figure: Figure, image: np.ndarray, x: float, y: float) -> np.ndarray:
+    column, row = figure.axes[0].transData.transform((x, y)) * 160 / figure.dpi
+    return image[image.shape[0] - 1 - int(row), int(column)]
+
+
+def _without_agents(snapshot: Snapshot) -> Snapshot:
+    names = ("agent_id", "x", "y", "angle", "energy", "rays")
+    return replace(snapshot, **{name: getattr(snapshot, name)[:0] for name in names})

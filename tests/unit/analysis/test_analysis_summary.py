@@ -1,0 +1,114 @@
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+from synthetic_run import write_run
+
+from hedon.analysis.document import records_page
+from hedon.analysis.summary import plain, summarize
+from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
+from hedon.analysis.summary_table import format_number, summary_table
+from hedon.record.reader import open_run
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_every_key_is_documented_and_every_documented_key_is_there(tmp_path: Path) -> None:
+    summary = summarize(open_run(write_run(tmp_path / "run", intervals=10, worlds=2)))
+    assert set(summary) == set(RUN_KEYS)
+    assert set(summary["mean_lifetime"]) == set(summary["weights"]["w_normal"]) == set(INTERVAL_KEYS)
+    assert all(set(world) == set(WORLD_KEYS) for world in summary["worlds"])
+    assert json.loads(json.dumps(summary, allow_nan=False)) == summary
+
+
+def test_numbers_agree_with_the_tables(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, food_kinds=("normal", "poison")))
+    summary, agents = summarize(run), run.agents()
+    for index, world in enumerate(summary["worlds"]):
+        mine = agents.filter(agents["world"] == index)
+        dead = mine.filter(mine["death_step"].is_not_null())
+        life = dead["death_step"].to_numpy() - dead["birth_step"].to_numpy()
+        eaten = dead["eaten_normal"].to_numpy() + dead["eaten_poison"].to_numpy()
+        assert world["deaths"] == dead.height
+        assert world["births"] == mine.height - 50
+        assert world["mean_lifetime"] == pytest.approx(np.mean(life))
+        assert world["food_per_step"] == pytest.approx(np.mean(eaten / life))
+        assert world["eaten"]["poison"] == mine["eaten_poison"].sum()
+        assert world["weights"]["w_poison"]["mean"] == pytest.approx(
+            mine["w_poison"].to_numpy().mean(), rel=1e-4
+        )
+        assert world["ledger"]["residual"] < 1e-3
+        assert world["steps_per_second"] == pytest.approx(world["steps"] / 10.0)
+    lifetimes = [world["mean_lifetime"] for world in summary["worlds"]]
+    assert summary["mean_lifetime"]["mean"] == pytest.approx(np.mean(lifetimes))
+    assert summary["mean_lifetime"]["low"] < np.mean(lifetimes) < summary["mean_lifetime"]["high"]
+    assert summary["pooled"]["agents"] == sum(world["deaths"] for world in summary["worlds"])
+    assert summary["paper"]["mean_lifetime"] == 6310
+
+
+def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> None:
+    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1)))
+    assert summary["extinct_worlds"] == 1
+    world = summary["worlds"][1]
+    assert world["extinct"] is True
+    assert world["extinct_step"] == world["steps"] < 40 * 1024
+    assert world["alive"] == 0
+    assert summary["mean_lifetime"]["worlds"] == 3
+    assert summary["surviving"]["mean_lifetime"]["worlds"] == 2
+    assert summary["surviving"]["alive"]["mean"] > summary["alive"]["mean"]
+
+
+def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=0, worlds=1, preset=None, neutral_count=0))
+    summary = summarize(run)
+    assert summary["paper"] is None
+    assert summary["worlds"][0]["alive"] == 50
+    assert summary["worlds"][0]["mean_lifetime"] is None
+    assert summary["mean_lifetime"]["mean"] is None
+    _print(summary)
+
+
+def test_a_damaged_part_is_named_in_the_summary(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=10, worlds=1)
+    (folder / "agents/part-000000.parquet").write_bytes(b"torn")
+    summary = summarize(open_run(folder))
+    assert summary["damaged_parts"] == ["agents/part-000000.parquet"]
+    assert "agents/part-000000.parquet" in _print(summary)
+
+
+def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1))
+    text = _print(summarize(run))
+    assert "mean lifetime of the dead [step]" in text
+    assert "6,310" in text
+    assert "1 of 3 worlds died out" in text
+    assert "baseline corrected: 3 worlds" in text
+
+
+def test_numbers_for_a_reader() -> None:
+    texts = [format_number(value) for value in (None, 6310.4, 137.2, 0.0045, 0, -2.126, 12)]
+    assert texts == ["-", "6,310", "137", "0.0045", "0", "-2.13", "12"]
+
+
+def test_plain_values() -> None:
+    value = {
+        "a": np.float32(1.5),
+        "b": (np.int64(2), float("nan")),
+        "c": [np.bool_(True), None, "x"],
+        "d": np.inf,
+    }
+    assert plain(value) == {"a": 1.5, "b": [2, None], "c": [True, None, "x"], "d": None}
+
+
+def test_the_page_of_the_records_is_current() -> None:
+    page = (ROOT / "docs/records.md").read_text(encoding="utf-8")
+    assert page == records_page(), "run: python -m hedon.analysis.document > docs/records.md"
+
+
+def _print(summary: dict) -> str:
+    console = Console(width=120, record=True, file=io.StringIO())
+    console.print(summary_table(summary))
+    return console.export_text()

@@ -1,0 +1,121 @@
+import pytest
+
+from hedon.config import ConfigError, load_config
+
+NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "line"),
+    [
+        (
+            ["population.capacity=40"],
+            "population.initial_count = 50: must be at most population.capacity = 40",
+        ),
+        (
+            ["population={capacity=250, initial_count=250}"],
+            "population.initial_count = 250: too many to be placed: the arena has room for 247",
+        ),
+        (["body.radius=300"], "body.radius = 300.0: a body does not fit into the arena"),
+        (
+            ["learning.minibatch_size=100"],
+            "learning.minibatch_size = 100: must divide learning.rollout_steps = 1024",
+        ),
+        (
+            ["learning.minibatch_size=2048"],
+            "learning.minibatch_size = 2048: must divide learning.rollout_steps = 1024",
+        ),
+        (
+            ["food.normal.capacity=10"],
+            "food.normal.initial_count = 20: must be at most food.normal.capacity = 10",
+        ),
+        (["motor.min_force=80"], "motor.min_force = 80.0: must be below motor.max_force = 80"),
+        (["energy.capacity=30"], "energy.initial = 40.0: must be at most energy.capacity = 30"),
+        (NINE_KINDS, "food: there must be from 1 to 8 kinds of food, not 9"),
+        (
+            ["sensor.touch_sectors=16", "food.b.energy=1", "food.c.energy=1"],
+            "sensor.touch_sectors = 16: must be at most 12 with 3 kinds of food",
+        ),
+        (
+            ["food.normal.placement.form=gaussian", "food.normal.placement.sd=[1, 1]"],
+            'food.normal.placement.centers: "gaussian" takes one center, not 0',
+        ),
+        (
+            ["food.normal.placement.form=gaussian", "food.normal.placement.centers=[[50, 50]]"],
+            'food.normal.placement.sd = [0.0, 0.0]: "gaussian" takes two numbers > 0 [u]',
+        ),
+        (
+            ["food.normal.placement={form='switching', centers=[[50, 50]], sd=[1, 1]}"],
+            'food.normal.placement.centers: "switching" takes at least two centers, not 1',
+        ),
+        (
+            ["food.normal.placement.centers=[[50, 500]]"],
+            "food.normal.placement.centers[0] = [50.0, 500.0]: lies outside the arena",
+        ),
+        (
+            ["arena.corner_radius=200"],
+            "arena.corner_radius = 200.0: must be 0 or below 180 [u], with no wall shorter than 0.01 [u]",
+        ),
+        (
+            ["arena.inner_walls=[[10, 100, 500, 100]]"],
+            "arena.inner_walls[0] = [10.0, 100.0, 500.0, 100.0]: lies outside the arena",
+        ),
+        (
+            ["arena.inner_walls=[[50, 60, 50, 60]]"],
+            "arena.inner_walls[0] = [50.0, 60.0, 50.0, 60.0]: has no length",
+        ),
+        (
+            ["birth.distance_unit=arena_width"],
+            'birth.distance_sd = 100.0: must be at most 1 with birth.distance_unit = "arena_width"',
+        ),
+        (
+            ["genome.initial_mean_food=-11"],
+            "genome.initial_mean_food = -11.0: must be within ± genome.weight_limit = 10",
+        ),
+        (
+            ["genome.initial_mean_action=11"],
+            "genome.initial_mean_action = 11.0: must be within ± genome.weight_limit = 10",
+        ),
+        (
+            ["food.normal.color=green"],
+            'food.normal.color = "green": must be "#rrggbb" in lower-case hexadecimal digits',
+        ),
+        (
+            ["arena.corner_radius=1e-3"],
+            "arena.corner_radius = 0.001: must be 0 or below 180 [u], with no wall shorter than 0.01 [u]",
+        ),
+        (
+            ["body.food_radius=1e-50"],
+            "body.food_radius = 1e-50: is 0 in the engine's 32-bit numbers, "
+            "but must be a number > 0 and <= 1000 [u]",
+        ),
+        (
+            ["learning.adam_beta2=0.999999999"],
+            "learning.adam_beta2 = 0.999999999: is 1 in the engine's 32-bit numbers, "
+            "but must be a number >= 0 and < 1",
+        ),
+        (['name=""'], 'name = "": must be a text of 1 to 200 printable characters'),
+        (['name="a\\tb"'], 'name = "a\\tb": must be a text of 1 to 200 printable characters'),
+    ],
+)
+def test_each_contradiction(overrides: list[str], line: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config("baseline", overrides=overrides)
+    assert [str(problem) for problem in caught.value.problems] == [line]
+
+
+@pytest.mark.parametrize("kind", ["agent", "wall", "action", "Big", "1st", "a-b"])
+def test_names_of_kinds(kind: str) -> None:
+    with pytest.raises(ConfigError, match=f"food.{kind}: a kind's name must be of a-z"):
+        load_config("baseline", overrides=[f"food.{kind}.energy=1"])
+
+
+def test_all_contradictions_come_at_once() -> None:
+    overrides = ["population.capacity=40", "energy.capacity=30", "arena.corner_radius=200"]
+    with pytest.raises(ConfigError) as caught:
+        load_config("centered", overrides=overrides)
+    assert [problem.path for problem in caught.value.problems] == [
+        "arena.corner_radius",
+        "population.initial_count",
+        "energy.initial",
+    ]

@@ -1,0 +1,116 @@
+import dataclasses
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
+
+from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_toml, load_config
+from hedon.config import field as doc
+from hedon.config.config import Config
+from hedon.config.dump import flatten, section_paths
+
+
+def reload(config: Config, folder: Path) -> Config:
+    path = folder / "dumped.toml"
+    path.write_text(dump_toml(config), encoding="utf-8")
+    return load_config(path)
+
+
+@pytest.mark.parametrize("fidelity", FIDELITIES)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_dump_loads_to_an_equal_config(preset: str, fidelity: str, tmp_path: Path) -> None:
+    config = load_config(preset, fidelity)
+    again = reload(config, tmp_path)
+    assert again == config
+    assert list(again.food) == list(config.food)
+    assert digest(again) == digest(config)
+
+
+def test_dump_keeps_order_and_removal_of_kinds(tmp_path: Path) -> None:
+    config = load_config("poor", overrides=["food.normal=false", "food.a.energy=2", 'name="käfer \\"x\\""'])
+    again = reload(config, tmp_path)
+    assert list(again.food) == ["poor", "a"]
+    assert again == config
+
+
+def test_dump_holds_every_setting_with_its_meaning() -> None:
+    config = load_config("poison")
+    text = dump_toml(config)
+    for path, value in flatten(config).items():
+        name = path.rpartition(".")[2]
+        assert f"\n{name} = " in text, path
+        assert value is not None
+    assert "growth_rate = 0.2  # growth of the supply [food/step]" in text
+    assert text.startswith("# Complete")
+
+
+def test_dump_of_a_section() -> None:
+    config = load_config("poison")
+    text = dump_toml(config, "food.poison")
+    assert list(tomllib.loads(text)["food"]) == ["poison"]
+    assert "[food.poison.placement]" in text
+    assert list(tomllib.loads(dump_toml(config, "food"))["food"]) == ["normal", "poison"]
+    for path in section_paths(config):
+        assert dump_toml(config, path).startswith("[")
+    for path in ("", "fod", "energy.initial"):
+        with pytest.raises(KeyError):
+            dump_toml(config, path)
+
+
+def number(setting: doc.Setting) -> st.SearchStrategy[Any]:
+    limits, least = setting.doc.range, setting.doc.range.ge
+    if setting.type is int:
+        assert least is not None
+        assert limits.le is not None
+        return st.integers(int(least), int(limits.le))
+    low = limits.gt if least is None else least
+    high = limits.lt if limits.le is None else limits.le
+    floats = st.floats(low, high, exclude_min=limits.gt is not None, exclude_max=limits.lt is not None)
+    return floats.map(lambda value: value + 0.0)  # The digest tells -0.0 from 0.0, which are equal.
+
+
+NUMBERS = [
+    (f"{place}.{setting.name}", setting)
+    for place, section in [*((n, s.type) for n, s in doc.sections(Config).items() if not s.repeated)]
+    for setting in doc.settings(section).values()
+    if setting.type in (int, float)
+]
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_any_override_survives_dump_and_load(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path, setting = data.draw(st.sampled_from(NUMBERS))
+    value = data.draw(number(setting))
+    try:
+        config = load_config("baseline", overrides=[f"{path}={value!r}"])
+    except ConfigError:
+        reject()  # Within its range, but at odds with another setting.
+    assert flatten(config)[path] == value
+    assert reload(config, tmp_path_factory.getbasetemp()) == config
+    changed = value != setting.default
+    assert diff(load_config("baseline"), config) == ([(path, setting.default, value)] if changed else [])
+    assert (digest(config) != digest(load_config("baseline"))) is changed
+
+
+def test_digest_knows_what_matters() -> None:
+    config = load_config("poor")
+    renamed = dataclasses.replace(config, name="x", preset="y", fidelity="text")
+    assert digest(renamed) == digest(config)
+    assert digest(load_config("poor", overrides=["food.poor.color=#000000"])) == digest(config)
+    backwards = dataclasses.replace(config, food=dict(reversed(config.food.items())))
+    assert digest(backwards) != digest(config), "the order of the kinds is the order of the channels"
+    assert diff(config, backwards) == [("food", ("normal", "poor"), ("poor", "normal"))]
+    assert len(digest(config)) == 64
+
+
+def test_diff_names_what_is_absent() -> None:
+    rows = diff(load_config("poor"), load_config("baseline"))
+    assert rows[0] == ("food", ("normal", "poor"), ("normal",))
+    assert ("food.normal.capacity", 90, 100) in rows
+    assert ("food.poor.energy", 0.2, None) in rows

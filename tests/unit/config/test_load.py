@@ -1,0 +1,180 @@
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, load_config
+from hedon.config.load import describe_fidelity, describe_preset
+
+Write = Callable[[str], Path]
+
+
+def problems(source: str | Path, fidelity: str | None = None, overrides: list[str] | None = None) -> str:
+    with pytest.raises(ConfigError) as caught:
+        load_config(source, fidelity, overrides or [])
+    return str(caught.value)
+
+
+def test_baseline_is_the_default() -> None:
+    assert load_config("baseline") == Config()
+
+
+@pytest.mark.parametrize("fidelity", FIDELITIES)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_every_preset_loads_with_every_fidelity(preset: str, fidelity: str) -> None:
+    config = load_config(preset, fidelity)
+    assert (config.name, config.preset, config.fidelity) == (preset, preset, fidelity)
+    assert describe_preset(preset)
+    assert describe_fidelity(fidelity)
+
+
+@pytest.mark.parametrize(
+    ("preset", "size", "foods"),
+    [
+        ("baseline", (480, 360), {"normal": (1.0, 100, "uniform")}),
+        ("small", (360, 360), {"normal": (1.0, 100, "uniform")}),
+        ("large", (480, 480), {"normal": (1.0, 100, "uniform")}),
+        ("centered", (480, 360), {"normal": (1.0, 100, "gaussian")}),
+        ("relocation", (480, 360), {"normal": (1.0, 100, "switching")}),
+        ("poor", (480, 360), {"normal": (1.0, 90, "uniform"), "poor": (0.2, 30, "uniform")}),
+        ("poison", (480, 360), {"normal": (1.0, 120, "uniform"), "poison": (-0.6, 40, "uniform")}),
+    ],
+)
+def test_presets_are_the_conditions_of_the_paper(preset: str, size: tuple[int, int], foods: dict) -> None:
+    config = load_config(preset)
+    assert (config.arena.width, config.arena.height) == size
+    assert {k: (f.energy, f.capacity, f.placement.form) for k, f in config.food.items()} == foods
+    assert list(config.food) == list(foods)
+    for food in config.food.values():
+        assert (food.growth_rate, food.initial_count, food.candidates) == (0.2, 20, 10)
+
+
+def test_places_of_food() -> None:
+    centered = load_config("centered").food["normal"].placement
+    assert (centered.centers, centered.sd) == (((240, 180),), (48, 36))
+    moving = load_config("relocation").food["normal"].placement
+    assert moving.centers == ((360, 270), (360, 90), (120, 90), (120, 270))
+    assert (moving.sd, moving.switch_after) == ((48, 36), 1000)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_released_is_the_three_faults(preset: str) -> None:
+    released, corrected = load_config(preset, "released"), load_config(preset)
+    assert released.genome.mutation_noise == "frozen"
+    assert released.learning.critic_target == "batch_mean"
+    assert all(food.growth_rate == 1.0 for food in released.food.values())
+    undone = dataclasses.replace(
+        released,
+        fidelity="corrected",
+        genome=corrected.genome,
+        learning=dataclasses.replace(released.learning, critic_target="per_state"),
+        food={k: dataclasses.replace(food, growth_rate=0.2) for k, food in released.food.items()},
+    )
+    assert undone == corrected
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_text_is_what_the_paper_prints(preset: str) -> None:
+    text, corrected = load_config(preset, "text"), load_config(preset)
+    assert all(food.growth_rate == 0.02 for food in text.food.values())
+    undone = dataclasses.replace(
+        text,
+        fidelity="corrected",
+        energy=dataclasses.replace(text.energy, initial=text.energy.initial + 20),
+        birth=dataclasses.replace(text.birth, distance_sd=100.0, distance_unit="u"),
+        reward=dataclasses.replace(text.reward, action_norm="max_force"),
+        learning=dataclasses.replace(text.learning, entropy_coef=0.001),
+        food={k: dataclasses.replace(food, growth_rate=0.2) for k, food in text.food.items()},
+    )
+    assert text.energy.initial == 20
+    assert (text.birth.distance_sd, text.birth.distance_unit) == (0.08, "arena_width")
+    assert (text.reward.action_norm, text.learning.entropy_coef) == ("none", 0.0)
+    assert undone == corrected
+
+
+def test_later_layers_win(write: Write) -> None:
+    path = write('preset = "poor"\nfidelity = "text"\n[energy]\ninitial = 30\ncapacity = 300\n')
+    config = load_config(path, overrides=["energy.capacity=200", "energy.capacity=250"])
+    assert (config.name, config.preset, config.fidelity) == ("my", "poor", "text")
+    assert (config.energy.initial, config.energy.capacity) == (30.0, 250.0)
+    assert isinstance(config.energy.initial, float)
+    assert config.learning.entropy_coef == 0.0
+    assert list(config.food) == ["normal", "poor"]
+
+
+def test_fidelity_of_the_call_wins_over_the_files(write: Write) -> None:
+    config = load_config(write('fidelity = "text"\n'), fidelity="released")
+    assert config.fidelity == "released"
+    assert config.energy.initial == 40.0
+    assert config.preset == "baseline"
+
+
+def test_file_adds_and_removes_kinds_of_food(write: Write) -> None:
+    path = write(
+        'preset = "poor"\nfidelity = "released"\n[food]\npoor = false\n[food.fungus]\nenergy = 0.5\n'
+    )
+    config = load_config(path)
+    assert list(config.food) == ["normal", "fungus"]
+    assert config.food["fungus"].energy == 0.5
+    assert config.food["fungus"].growth_rate == 1.0, "the overlay holds for every kind"
+
+
+def test_every_kind_at_once(write: Write) -> None:
+    path = write('preset = "poor"\n[food."*"]\ngrowth_rate = 0.5\n[food.poor]\ngrowth_rate = 0.1\n')
+    rates = {kind: food.growth_rate for kind, food in load_config(path).food.items()}
+    assert rates == {"normal": 0.5, "poor": 0.1}
+    config = load_config(path, overrides=["food.*.growth_rate=2"])
+    assert [food.growth_rate for food in config.food.values()] == [2.0, 2.0]
+
+
+def test_unknown_kind_is_not_silently_a_new_one() -> None:
+    message = problems("poor", overrides=["food.norml.growth_rate=0.5"])
+    assert "food.norml: there is no such kind of food (known: normal, poor)" in message
+    assert "did you mean normal?" in message
+    message = problems("poor", overrides=['food."*"=3'])
+    assert 'food."*" = 3: must be a table' in message
+
+
+def test_removed_kinds_can_be_too_many() -> None:
+    assert "food: there must be from 1 to 8 kinds" in problems("small", overrides=["food.normal=false"])
+    message = problems("small", overrides=["food.normal=false", "food.normal.capacity=3"])
+    assert "a new kind must give its energy" in message
+
+
+def test_unknown_preset_names_the_nearest() -> None:
+    assert "did you mean relocation?" in problems("relocaton")
+    assert "(there is baseline, small" in problems("zzz")
+
+
+def test_file_errors(write: Write, tmp_path: Path) -> None:
+    assert "cannot be read: No such file" in problems(str(tmp_path / "none.toml"))
+    assert "cannot be read: Is a directory" in problems(tmp_path)
+    assert "is not valid TOML: " in problems(write("[energy\n"))
+    path = tmp_path / "latin.toml"
+    path.write_bytes(b'name = "\xff"\n')
+    assert "it is not a text in UTF-8" in problems(path)
+
+
+def test_bad_names_at_the_top_come_together(write: Write) -> None:
+    path = write('preset = "smal"\nfidelity = 3\ncomplete = false\n')
+    message = problems(path, overrides=["x", "preset=small", "fidelity=text", "complete=true"])
+    assert 'preset = "smal": must be one of baseline, small' in message
+    assert "did you mean small?" in message
+    assert "fidelity = 3: must be one of corrected, released, text" in message
+    assert "complete = false: must be true or left out" in message
+    assert 'must be "section.name=value"' in message
+    for name in ("preset", "fidelity", "complete"):
+        assert f"{name}: is not a setting" in message
+
+
+def test_complete_file_takes_no_fidelity(write: Write) -> None:
+    path = write('complete = true\nfidelity = "text"\n')
+    assert load_config(path).energy.initial == 40.0, "nothing is taken from the overlay"
+    assert load_config(path, "text") == load_config(path)
+    assert "--fidelity = released: the file is complete" in problems(path, "released")
+
+
+def test_name_can_be_given(write: Write) -> None:
+    assert load_config(write('name = "My run"\n')).name == "My run"
+    assert load_config("small", overrides=['name="second try"']).name == "second try"

@@ -1,0 +1,36 @@
+from typing import Any
+
+import pytest
+
+from hedon.config.override import parse_override
+from hedon.config.problem import Problem
+
+
+@pytest.mark.parametrize(
+    ("text", "tables"),
+    [
+        ("energy.initial=20", {"energy": {"initial": 20}}),
+        (" energy.initial = 2e1 ", {"energy": {"initial": 20.0}}),
+        ("sensor.scaling=unit", {"sensor": {"scaling": "unit"}}),
+        ('sensor.scaling="unit"', {"sensor": {"scaling": "unit"}}),
+        ("food.normal.color=#aabbcc", {"food": {"normal": {"color": "#aabbcc"}}}),
+        ("food.*.energy=1", {"food": {"*": {"energy": 1}}}),
+        ('food."*".energy=1', {"food": {"*": {"energy": 1}}}),
+        ("food.normal=false", {"food": {"normal": False}}),
+        ("arena.inner_walls=[[1, 2, 3, 4]]", {"arena": {"inner_walls": [[1, 2, 3, 4]]}}),
+        ("food.x={energy = 1, capacity = 3}", {"food": {"x": {"energy": 1, "capacity": 3}}}),
+        ("name=a=b", None),
+        ("energy.initial", None),
+        ("=3", None),
+        ("energy..initial=3", None),
+        ("energy.=3", None),
+        ("energy initial=3", None),
+        ("name=two words", None),
+        ("name=", None),
+        ("energy.initial=[1", None),
+        ("energy.initial=1\n[energy]", None),
+    ],
+)
+def test_parse_override(text: str, tables: dict[str, Any] | None) -> None:
+    found = parse_override(text)
+    assert isinstance(found, Problem) if tables is None else found == tables

@@ -1,0 +1,79 @@
+import dataclasses
+from typing import Any
+
+import pytest
+
+from hedon.config import Config, ConfigError, validated
+from hedon.config.energy import EnergyConfig
+from hedon.config.validate import from_tables
+
+
+def lines(tables: dict[str, Any]) -> list[str]:
+    with pytest.raises(ConfigError) as caught:
+        from_tables(tables, "here")
+    assert str(caught.value).startswith("here: ")
+    return [str(problem) for problem in caught.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("tables", "line"),
+    [
+        ({"energy": {"initial": True}}, "energy.initial = true: must be a number from 0 to 1000000 [energy]"),
+        ({"energy": {"initial": "a"}}, 'energy.initial = "a": must be a number from 0 to 1000000 [energy]'),
+        (
+            {"energy": {"initial": float("nan")}},
+            "energy.initial = nan: must be a number from 0 to 1000000 [energy]",
+        ),
+        ({"body": {"radius": float("inf")}}, "body.radius = inf: must be a number > 0 and <= 1000 [u]"),
+        ({"body": {"radius": 0}}, "body.radius = 0: must be a number > 0 and <= 1000 [u]"),
+        (
+            {"population": {"capacity": True}},
+            "population.capacity = true: must be an integer from 1 to 100000 [agent]",
+        ),
+        ({"sensor": {"ray_count": 24.0}}, "sensor.ray_count = 24.0: must be an integer from 1 to 32"),
+        ({"sensor": {"ray_count": 33}}, "sensor.ray_count = 33: must be an integer from 1 to 32"),
+        (
+            {"sensor": {"scaling": "units"}},
+            'sensor.scaling = "units": must be one of "raw", "unit"; did you mean unit?',
+        ),
+        ({"sensor": {"scaling": 1}}, 'sensor.scaling = 1: must be one of "raw", "unit"'),
+        ({"learning": {"adam_beta1": 1.0}}, "learning.adam_beta1 = 1.0: must be a number >= 0 and < 1"),
+        ({"energy": 3}, "energy = 3: must be a table"),
+        ({"food": {"normal": True}}, "food.normal = true: must be a table"),
+        ({"food": 3}, "food = 3: must be a table"),
+        ({"energy": {"inital": 3}}, "energy.inital: unknown name; did you mean initial?"),
+        ({"energy": {"friction": 3}}, "energy.friction: unknown name; did you mean physics.friction?"),
+        ({"kappa": 3}, "kappa: unknown name; did you mean hazard.kappa or birth.kappa?"),
+        ({"zzz": 3}, "zzz: unknown name"),
+        ({"genom": {}}, "genom: unknown name; did you mean genome?"),
+        ({"food": {"a": {"placment": {}}}}, "food.a.placment: unknown name; did you mean placement?"),
+        (
+            {"food": {"a": {"placement": {"sd": [1, 2, 3]}}}},
+            "food.a.placement.sd = [1, 2, 3]: must be [number, number] [u]",
+        ),
+        (
+            {"arena": {"inner_walls": [[1, 2, 3]]}},
+            "arena.inner_walls[0][3] = [1, 2, 3]: "
+            "must be a list of [number, number, number, number] with at most 256 items [u]",
+        ),
+    ],
+)
+def test_each_error_says_what_is_allowed(tables: dict[str, Any], line: str) -> None:
+    assert lines(tables) == [line]
+
+
+def test_all_errors_come_at_once() -> None:
+    found = lines({"energy": {"initial": -1, "nme": 0}, "genome": {"initial_sd": "x"}, "birht": {}})
+    assert len(found) == 4
+
+
+def test_integers_stand_for_numbers() -> None:
+    config = from_tables({"energy": {"initial": 20}})
+    assert config.energy.initial == 20.0
+    assert isinstance(config.energy.initial, float)
+
+
+def test_configs_put_together_in_python_are_checked() -> None:
+    assert validated(Config()) == Config()
+    with pytest.raises(ConfigError, match=r"energy\.initial = -3"):
+        validated(dataclasses.replace(Config(), energy=EnergyConfig(initial=-3)))
