@@ -3,7 +3,7 @@ PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 
-.PHONY: run test sync clean
+.PHONY: run test sync stubs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
@@ -30,6 +30,11 @@ compiler:
 .uv/bin/uv:
 	@echo "uv is not installed: putting it into .uv"
 	$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-warn-script-location --target .uv uv
+
+# The engine's type stubs, after a change of its bindings.
+stubs: sync
+	rm -rf src/hedon/_engine
+	$(RUN) python -m nanobind.stubgen -q -r -m hedon._engine -O src/hedon
 
 clean:
 	rm -rf build .venv .uv .pytest_cache .ruff_cache

@@ -98,19 +98,15 @@ def main() -> None:
         mean, half = interval(curves)
         steps = np.arange(1, options.windows + 1)
         axes.plot(steps, 1e3 * mean, color=color, label=condition.name)
-        axes.fill_between(
-            steps, 1e3 * (mean - half), 1e3 * (mean + half), color=color, alpha=0.15, linewidth=0
-        )
+        axes.fill_between(steps, 1e3 * (mean - half), 1e3 * (mean + half), color=color, alpha=0.15, linewidth=0)
         start, end = (interval(curves[:, span].mean(axis=1, keepdims=True)) for span in ends)
         numbers["conditions"][condition.name] = {
             "first_3_windows": [start[0].item(), start[1].item()],
             "last_10_windows": [end[0].item(), end[1].item()],
             "per_world_last_10": curves[:, ends[1]].mean(axis=1).tolist(),
         }
-        print(
-            f"{condition.name:40s} {1e3 * start[0].item():6.3f} -> {1e3 * end[0].item():6.3f} ± {1e3 * end[1].item():.3f} foods per 1000 agent-steps",
-            flush=True,
-        )
+        (before, _), (after, half) = ((1e3 * mean.item(), 1e3 * half.item()) for mean, half in (start, end))
+        print(f"{condition.name:40s} {before:6.3f} -> {after:6.3f} ± {half:.3f} foods per 1000 agent-steps", flush=True)
     axes.set_xlabel(f"window of {load_config('baseline').learning.rollout_steps} steps")
     axes.set_ylabel("foods per 1000 agent-steps")
     axes.set_ylim(bottom=0)

@@ -1,4 +1,4 @@
-"""Builds the engine with sanitizers and runs tests on that build: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`."""
+"""Builds the engine with sanitizers and runs tests on it: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`."""
 
 import os
 import subprocess
@@ -8,7 +8,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 RUNTIMES = {"asan": ("libasan.so", "libubsan.so"), "tsan": ("libtsan.so",)}
 TESTS = {
-    "asan": ["tests/unit/test_life.py", "tests/crosscheck/test_sensor.py", "tests/property/test_world.py", "tests/physics"],
+    "asan": [
+        "tests/unit/test_life.py",
+        "tests/crosscheck/test_sensor.py",
+        "tests/property/test_world.py",
+        "tests/physics",
+    ],
     "tsan": ["tests/contract/test_determinism.py"],
 }
 OPTIONS = {
@@ -40,7 +45,9 @@ def build(preset: str) -> Path:
 
 def runtime(name: str) -> str:
     """Path of a sanitizer's runtime library, as the compiler knows it."""
-    return subprocess.run(["g++", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
+    return subprocess.run(
+        ["g++", f"-print-file-name={name}"], capture_output=True, text=True, check=True
+    ).stdout.strip()
 
 
 def main(preset: str, arguments: list[str]) -> int:

@@ -202,9 +202,7 @@ def write_run(
     return folder
 
 
-def synthetic_snapshot(
-    food_kinds: tuple[str, ...] = ("normal",), agents: int = 40, rays: int = 24
-) -> Snapshot:
+def synthetic_snapshot(food_kinds: tuple[str, ...] = ("normal",), agents: int = 40, rays: int = 24) -> Snapshot:
     """The last state of a world of 480×360 u; the rays read the walls alone, in closed form."""
     rng = np.random.default_rng(5)
     grid = np.stack(np.meshgrid(np.arange(25, 460, 30), np.arange(25, 340, 30)), axis=-1).reshape(-1, 2)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hedon import _engine
 from hedon.config.arena import outer_count, walls
@@ -42,15 +43,15 @@ def make_engine(*overrides: str, slot_order: Sequence[int] = (), seeds: Sequence
 
 def set_scene(
     simulation: Simulation,
-    agents: Sequence[tuple[float, float, float]],
-    foods: Sequence[tuple[float, float]] = (),
-    kinds: Sequence[int] | None = None,
+    agents: ArrayLike,
+    foods: ArrayLike = (),
+    kinds: ArrayLike | None = None,
     energy: float = 40.0,
 ) -> None:
     """Replaces world 0 by agents (x, y, angle) and foods (x, y), the latter of kind 0 unless told."""
     body = np.asarray(agents, np.float32).reshape(-1, 3)
     food = np.asarray(foods, np.float32).reshape(-1, 2)
     kind = np.zeros(len(food), np.int32) if kinds is None else np.asarray(kinds, np.int32)
-    columns = [np.ascontiguousarray(column) for column in body.T]
-    places = [np.ascontiguousarray(column) for column in food.T]
-    simulation.engine.set_scene(0, *columns, np.full(len(body), energy, np.float32), *places, kind)
+    x, y, angle = (np.ascontiguousarray(column) for column in body.T)
+    food_x, food_y = (np.ascontiguousarray(column) for column in food.T)
+    simulation.engine.set_scene(0, x, y, angle, np.full(len(body), energy, np.float32), food_x, food_y, kind)

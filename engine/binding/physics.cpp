@@ -210,8 +210,10 @@ void bind_physics(nb::module_& module) {
       .def("step", &Scene::step, nb::arg("steps") = 1, nb::arg("threads") = 1, nb::arg("record") = true,
            nb::call_guard<nb::gil_scoped_release>(), "Steps; raises RuntimeError with the name of a fault.")
       .def("set_order", &Scene::set_order, nb::arg("slots"), "Slots of the bodies that live, in canonical order.")
-      .def("array", &Scene::array, nb::arg("name"), "A writable view of one array by slot.")
-      .def("pairs", &Scene::pairs, nb::arg("kind"), "Listed pairs with impulses and marks.")
+      .def("array", &Scene::array, nb::arg("name"),
+           nb::sig("def array(self, name: str) -> numpy.typing.NDArray[typing.Any]"), "A writable view of one array by slot.")
+      .def("pairs", &Scene::pairs, nb::arg("kind"),
+           nb::sig("def pairs(self, kind: str) -> list[tuple[int, int, float, float, int]]"), "Listed pairs with impulses and marks.")
       .def("contacts", &Scene::contacts, "Contacts that the visitor heard of in the last step.")
       .def("near", &Scene::near, nb::arg("kind"), nb::arg("x"), nb::arg("y"), nb::arg("reach"))
       .def("add_circle", &Scene::add_circle, nb::arg("slot"), nb::arg("x"), nb::arg("y"))

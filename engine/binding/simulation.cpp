@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <atomic>
+#include <set>
 #include <string>
 
 #include "binding/config.h"
@@ -166,6 +167,13 @@ class PythonSimulation {
   std::atomic<bool> running_{false};
 };
 
+/// Arrays that have one row per slot; all others are flat.
+bool is_by_slot(const std::string& name) {
+  static const std::set<std::string> names = {"alive", "living", "free", "eaten", "genome", "touch", "params", "folded_bias",
+                                              "first_moment", "second_moment", "updates", "action", "log_prob", "value", "reward"};
+  return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
+}
+
 /// A read-only view of one array of a world's state, by its path; columns of structs are strided.
 nb::object view(nb::handle self, int index, const std::string& path) {
   World& world = nb::cast<PythonSimulation&>(self).world(index);
@@ -175,10 +183,9 @@ nb::object view(nb::handle self, int index, const std::string& path) {
     const size_t count = static_cast<size_t>(array.count);
     if constexpr (std::is_arithmetic_v<T>) {
       if (name != path) return;
-      const bool by_slot = count % slots == 0 && name.rfind("food", 0) != 0 && name.rfind("event", 0) != 0;
-      const size_t width = by_slot ? count / slots : 1;
-      const size_t shape[2] = {by_slot ? slots : count, width};
-      out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, width == 1 ? 1 : 2, shape, self));
+      const bool table = is_by_slot(name) && count != slots;
+      const size_t shape[2] = {table ? slots : count, table ? count / slots : 1};
+      out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, table ? 2 : 1, shape, self));
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
       T::for_each_field([&](const char* column, auto member) {
         using Field = std::remove_cvref_t<decltype(array.data->*member)>;
@@ -217,13 +224,17 @@ void bind_simulation(nb::module_& module) {
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
            nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{})
       .def("run", &S::run, nb::arg("steps"), "Advances every world that is not over; releases the interpreter lock.")
-      .def("take_rows", &S::take_rows, nb::arg("world"), "Columns of the agents that died since the last call.")
-      .def("living_rows", &S::living_rows, nb::arg("world"), "Columns of the living, in the order of their ids.")
-      .def("observations", &S::observations, nb::arg("world"), "Full observations of the living: (living, size).")
+      .def("take_rows", &S::take_rows, nb::arg("world"),
+           nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"), "Columns of the agents that died since the last call.")
+      .def("living_rows", &S::living_rows, nb::arg("world"),
+           nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"), "Columns of the living, in the order of their ids.")
+      .def("observations", &S::observations, nb::arg("world"),
+           nb::sig("def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]"), "Full observations of the living: (living, size).")
       .def("set_scene", &S::set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"), "Empties a world and puts these agents and foods into it.")
       .def("view", [](nb::handle self, int world, const std::string& path) { return view(self, world, path); },
-           nb::arg("world"), nb::arg("path"), "One array of a world's state, by slot.")
+           nb::arg("world"), nb::arg("path"),
+           nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"), "One array of a world's state, by slot.")
       .def("view_names", &view_names, "Paths that `view` knows.")
       .def("counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
       .def("clock", [](S& s, int world) { return to_dict(s.world(world).clock()); }, nb::arg("world"))

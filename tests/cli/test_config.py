@@ -38,15 +38,10 @@ def test_shown_config_is_a_file_that_loads(tmp_path: Path) -> None:
 
 
 def test_one_section_is_shown() -> None:
-    assert hedon("config", "show", "poor", "--path", "food.poor").stdout.startswith(
-        "[food.poor]\nenergy = 0.2"
-    )
+    assert hedon("config", "show", "poor", "--path", "food.poor").stdout.startswith("[food.poor]\nenergy = 0.2")
     missing = hedon("config", "show", "poor", "--path", "food.por")
     assert missing.returncode == 2
-    assert (
-        missing.stderr
-        == 'hedon: poor: --path = "food.por": there is no such section; did you mean food.poor?\n'
-    )
+    assert missing.stderr == 'hedon: poor: --path = "food.por": there is no such section; did you mean food.poor?\n'
 
 
 def test_diff() -> None:

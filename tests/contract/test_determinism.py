@@ -1,11 +1,13 @@
 """A seed gives the same life, bit for bit, however it is computed."""
 
+import threading
+import time
+
 import numpy as np
 import pytest
-
-from hedon.config.load import load_config
-from hedon.experiment.simulation import Simulation
 from worlds import QUICK, make_engine, make_simulation
+
+from hedon.experiment.simulation import EngineError
 
 STEPS = 200  # three windows of 64 and a rest
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
@@ -61,22 +63,16 @@ def test_which_slot_an_agent_gets_changes_nothing():
     slots = [engine.view(0, "living")[: len(a["agent_id"])] for engine in (plain, shuffled)]
     assert not np.array_equal(*slots)
     for name in ("physics.bodies.x", "physics.bodies.angular_velocity", "params", "second_moment"):
-        np.testing.assert_array_equal(
-            plain.view(0, name)[slots[0]], shuffled.view(0, name)[slots[1]], err_msg=name
-        )
+        np.testing.assert_array_equal(plain.view(0, name)[slots[0]], shuffled.view(0, name)[slots[1]], err_msg=name)
     assert plain.counters(0) == shuffled.counters(0)
 
 
 def test_a_second_caller_is_refused_while_the_engine_runs():
-    import threading
-
-    simulation = Simulation(load_config("baseline"), [1], threads=1)
-    thread = threading.Thread(target=simulation.run, args=(400,))
+    simulation = make_simulation()
+    thread = threading.Thread(target=simulation.run, args=(600,))
     thread.start()
-    try:
-        with pytest.raises(RuntimeError, match="busy"):
-            while thread.is_alive():
-                _ = simulation.worlds[0].step
-    finally:
-        thread.join()
-    assert simulation.worlds[0].step == 400
+    time.sleep(0.05)
+    with pytest.raises(EngineError, match="busy"):
+        simulation.run(1)
+    thread.join()
+    assert simulation.worlds[0].step == 600

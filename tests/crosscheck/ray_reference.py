@@ -30,9 +30,7 @@ def circle_distance(x: float, y: float, radius: float, dx: float, dy: float, sta
     return max(0.0, along - reach - start) if along + reach >= start else None
 
 
-def segment_distance(
-    ax: float, ay: float, bx: float, by: float, dx: float, dy: float, start: float
-) -> float | None:
+def segment_distance(ax: float, ay: float, bx: float, by: float, dx: float, dy: float, start: float) -> float | None:
     """From the ray's start to the segment; 0 if it is crossed before the start; None where it is missed."""
     ex, ey = bx - ax, by - ay
     across = dx * ey - dy * ex

@@ -192,9 +192,7 @@ def test_cooling_crowd_loses_energy_at_the_same_rate():
         rng = np.random.default_rng(seed)
         places, circles = scatter(rng, 60, 40)
         velocity = rng.uniform(-5, 5, (60, 2))
-        ours = make_scene(
-            places, circles, arena_walls(), **free(restitution_threshold=0.0, velocity_passes=6)
-        )
+        ours = make_scene(places, circles, arena_walls(), **free(restitution_threshold=0.0, velocity_passes=6))
         ours.array("velocity_x")[:], ours.array("velocity_y")[:] = velocity.T
         theirs = Rival(places, circles, arena_walls())
         theirs.set_velocity(velocity, np.zeros(60))

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from worlds import make_simulation, set_scene
 
 SCENES = sorted((Path(__file__).parents[1] / "data" / "sensors").glob("*.npz"))
@@ -97,7 +96,7 @@ def test_unit_scaling_of_the_observation():
     a, b = raw.worlds[0].observations()[0], unit.worlds[0].observations()[0]
     assert a.shape == (95,)
     assert b.shape == (96,)
-    # The two worlds differ from the first step on, since the networks have different sizes: compare each with its state.
+    # The two worlds differ from the first step on, since their networks do: compare each with its own state.
     for simulation, tail in ((raw, a[90:]), (unit, b[90:])):
         agents = simulation.worlds[0].agents()
         v, heading = [agents["velocity_x"][0], agents["velocity_y"][0]], agents["angle"][0]
@@ -120,9 +119,7 @@ def test_unit_scaling_of_the_observation():
 def test_touch_is_felt_in_its_sector_and_type(sector):
     simulation = make_simulation("motor.min_force=-1e-6", "motor.max_force=1e-6")
     heading = 0.7
-    direction = heading + math.radians(
-        60 * sector + 30
-    )  # counter-clockwise from the heading; 0 looks along +y
+    direction = heading + math.radians(60 * sector + 30)  # counter-clockwise from the heading; 0 looks along +y
     place = (240 - 13 * math.sin(direction), 180 + 13 * math.cos(direction))
     set_scene(simulation, [(240, 180, heading)], [place])
     simulation.run(1)

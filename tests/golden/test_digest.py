@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 
 import pytest
+from worlds import make_simulation
 
 from hedon import _engine
-from worlds import make_simulation
 
 GOLDEN = Path(__file__).with_name("digest.json")
 PRESETS = ("baseline", "small", "relocation", "poison")
@@ -29,7 +29,7 @@ def cases() -> list[tuple[str, str]]:
     return [*((preset, "corrected") for preset in PRESETS), ("baseline", "released")]
 
 
-@pytest.mark.parametrize("kernel", _engine.learning.kernel_names())
+@pytest.mark.parametrize("kernel", _engine.kernel.kernel_names())
 @pytest.mark.parametrize(("preset", "fidelity"), cases())
 def test_short_lives_keep_their_bits(preset, fidelity, kernel):
     recorded = json.loads(GOLDEN.read_text())[kernel]
@@ -39,6 +39,6 @@ def test_short_lives_keep_their_bits(preset, fidelity, kernel):
 if __name__ == "__main__":
     table = {
         kernel: {f"{preset}-{fidelity}": digest(preset, fidelity, kernel) for preset, fidelity in cases()}
-        for kernel in _engine.learning.kernel_names()
+        for kernel in _engine.kernel.kernel_names()
     }
     GOLDEN.write_text(json.dumps(table, indent=2) + "\n")

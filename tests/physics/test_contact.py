@@ -131,9 +131,7 @@ def test_deep_overlap_is_corrected_by_the_clamped_rate():
 
 
 def test_visitor_hears_of_both_sides_and_all_substeps():
-    scene = make_scene(
-        [[100.0, 100.0], [119.0, 100.0]], circles=[[100.0, 113.0]], walls=[[91.0, 0.0, 91.0, 300.0]]
-    )
+    scene = make_scene([[100.0, 100.0], [119.0, 100.0]], circles=[[100.0, 113.0]], walls=[[91.0, 0.0, 91.0, 300.0]])
     scene.array("angle")[:] = [0.5, 1.5]
     scene.array("angular_velocity")[0] = 0.1
     scene.step()

@@ -53,9 +53,7 @@ def test_force_and_torque_act_in_the_first_substep_only():
     scene.array("force_x")[0], scene.array("force_torque")[0] = 50.0, 300.0
     scene.step()
     decay = CONFIG["substeps"] * CONFIG["dt"]
-    np.testing.assert_allclose(
-        velocities(scene)[0], [50.0 / MASS * 0.1 * math.exp(-0.8 * decay), 0.0], rtol=1e-5
-    )
+    np.testing.assert_allclose(velocities(scene)[0], [50.0 / MASS * 0.1 * math.exp(-0.8 * decay), 0.0], rtol=1e-5)
     want = 300.0 / INERTIA * 0.1 * math.exp(-0.6 * decay)
     np.testing.assert_allclose(scene.array("angular_velocity")[0], want, rtol=1e-5)
 

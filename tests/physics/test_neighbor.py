@@ -17,8 +17,7 @@ def run(steps=120, threads=1, slots=None, rebuild_every=0, seed=1, **settings):
         scene.step(1, threads)
     place = {slot: rank for rank, slot in enumerate(slots)}
     contacts = sorted(
-        (row[0], place[row[1]], place[row[2]] if row[0] == 0 else row[2], *row[3:])
-        for row in scene.contacts()
+        (row[0], place[row[1]], place[row[2]] if row[0] == 0 else row[2], *row[3:]) for row in scene.contacts()
     )
     return read(scene, slots).view(np.int32), contacts, scene.counters()
 
@@ -90,36 +89,26 @@ def test_list_holds_every_overlap_of_a_crowd():
     assert (seen > 1000).all()
 
 
-@pytest.mark.parametrize(
-    "wall", [[5.0, 140.0, 470.0, 147.0], [300.0, 20.0, 310.0, 340.0], [60.0, 300.0, 420.0, 40.0]]
-)
+@pytest.mark.parametrize("wall", [[5.0, 140.0, 470.0, 147.0], [300.0, 20.0, 310.0, 340.0], [60.0, 300.0, 420.0, 40.0]])
 def test_walls_in_the_arena_are_found_along_their_whole_length(wall):
     rng = np.random.default_rng(2)
     places = rng.uniform([1.0, 1.0], [479.0, 359.0], (400, 2))
     places[:200] = np.array(wall[:2]) + rng.uniform(0, 1, (200, 1)) * np.subtract(wall[2:], wall[:2])
     places[:200] += rng.normal(0, 12, (200, 2))
-    scene = make_scene(
-        places, walls=[wall], substeps=1, position_passes=0, velocity_passes=0, pair_limit=20000
-    )
+    scene = make_scene(places, walls=[wall], substeps=1, position_passes=0, velocity_passes=0, pair_limit=20000)
     scene.step()
     start, along = np.array(wall[:2]), np.subtract(wall[2:], wall[:2])
     t = np.clip((places - start) @ along / (along @ along), 0, 1)
     distance = np.linalg.norm(places - start - t[:, None] * along, axis=1)
     listed = {row[0] for row in scene.pairs("wall")}
-    assert (
-        set(np.flatnonzero(distance < RADIUS + 3.99))
-        <= listed
-        <= set(np.flatnonzero(distance < RADIUS + 4.01))
-    )
+    assert set(np.flatnonzero(distance < RADIUS + 3.99)) <= listed <= set(np.flatnonzero(distance < RADIUS + 4.01))
 
 
 def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
     """A fast body is pushed into a resting one: found, however narrow the skin, with the same bits."""
 
     def collide(skin):
-        scene = make_scene(
-            [[100.0, 100.0], [126.0, 100.0], [160.0, 104.0]], neighbor_skin=skin, linear_damping=0.0
-        )
+        scene = make_scene([[100.0, 100.0], [126.0, 100.0], [160.0, 104.0]], neighbor_skin=skin, linear_damping=0.0)
         scene.step(2)
         scene.array("velocity_x")[0] = 10.0
         scene.step(6)

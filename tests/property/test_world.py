@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from worlds import QUICK, make_simulation
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")

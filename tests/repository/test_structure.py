@@ -32,11 +32,7 @@ def sources(*suffixes: str) -> list[Path]:
     names = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
     )
-    return [
-        ROOT / name
-        for name in names.stdout.splitlines()
-        if name.endswith(suffixes) and (ROOT / name).exists()
-    ]
+    return [ROOT / name for name in names.stdout.splitlines() if name.endswith(suffixes) and (ROOT / name).exists()]
 
 
 def code_without_comments(path: Path) -> str:

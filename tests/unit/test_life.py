@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from hedon.analysis.demography import birth_rate, hazard
+from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
+from hedon.analysis.demography import birth_rate, hazard
 from hedon.config.load import load_config
 from hedon.experiment.simulation import EngineError
-from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 SAFE = (*DEATHLESS, *CHILDLESS)
 
@@ -154,9 +154,7 @@ def test_deaths_follow_the_hazard(energy):
 
 
 def test_births_follow_the_birth_function_and_share_the_energy():
-    simulation = make_simulation(
-        *STILL, *DEATHLESS, "birth.kappa=0.1", "energy.basic_cost=0", "energy.action_cost=0"
-    )
+    simulation = make_simulation(*STILL, *DEATHLESS, "birth.kappa=0.1", "energy.basic_cost=0", "energy.action_cost=0")
     config = load_config("baseline", overrides=("birth.kappa=0.1",))
     set_scene(simulation, [(60 + 60 * (i % 7), 60 + 60 * (i // 7), 0.0) for i in range(30)], energy=20.0)
     simulation.run(1)
@@ -237,7 +235,13 @@ def test_only_those_who_lived_through_the_window_learn():
 
 
 def test_event_overflow_is_named():
-    brief = ("population.capacity=4", "population.initial_count=4", "birth.kappa=1", "hazard.kappa=1", "energy.initial=0")
+    brief = (
+        "population.capacity=4",
+        "population.initial_count=4",
+        "birth.kappa=1",
+        "hazard.kappa=1",
+        "energy.initial=0",
+    )
     simulation = make_simulation(*brief, "food.normal.initial_count=0", "food.normal.growth_rate=0")
     with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
         simulation.run(20_000)

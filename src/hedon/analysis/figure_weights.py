@@ -97,9 +97,7 @@ def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
             bar.outline.set_visible(False)  # type: ignore[operator]
 
 
-def _marginal(
-    axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float, *, upright: bool = False
-) -> None:
+def _marginal(axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float, *, upright: bool = False) -> None:
     edges = np.linspace(-reach, reach, _BINS + 1)
     orientation = "horizontal" if upright else "vertical"
     look = {"bins": edges, "density": True, "orientation": orientation, "histtype": "stepfilled"}
@@ -124,13 +122,9 @@ def _legend(figure: Figure, rows: pl.DataFrame, neutral: bool) -> None:
         handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
     handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
     if neutral:
-        handles.append(
-            Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label="neutral marker")
-        )
+        handles.append(Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label="neutral marker"))
     columns = 4 if len(figure.axes) < 5 else len(handles)
-    figure.legend(
-        handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.2, handletextpad=0.5
-    )
+    figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.2, handletextpad=0.5)
 
 
 def _largest(rows: pl.DataFrame, names: Sequence[str]) -> float:

@@ -19,9 +19,7 @@ _WALL = "#3b4854"
 _AGENT_RAY = "#1f63a0"
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
 _WIDTH = 7.2  # of the figure [inch]
-_ENERGY_COLORS = LinearSegmentedColormap.from_list(
-    "energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"]
-)
+_ENERGY_COLORS = LinearSegmentedColormap.from_list("energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"])
 
 
 def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[int] = ()) -> Figure:
@@ -45,8 +43,7 @@ def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[
         _draw_agents(figure, axes, snapshot, rays_of)
         _draw_scale(axes, low, width)
         axes.set_title(
-            f"seed {snapshot.seed}, step {snapshot.step:,}: "
-            f"{len(snapshot.x)} agents, {len(snapshot.food_x)} foods",
+            f"seed {snapshot.seed}, step {snapshot.step:,}: {len(snapshot.x)} agents, {len(snapshot.food_x)} foods",
             fontsize=9,
         )
         _legend(figure, snapshot, colors, bool(len(rays_of)))
@@ -108,9 +105,7 @@ def _draw_agents(figure: Figure, axes: Axes, snapshot: Snapshot, rays_of: Sequen
     if len(snapshot.x) == 0:
         return
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
-    top = max(
-        float(np.quantile(snapshot.energy, 0.95)), 40.0
-    )  # a newcomer's 40 stays in sight in poor worlds
+    top = max(float(np.quantile(snapshot.energy, 0.95)), 40.0)  # a newcomer's 40 stays in sight in poor worlds
     discs = _discs(axes, centers, snapshot.radius, edgecolors=MUTED, linewidths=0.5)
     discs.set(array=snapshot.energy, cmap=_ENERGY_COLORS, norm=Normalize(0, top))
     degree = np.degrees(snapshot.angle) + 90.0  # Matplotlib counts from +x
@@ -136,9 +131,7 @@ def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, 
     palette = {-1: PALE, **dict(enumerate(_type_colors(snapshot, colors)))}
     line_colors = [palette[k] for k in kind.tolist()]
     widths = np.where(kind >= 0, 1.1, 0.7)
-    axes.add_collection(
-        LineCollection(list(segments), colors=line_colors, linewidths=widths, alpha=0.85, zorder=2)
-    )
+    axes.add_collection(LineCollection(list(segments), colors=line_colors, linewidths=widths, alpha=0.85, zorder=2))
     ends = segments[kind >= 0, 1]
     ends_colors = [palette[k] for k in kind[kind >= 0].tolist()]
     axes.scatter(ends[:, 0], ends[:, 1], s=9, c=ends_colors, linewidths=0, zorder=6)
@@ -173,9 +166,7 @@ def _draw_scale(axes: Axes, low: np.ndarray, width: float) -> None:
 
 def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_rays: bool) -> None:
     dot = {"marker": "o", "linestyle": "", "markersize": 5}
-    handles = [
-        Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds
-    ]
+    handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds]
     if with_rays:  # rays that see food have its color
         rays = {"ray that sees an agent": _AGENT_RAY, "a wall": MUTED, "nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]

@@ -12,9 +12,7 @@ import polars as pl
 from hedon.analysis.lifetime import dead_agents
 
 
-def food_per_step(
-    agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None
-) -> float | None:
+def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None) -> float | None:
     """Mean over the dead of foods eaten / lifetime [1/step]: the paper's rule.
 
     Args:

@@ -46,9 +46,7 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
     initial = float(founders["birth_energy"].cast(pl.Float64).sum()) if founders.height else None
     sums = {name: float(population[f"energy_{name}"].sum()) for name in _names()}
     total = population["energy_total"].to_numpy()
-    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(
-        population[name].to_numpy() for name in _OUTFLOW
-    )
+    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
     before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
     residuals = np.abs(total - before - flow)
     residuals = residuals[np.isfinite(residuals)]

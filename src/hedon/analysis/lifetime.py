@@ -25,9 +25,7 @@ def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: b
     return dead if last is None else dead.tail(last)
 
 
-def mean_lifetime(
-    agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False
-) -> float | None:
+def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False) -> float | None:
     """Mean lifetime of the dead [step], unweighted over agents, as the paper's; None where nobody died.
 
     Args:

@@ -25,9 +25,7 @@ class PaperFigures:
     claim: str = ""
 
 
-_POSITIVE = (
-    "w_food evolves positive, mostly above 4; w_action to two modes, largely positive or slightly negative"
-)
+_POSITIVE = "w_food evolves positive, mostly above 4; w_action to two modes, largely positive or slightly negative"
 _HARDLY = "hardly any evolution: agents learn to eat well within a life"
 _VARIES = "varies widely between runs while the weight for normal food stays positive"
 

@@ -39,8 +39,7 @@ def summarize(run: Run) -> dict[str, Any]:
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
     weights = world_weights(agents, run.weight_names)
     worlds = [
-        _world(run, index, agents, population, weights.get(index, {}))
-        for index in range(len(run.manifest.seeds))
+        _world(run, index, agents, population, weights.get(index, {})) for index in range(len(run.manifest.seeds))
     ]
     manifest, paper = run.manifest, paper_figures(run.manifest.preset)
     summary = {
@@ -121,8 +120,7 @@ def _world(
         "mean_energy": mean_energy(tail),
         "generation": last_generation(population),
         "weights": {
-            name: asdict(weights[name]) if name in weights else {"mean": None, "sd": None}
-            for name in run.weight_names
+            name: asdict(weights[name]) if name in weights else {"mean": None, "sd": None} for name in run.weight_names
         },
         "ledger": asdict(world_ledger(population, agents)),
     }

@@ -43,9 +43,7 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
         count = summary["extinct_worlds"]
         notes.append(f"{count} of {len(summary['worlds'])} worlds died out; they count in the means above.")
     if any(world["alive"] for world in summary["worlds"]):
-        notes.append(
-            "Agents that still live have no lifetime yet: where lives are long, the mean is too small."
-        )
+        notes.append("Agents that still live have no lifetime yet: where lives are long, the mean is too small.")
     if summary["damaged_parts"]:
         notes.append(f"Damaged files, left out: {', '.join(summary['damaged_parts'])}")
     return Group(

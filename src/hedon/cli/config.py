@@ -4,6 +4,8 @@ from typing import Annotated, Any
 
 import typer
 
+from hedon.cli.console import make_console
+
 from hedon.config import Config, ConfigError, Problem, load_config
 from hedon.config.problem import format_value, nearest
 
@@ -16,15 +18,12 @@ Fidelity = Annotated[
 ]
 Overrides = Annotated[
     list[str] | None,
-    typer.Option(
-        "--set", "-s", help="section.name=value, as TOML; may be given many times.", metavar="SETTING"
-    ),
+    typer.Option("--set", "-s", help="section.name=value, as TOML; may be given many times.", metavar="SETTING"),
 ]
 
 
 def presets() -> None:
     """List the presets and the fidelities that can be laid on them."""
-    from rich.console import Console
     from rich.table import Table
 
     from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
@@ -34,7 +33,7 @@ def presets() -> None:
         config = load_config(name)
         size = f"{config.arena.width:g} x {config.arena.height:g}"
         table.add_row(name, describe_preset(name), size, "\n".join(_food_lines(config)))
-    console = Console(highlight=False)
+    console = make_console()
     console.print(table)
     table = Table("fidelity", "what it is", box=None, pad_edge=False, header_style="bold")
     for name in FIDELITIES:
@@ -48,9 +47,7 @@ def show(
     source: Source,
     fidelity: Fidelity = None,
     overrides: Overrides = None,
-    path: Annotated[
-        str | None, typer.Option("--path", "-p", help="Only this section, as in food.normal.")
-    ] = None,
+    path: Annotated[str | None, typer.Option("--path", "-p", help="Only this section, as in food.normal.")] = None,
 ) -> None:
     """Print a config as a complete TOML file.
 
@@ -87,8 +84,7 @@ def diff(
     from hedon.config.dump import diff as compare
 
     rows = [
-        (path, _text(x), _text(y))
-        for path, x, y in compare(load_config(a, fidelity_a), load_config(b, fidelity_b))
+        (path, _text(x), _text(y)) for path, x, y in compare(load_config(a, fidelity_a), load_config(b, fidelity_b))
     ]
     if not rows:
         typer.echo("no setting differs")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from hedon.cli.console import make_console
+
 
 def report(
     run: Annotated[Path, typer.Argument(help="Folder of a run, finished or not.")],
@@ -23,14 +25,12 @@ def report(
     # Imported here: they take a second, which no other command should wait for.
     import json
 
-    from rich.console import Console
-
     from hedon.analysis.report import write_report
     from hedon.analysis.summary_table import summary_table
     from hedon.record.reader import open_run
 
     files = write_report(open_run(run))
-    console = Console()
+    console = make_console()
     console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
     for file in files:
-        console.print(f"wrote {file}", highlight=False, soft_wrap=True)
+        console.print(f"wrote {file}", soft_wrap=True)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hedon.cli.console import make_console
 from hedon.error import HedonError
 
 DEFAULT_STEPS = 204_800
@@ -26,9 +27,7 @@ def run(
     threads: Annotated[
         int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)
     ] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")] = None,
     frames: Annotated[
         int, typer.Option(help="Keep positions of everything each so many steps; 0 for never.", min=0)
     ] = 0,
@@ -52,8 +51,6 @@ def run(
     """
     import json
 
-    from rich.console import Console
-
     from hedon.analysis.report import write_report
     from hedon.analysis.summary_table import summary_table
     from hedon.config.load import load_config
@@ -65,17 +62,17 @@ def run(
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
-    console = Console()
+    console = make_console()
     worlds = f"{len(world_seeds)} world{'s' if len(world_seeds) > 1 else ''}"
     console.print(
-        f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}", highlight=False
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}"
     )
     plan = RunPlan(config, world_seeds, steps, folder, threads, frames)
     with make_display(console, tuple(config.food), config.genome.neutral_count, world_seeds) as display:
         manifest = run_plan(plan, display)
     for seed, extinct in zip(world_seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:
-            console.print(f"The world of seed {seed} died out at step {extinct:,}.", highlight=False)
+            console.print(f"The world of seed {seed} died out at step {extinct:,}.")
     if manifest.status == "interrupted":
         done = max(manifest.steps_done)
         console.print(
@@ -86,11 +83,9 @@ def run(
     console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
     took = duration(manifest.run_seconds or 0.0)
     console.print(
-        f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}", highlight=False
+        f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}"
     )
-    console.print(
-        f"Look at {folder / 'figures'}; make them again with: hedon report {folder}", highlight=False
-    )
+    console.print(f"Look at {folder / 'figures'}; make them again with: hedon report {folder}")
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

@@ -65,15 +65,11 @@ class SensorConfig:
     ] = 200.0
     touch_sectors: Annotated[
         int,
-        Doc(
-            "equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)
-        ),
+        Doc("equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)),
     ] = 6
     mouth_spread: Annotated[
         float,
-        Doc(
-            "half-width of the mouth: food touched within it is eaten", "degree", EITHER, Range(gt=0, le=180)
-        ),
+        Doc("half-width of the mouth: food touched within it is eaten", "degree", EITHER, Range(gt=0, le=180)),
     ] = 60.0
     scaling: Annotated[
         Literal["raw", "unit"],

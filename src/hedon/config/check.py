@@ -76,25 +76,19 @@ def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
 def _bodies(config: Config) -> Iterator[Problem]:
     arena, radius, count = config.arena, config.body.radius, config.population.initial_count
     if config.motor.min_force >= config.motor.max_force:
-        yield _problem(
-            config, "motor.min_force", f"must be below motor.max_force = {config.motor.max_force:g}"
-        )
+        yield _problem(config, "motor.min_force", f"must be below motor.max_force = {config.motor.max_force:g}")
     if 2 * max(radius, config.body.food_radius) >= min(arena.width, arena.height):
         yield _problem(config, "body.radius", "a body does not fit into the arena")
     elif count * math.pi * radius**2 > MAX_COVERAGE * arena.width * arena.height:
         most = math.floor(MAX_COVERAGE * arena.width * arena.height / (math.pi * radius**2))
-        yield _problem(
-            config, "population.initial_count", f"too many to be placed: the arena has room for {most}"
-        )
+        yield _problem(config, "population.initial_count", f"too many to be placed: the arena has room for {most}")
     if count > config.population.capacity:
         limit = config.population.capacity
         yield _problem(config, "population.initial_count", f"must be at most population.capacity = {limit}")
     types = len(config.food) + 2
     if types * config.sensor.touch_sectors > MAX_TOUCH_BITS:
         most = MAX_TOUCH_BITS // types
-        yield _problem(
-            config, "sensor.touch_sectors", f"must be at most {most} with {len(config.food)} kinds of food"
-        )
+        yield _problem(config, "sensor.touch_sectors", f"must be at most {most} with {len(config.food)} kinds of food")
 
 
 def _kinds(config: Config) -> Iterator[Problem]:
@@ -135,13 +129,9 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
 def _life(config: Config) -> Iterator[Problem]:
     learning, genome = config.learning, config.genome
     if config.birth.distance_unit == "arena_width" and config.birth.distance_sd > 1:
-        yield _problem(
-            config, "birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"'
-        )
+        yield _problem(config, "birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"')
     if config.energy.initial > config.energy.capacity:
-        yield _problem(
-            config, "energy.initial", f"must be at most energy.capacity = {config.energy.capacity:g}"
-        )
+        yield _problem(config, "energy.initial", f"must be at most energy.capacity = {config.energy.capacity:g}")
     if learning.rollout_steps % learning.minibatch_size:
         yield _problem(
             config,
@@ -150,9 +140,7 @@ def _life(config: Config) -> Iterator[Problem]:
         )
     for name in ("initial_mean_food", "initial_mean_action"):
         if abs(getattr(genome, name)) > genome.weight_limit:
-            yield _problem(
-                config, f"genome.{name}", f"must be within ± genome.weight_limit = {genome.weight_limit:g}"
-            )
+            yield _problem(config, f"genome.{name}", f"must be within ± genome.weight_limit = {genome.weight_limit:g}")
 
 
 def _problem(config: Config, path: str, message: str) -> Problem:

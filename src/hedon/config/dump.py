@@ -64,9 +64,7 @@ def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
     left, right = flatten(a), flatten(b)
     kinds = [("food", tuple(a.food), tuple(b.food))] if list(a.food) != list(b.food) else []
     paths = dict.fromkeys([*left, *right])
-    return kinds + [
-        (path, left.get(path), right.get(path)) for path in paths if left.get(path) != right.get(path)
-    ]
+    return kinds + [(path, left.get(path), right.get(path)) for path in paths if left.get(path) != right.get(path)]
 
 
 def _tables(config: Config) -> Iterator[tuple[str, str]]:

@@ -41,10 +41,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     problems = [item for item in over if isinstance(item, Problem)]
     tables = [item for item in over if not isinstance(item, Problem)]
     problems += [
-        _not_settable(name)
-        for table in tables
-        for name in ("preset", "fidelity", "complete")
-        if name in table
+        _not_settable(name) for table in tables for name in ("preset", "fidelity", "complete") if name in table
     ]
     below = _layers_below(own, fidelity, problems)
     if problems:
@@ -95,9 +92,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
     """The layers that a file rests on; sets the names of preset and fidelity in `own`."""
     if own.get("complete") is True:
         if fidelity not in (None, own.get("fidelity")):
-            message = (
-                "the file is complete, so no fidelity can be laid below it; start from its preset instead"
-            )
+            message = "the file is complete, so no fidelity can be laid below it; start from its preset instead"
             problems.append(Problem("--fidelity", message, fidelity))
         return []
     if "complete" in own:

@@ -29,9 +29,7 @@ def parse_override(text: str) -> Table | Problem:
     try:
         value = _value(value_text.strip())
     except ValueError:
-        return Problem(
-            path.strip(), 'not a TOML value: texts of several words need quotes: "…"', value_text.strip()
-        )
+        return Problem(path.strip(), 'not a TOML value: texts of several words need quotes: "…"', value_text.strip())
     for name in reversed(names):
         value = {name: value}
     return value

@@ -43,9 +43,7 @@ Sources: "paper" is printed in Kanagawa & Doya (2024), "code" is the configurati
 def reference() -> str:
     """The whole page, in Markdown."""
     names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
-    overlays = _table(
-        ("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES)
-    )
+    overlays = _table(("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES))
     return "\n".join([_HEAD, names, overlays, *_sections(Config, "")]).rstrip() + "\n"
 
 
@@ -72,10 +70,7 @@ def _sections(section: type, path: str) -> Iterator[str]:
 
 def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
     lines = [head, ("---",) * len(head), *rows]
-    return (
-        "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
-        + "\n"
-    )
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"
 
 
 if __name__ == "__main__":

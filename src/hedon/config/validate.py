@@ -77,7 +77,5 @@ def _nearest_name(location: Sequence[str | int]) -> str | None:
     if not isinstance(section, type):
         return None
     beside = nearest(name, [*settings(section), *sections(section)])
-    elsewhere = [
-        f"{place}.{name}" for place, inner in sections(Config).items() if name in settings(inner.type)
-    ]
+    elsewhere = [f"{place}.{name}" for place, inner in sections(Config).items() if name in settings(inner.type)]
     return beside or " or ".join(elsewhere) or None

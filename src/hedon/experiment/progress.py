@@ -45,9 +45,7 @@ class _Speed:
 class LineDisplay:
     """One plain line now and then, for logs."""
 
-    def __init__(
-        self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
-    ) -> None:
+    def __init__(self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
         self._stream = stream
         self._weights = weight_names(kinds, neutral_count)
         self._seeds = seeds
@@ -88,9 +86,7 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
 class LiveDisplay:
     """A bar and a table of the worlds that renew themselves on a terminal."""
 
-    def __init__(
-        self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
-    ) -> None:
+    def __init__(self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
         self._weights = weight_names(kinds, neutral_count)
         self._seeds = seeds
         self._speed = _Speed()
@@ -115,9 +111,7 @@ class LiveDisplay:
 
     def _draw(self, moment: Moment, speed: float) -> Group:
         left = duration((moment.steps - moment.step) / speed) if speed > 0 else "?"
-        head = Text(
-            f"step {moment.step:,} of {moment.steps:,}   {speed:,.0f} steps/s   {left} left   (Ctrl-C ends after this window)"
-        )
+        head = Text(f"step {moment.step:,} of {moment.steps:,}   {speed:,.0f} steps/s   {left} left")
         bar = ProgressBar(total=moment.steps, completed=moment.step, width=72)
         table = Table(box=None, pad_edge=False, header_style="bold")
         for name in ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten"):
@@ -130,7 +124,10 @@ class LiveDisplay:
             head,
             bar,
             table,
-            Text("births, deaths and food: in the last window; weights: means over the living", style="dim"),
+            Text(
+                "Births, deaths and food: in the last window. Weights: means over the living. Ctrl-C: end after this window.",
+                style="dim",
+            ),
         )
 
     def _cells(self, seed: int, row: dict[str, Any], extinct: int | None) -> list[str]:

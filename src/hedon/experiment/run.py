@@ -72,8 +72,8 @@ class Display(Protocol):
         ...
 
 
-def run(plan: RunPlan, display: Display) -> Manifest:
-    """Runs a plan and keeps its records; Ctrl-C ends it after the current window, with all results kept.
+def run(plan: RunPlan, display: Display | None = None) -> Manifest:
+    """Runs a plan and keeps its records, silently where no display is given. Ctrl-C ends it after the current window, with all results kept.
 
     Returns:
         The manifest as it was saved at the end.
@@ -94,7 +94,8 @@ def run(plan: RunPlan, display: Display) -> Manifest:
                     recorder.interval()
                 if plan.frames and step % plan.frames == 0:
                     recorder.frame()
-                display.update(recorder.moment(step, plan.steps, time.perf_counter() - started))
+                if display is not None:
+                    display.update(recorder.moment(step, plan.steps, time.perf_counter() - started))
             # A second Ctrl-C ends within a window: what happened since its start is recorded too.
             recorder.interval()
             done = simulation.extinct or simulation.worlds[0].step >= plan.steps
@@ -159,9 +160,7 @@ class _Recorder:
         """Replaces the file of the living agents."""
         self.living_due = time.perf_counter() + LIVING_SECONDS
         engine = self.simulation.engine
-        self.writer.replace_living(
-            *(agent_rows(w, engine.living_rows(w.index)) for w in self.simulation.worlds)
-        )
+        self.writer.replace_living(*(agent_rows(w, engine.living_rows(w.index)) for w in self.simulation.worlds))
 
     def frame(self) -> None:
         """Writes every agent and food of every living world as they are now."""

@@ -35,7 +35,7 @@ class Simulation:
         config: What the worlds are.
         seeds: One world per seed, each in [0, 2^64).
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
-        kernel: Instruction set, as `hedon._engine.learning.kernel_names` lists them; empty for the best one, or
+        kernel: Instruction set, as `hedon._engine.kernel.kernel_names` lists them; empty for the best one, or
             the one that the environment variable HEDON_KERNEL names.
 
     Raises:

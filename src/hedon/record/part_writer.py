@@ -56,9 +56,7 @@ class PartWriter:
             self._write_part(table)
         if self._living is not None:
             living = self._living
-            write_atomically(
-                self.folder / LIVING, lambda file: living.write_parquet(file, compression="zstd")
-            )
+            write_atomically(self.folder / LIVING, lambda file: living.write_parquet(file, compression="zstd"))
             self._living = None
 
     def _write_part(self, table: str) -> None:

@@ -42,9 +42,7 @@ def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
         Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
         Column("generation", "i32", "1", "depth below the founders, who have 0"),
         Column("birth_step", "i64", "step", "step at whose end the agent was born; 0 for founders"),
-        Column(
-            "death_step", "i64", "step", "step at whose end it died; missing while it lives", nullable=True
-        ),
+        Column("death_step", "i64", "step", "step at whose end it died; missing while it lives", nullable=True),
         Column("birth_energy", "f32", "energy", "energy at birth"),
         Column("energy", "f32", "energy", "energy at death, or at the last flush"),
         *(Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten") for kind in food_kinds),
@@ -83,21 +81,13 @@ def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
             for name in weight_names(food_kinds, neutral_count)
             for statistic, word in (("mean", "mean"), ("sd", "standard deviation"))
         ),
-        *(
-            Column(f"food_{kind}", "i32", "1", f"foods of kind {kind} present at the end")
-            for kind in food_kinds
-        ),
-        *(
-            Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten in the interval")
-            for kind in food_kinds
-        ),
+        *(Column(f"food_{kind}", "i32", "1", f"foods of kind {kind} present at the end") for kind in food_kinds),
+        *(Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten in the interval") for kind in food_kinds),
         Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
         Column("energy_eaten", "f64", "energy", "taken up with food in the interval; poison counts negative"),
         Column("energy_basic", "f64", "energy", "charged for living in the interval"),
         Column("energy_action", "f64", "energy", "charged for action in the interval"),
-        Column(
-            "energy_forgiven", "f64", "energy", "charged but not paid, because energy cannot fall below 0"
-        ),
+        Column("energy_forgiven", "f64", "energy", "charged but not paid, because energy cannot fall below 0"),
         Column("energy_capped", "f64", "energy", "eaten but destroyed at the capacity for energy"),
         Column("energy_lost", "f64", "energy", "held by those who died in the interval"),
         Column("energy_shared", "f64", "energy", "given by parents to children in the interval"),
@@ -116,9 +106,7 @@ def frame_table() -> Table:
         Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
         Column("x", "f32", "u", "position of the center"),
         Column("y", "f32", "u", "position of the center"),
-        Column(
-            "angle", "f32", "rad", "heading, 0 along +y, counter-clockwise; missing for food", nullable=True
-        ),
+        Column("angle", "f32", "rad", "heading, 0 along +y, counter-clockwise; missing for food", nullable=True),
         Column("energy", "f32", "energy", "energy; missing for food", nullable=True),
     )
 
@@ -154,7 +142,5 @@ def _table(name: str, row: str, *columns: Column) -> Table:
     counts = Counter(column.name for column in columns)
     twice = [column for column, count in counts.items() if count > 1]
     if twice:
-        raise RecordError(
-            f"table {name}: the food kinds make the column {twice[0]} appear twice; rename the food kind"
-        )
+        raise RecordError(f"table {name}: the food kinds make the column {twice[0]} appear twice; rename the food kind")
     return Table(name, row, columns)

@@ -88,9 +88,7 @@ def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
     Raises:
         RecordError: it cannot be written.
     """
-    arrays: dict[str, Any] = {
-        field.name: np.asarray(getattr(snapshot, field.name)) for field in fields(Snapshot)
-    }
+    arrays: dict[str, Any] = {field.name: np.asarray(getattr(snapshot, field.name)) for field in fields(Snapshot)}
     try:
         write_atomically(folder / SNAPSHOT, lambda file: np.savez_compressed(file, **arrays))
     except OSError as error:

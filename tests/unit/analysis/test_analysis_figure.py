@@ -130,9 +130,7 @@ def test_world_shows_agents_and_foods_where_they_are(tmp_path: Path) -> None:
         assert _pixel(figure, image, x, y) == pytest.approx([1, 0, 1], abs=0.02)
     back = [snapshot.x - 4 * np.sin(snapshot.angle + np.pi), snapshot.y + 4 * np.cos(snapshot.angle + np.pi)]
     order = np.argsort(snapshot.energy)
-    brightness = [
-        _pixel(figure, image, float(back[0][i]), float(back[1][i])).sum() for i in (order[0], order[-1])
-    ]
+    brightness = [_pixel(figure, image, float(back[0][i]), float(back[1][i])).sum() for i in (order[0], order[-1])]
     assert brightness[0] > brightness[1] + 0.5  # the more energy, the darker
 
 

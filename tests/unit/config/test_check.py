@@ -86,13 +86,11 @@ NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8
         ),
         (
             ["body.food_radius=1e-50"],
-            "body.food_radius = 1e-50: is 0 in the engine's 32-bit numbers, "
-            "but must be a number > 0 and <= 1000 [u]",
+            "body.food_radius = 1e-50: is 0 in the engine's 32-bit numbers, but must be a number > 0 and <= 1000 [u]",
         ),
         (
             ["learning.adam_beta2=0.999999999"],
-            "learning.adam_beta2 = 0.999999999: is 1 in the engine's 32-bit numbers, "
-            "but must be a number >= 0 and < 1",
+            "learning.adam_beta2 = 0.999999999: is 1 in the engine's 32-bit numbers, but must be a number >= 0 and < 1",
         ),
         (['name=""'], 'name = "": must be a text of 1 to 200 printable characters'),
         (['name="a\\tb"'], 'name = "a\\tb": must be a text of 1 to 200 printable characters'),

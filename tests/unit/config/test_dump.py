@@ -82,9 +82,7 @@ NUMBERS = [
 
 @settings(max_examples=150, deadline=None)
 @given(data=st.data())
-def test_any_override_survives_dump_and_load(
-    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
-) -> None:
+def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_factory: pytest.TempPathFactory) -> None:
     path, setting = data.draw(st.sampled_from(NUMBERS))
     value = data.draw(number(setting))
     try:

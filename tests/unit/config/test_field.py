@@ -47,10 +47,7 @@ def test_allowed_in_words(path: tuple[str, ...], text: str) -> None:
 
 
 def test_find_leads_into_settings_and_to_sections() -> None:
-    assert (
-        find(Config, ("arena", "inner_walls", 0, 3))
-        is settings(sections(Config)["arena"].type)["inner_walls"]
-    )
+    assert find(Config, ("arena", "inner_walls", 0, 3)) is settings(sections(Config)["arena"].type)["inner_walls"]
     assert find(Config, ("energy",)) is sections(Config)["energy"].type
     assert find(Config, ("food", "any", "placement")) is find(Config, ("food", "other", "placement"))
     assert find(Config, ("enrgy",)) is None

@@ -111,9 +111,7 @@ def test_fidelity_of_the_call_wins_over_the_files(write: Write) -> None:
 
 
 def test_file_adds_and_removes_kinds_of_food(write: Write) -> None:
-    path = write(
-        'preset = "poor"\nfidelity = "released"\n[food]\npoor = false\n[food.fungus]\nenergy = 0.5\n'
-    )
+    path = write('preset = "poor"\nfidelity = "released"\n[food]\npoor = false\n[food.fungus]\nenergy = 0.5\n')
     config = load_config(path)
     assert list(config.food) == ["normal", "fungus"]
     assert config.food["fungus"].energy == 0.5

@@ -21,9 +21,7 @@ def engine_structs() -> dict[str, list[str]]:
 
 def paths(section: type = Config, path: str = "") -> list[tuple[str, Setting]]:
     here = [(f"{path}{name}", setting) for name, setting in settings(section).items()]
-    return here + [
-        found for name, inner in sections(section).items() for found in paths(inner.type, f"{path}{name}.")
-    ]
+    return here + [found for name, inner in sections(section).items() for found in paths(inner.type, f"{path}{name}.")]
 
 
 def reach(native: dict[str, Any], path: str) -> Any:
@@ -44,9 +42,7 @@ def test_names_are_those_of_the_engines_structs() -> None:
     assert list(native["food"][0]["placement"]) == structs["PlacementConfig"]
 
 
-@pytest.mark.parametrize(
-    ("path", "setting"), paths(), ids=lambda value: value if isinstance(value, str) else ""
-)
+@pytest.mark.parametrize(("path", "setting"), paths(), ids=lambda value: value if isinstance(value, str) else "")
 def test_every_setting_arrives_or_is_listed(path: str, setting: Setting) -> None:
     native = engine_config(Config())
     if path in PYTHON_ONLY:

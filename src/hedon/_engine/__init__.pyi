@@ -1,0 +1,65 @@
+"""The native engine of hedon: the simulation and nothing else."""
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import numpy
+import numpy.typing
+from numpy.typing import NDArray
+
+from hedon._engine import (
+    kernel as kernel,
+    learning as learning,
+    physics as physics,
+    random as random
+)
+
+
+class Simulation:
+    """
+    Many worlds under one config. Views are read-only and valid until the next `run`.
+    """
+
+    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = []) -> None: ...
+
+    def run(self, steps: int) -> None:
+        """Advances every world that is not over; releases the interpreter lock."""
+
+    def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
+        """Columns of the agents that died since the last call."""
+
+    def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
+        """Columns of the living, in the order of their ids."""
+
+    def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]:
+        """Full observations of the living: (living, size)."""
+
+    def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Empties a world and puts these agents and foods into it."""
+
+    def view(self, world: int, path: str) -> numpy.typing.NDArray[Any]:
+        """One array of a world's state, by slot."""
+
+    def view_names(self) -> list:
+        """Paths that `view` knows."""
+
+    def counters(self, world: int) -> dict: ...
+
+    def clock(self, world: int) -> dict: ...
+
+    def digest(self, world: int) -> int: ...
+
+    def seconds(self, world: int) -> dict:
+        """Seconds spent in each part by the world's first thread."""
+
+    @property
+    def world_count(self) -> int: ...
+
+    @property
+    def threads(self) -> int: ...
+
+    @property
+    def kernel(self) -> str: ...
+
+    @property
+    def bytes_per_world(self) -> int: ...

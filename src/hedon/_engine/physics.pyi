@@ -1,0 +1,36 @@
+"""Rigid bodies by themselves."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy.typing
+
+
+class Scene:
+    """Discs, static circles and walls, with the memory that they live in."""
+
+    def __init__(self, config: dict, width: float, height: float, radius: float, density: float, circle_radius: float, bodies: int, circles: int, walls: Sequence[Sequence[float]], pair_limit: int = 0) -> None: ...
+
+    def step(self, steps: int = 1, threads: int = 1, record: bool = True) -> None:
+        """Steps; raises RuntimeError with the name of a fault."""
+
+    def set_order(self, slots: Sequence[int]) -> None:
+        """Slots of the bodies that live, in canonical order."""
+
+    def array(self, name: str) -> numpy.typing.NDArray[Any]:
+        """A writable view of one array by slot."""
+
+    def pairs(self, kind: str) -> list[dict[str, Any]]:
+        """Listed pairs with impulses and marks."""
+
+    def contacts(self) -> list:
+        """Contacts that the visitor heard of in the last step."""
+
+    def near(self, kind: str, x: float, y: float, reach: float) -> list[int]: ...
+
+    def add_circle(self, slot: int, x: float, y: float) -> None: ...
+
+    def set_stale(self) -> None:
+        """Call after changing places, circles or the order."""
+
+    def counters(self) -> dict: ...
