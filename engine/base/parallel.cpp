@@ -3,10 +3,6 @@
 #include <sched.h>
 #include <unistd.h>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 namespace hedon {
 namespace {
 
@@ -15,8 +11,8 @@ namespace {
 class FloatMode {
  public:
 #if defined(__SSE__)
-  FloatMode() : saved_(_mm_getcsr()) { _mm_setcsr(0x9fc0); }  // all exceptions masked, FTZ, DAZ, nearest
-  ~FloatMode() { _mm_setcsr(saved_); }
+  FloatMode() : saved_(__builtin_ia32_stmxcsr()) { __builtin_ia32_ldmxcsr(0x9fc0); }  // all exceptions masked, FTZ, DAZ, nearest
+  ~FloatMode() { __builtin_ia32_ldmxcsr(saved_); }
 
  private:
   unsigned saved_;

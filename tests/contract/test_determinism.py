@@ -5,7 +5,7 @@ import pytest
 
 from hedon.config.load import load_config
 from hedon.experiment.simulation import Simulation
-from tests.worlds import QUICK, make_engine, make_simulation
+from worlds import QUICK, make_engine, make_simulation
 
 STEPS = 200  # three windows of 64 and a rest
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")

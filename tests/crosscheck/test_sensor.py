@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.worlds import make_simulation, set_scene
+from worlds import make_simulation, set_scene
 
 SCENES = sorted((Path(__file__).parents[1] / "data" / "sensors").glob("*.npz"))
 AGENT, FOOD, WALL = 0, 1, 2

@@ -1,6 +1,6 @@
 """Digests of short lives: results that change do so knowingly.
 
-After a change that is meant to change results: `python -m tests.golden.test_digest` writes the digests anew.
+After a change that is meant to change results: `PYTHONPATH=tests python -m golden.test_digest` writes the digests anew.
 """
 
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from hedon import _engine
-from tests.worlds import make_simulation
+from worlds import make_simulation
 
 GOLDEN = Path(__file__).with_name("digest.json")
 PRESETS = ("baseline", "small", "relocation", "poison")

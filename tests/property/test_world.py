@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.worlds import QUICK, make_simulation
+from worlds import QUICK, make_simulation
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 

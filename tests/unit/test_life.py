@@ -6,7 +6,7 @@ from hedon.analysis.demography import birth_rate, hazard
 
 from hedon.config.load import load_config
 from hedon.experiment.simulation import EngineError
-from tests.worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
+from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 SAFE = (*DEATHLESS, *CHILDLESS)
 
@@ -39,7 +39,7 @@ def test_energy_stops_at_zero_and_what_could_not_be_paid_is_forgiven():
 
 def test_starvation_can_kill():
     simulation = make_simulation(*STILL, *SAFE, 'energy.starvation="death"')
-    set_scene(simulation, [(240, 180, 0.0)], energy=0.05)
+    set_scene(simulation, [(240, 180, 0.0)], energy=0.0505)
     simulation.run(200)
     assert simulation.worlds[0].extinct_step == 51  # 50 steps are paid for, the next is not
     assert simulation.engine.take_rows(0)["death_step"][0] == 51
@@ -237,25 +237,14 @@ def test_only_those_who_lived_through_the_window_learn():
 
 
 def test_event_overflow_is_named():
-    lethal = (
-        "population.capacity=4",
-        "population.initial_count=4",
-        "birth.kappa=2",
-        "hazard.kappa=20",
-        "energy.initial=0",
-    )
-    simulation = make_simulation(
-        *lethal, "hazard.alpha_energy=0.02", "food.normal.initial_count=0", seeds=(5,)
-    )
+    brief = ("population.capacity=4", "population.initial_count=4", "birth.kappa=1", "hazard.kappa=1", "energy.initial=0")
+    simulation = make_simulation(*brief, "food.normal.initial_count=0", "food.normal.growth_rate=0")
     with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
         simulation.run(20_000)
 
 
 def test_no_place_for_the_founders_is_named():
+    bars = [[x, 20.0, x, 340.0] for x in range(30, 455, 15)]
+    bars += [[20.0, y, 460.0, y] for y in range(30, 335, 15)]
     with pytest.raises(EngineError, match="initial_placement"):
-        make_simulation(
-            "arena.width=110",
-            "arena.height=110",
-            "population.initial_count=20",
-            "food.normal.initial_count=0",
-        )
+        make_simulation(f"arena.inner_walls={bars}")
