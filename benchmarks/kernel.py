@@ -43,9 +43,7 @@ def time_update(kernel: str) -> float:
     zero = np.zeros_like(case.params)
 
     def body() -> tuple:
-        return _engine.learning.update(
-            kernel, ONE_KIND_RAW, config(), case.params, zero, zero, 0, *case.batch(), order
-        )
+        return _engine.learning.update(kernel, ONE_KIND_RAW, config(), case.params, zero, zero, 0, *case.batch(), order)
 
     params = body()[0]
     if not np.isfinite(params).all() or (params == case.params).all():
@@ -68,18 +66,14 @@ def time_forward(kernel: str) -> float:
 def time_rays(kernel: str) -> float:
     """The 24 rays of one agent among 70 circles and 12 segments, none of them culled [s]."""
     rng = np.random.default_rng(2)
-    circles = np.column_stack([rng.uniform(-200, 200, (70, 2)), rng.choice([4.0, 10.0], 70)]).astype(
-        np.float32
-    )
+    circles = np.column_stack([rng.uniform(-200, 200, (70, 2)), rng.choice([4.0, 10.0], 70)]).astype(np.float32)
     kind = rng.integers(0, 2, 70).astype(np.int32)
     segments = rng.uniform(-200, 200, (12, 4)).astype(np.float32)
     angle = np.linspace(-np.pi / 3, np.pi / 3, 24)
     direction = np.stack([-np.sin(angle), np.cos(angle)], 1).astype(np.float32)
 
     def body() -> tuple[np.ndarray, np.ndarray]:
-        return _engine.kernel.cast_rays(
-            kernel, circles, kind, segments, 2, direction, 10.0, 200.0, RAY_REPEATS
-        )
+        return _engine.kernel.cast_rays(kernel, circles, kind, segments, 2, direction, 10.0, 200.0, RAY_REPEATS)
 
     reading, _ = body()
     if not ((reading == 0) | ((reading >= 1) & (reading <= 2))).all() or (reading == 0).all():

@@ -68,9 +68,7 @@ def observations(rng: np.random.Generator, shape: Shape, count: int, scale: floa
     bits = rng.random((count, touches)) < 0.1
     touch = np.array([sum(1 << i for i in np.flatnonzero(row)) for row in bits.tolist()], np.uint64)
     entries = scale * rng.normal(size=(count, dense))
-    return _engine.learning.pack(
-        ray.astype(np.float32), ray_type.astype(np.uint8), touch, entries.astype(np.float32)
-    )
+    return _engine.learning.pack(ray.astype(np.float32), ray_type.astype(np.uint8), touch, entries.astype(np.float32))
 
 
 def random_case(seed: int, shape: Shape = ONE_KIND_RAW, count: int = 256, mean_scale: float = 30.0) -> Case:

@@ -53,9 +53,7 @@ def losses(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], se
     return policy, value, (log_sd + 0.5 + 0.5 * np.log(2 * np.pi)).sum()
 
 
-def loss(
-    params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], settings: dict[str, Any]
-) -> float:
+def loss(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], settings: dict[str, Any]) -> float:
     """The number that the gradient belongs to."""
     policy, value, entropy = losses(params, x, sample, settings)
     return policy + settings["value_coef"] * value - settings["entropy_coef"] * entropy

@@ -80,9 +80,8 @@ HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedOb
     for (int32_t r = 0; r < sizes.rays; ++r, group += sizes.types * HIDDEN) {
       float* row = group + seen.ray_type[r] * HIDDEN;
       const Lanes x = broadcast(seen.ray[r]);
-      unroll<WIDTH>([&](auto c) HEDON_INLINED {
-        store(row + c * LANES, multiply_add(x, by[c], load(row + c * LANES)));
-      });
+      unroll<WIDTH>([&](auto c)
+                        HEDON_INLINED { store(row + c * LANES, multiply_add(x, by[c], load(row + c * LANES))); });
     }
     for (uint64_t bits = seen.touch; bits != 0; bits &= bits - 1) {
       float* row = touch_rows + __builtin_ctzll(bits) * HIDDEN;
@@ -181,7 +180,8 @@ PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& c
     });
   }
   unroll<OUTPUTS>([&](auto o) HEDON_INLINED { gradient[shape.b3() + o] = sum(sums.bias[o]); });
-  unroll<ACTIONS>([&](auto d) HEDON_INLINED { gradient[shape.log_sd() + d] = sum(sums.log_sd[d]) - config.entropy_coef; });
+  unroll<ACTIONS>([&](auto d)
+                      HEDON_INLINED { gradient[shape.log_sd() + d] = sum(sums.log_sd[d]) - config.entropy_coef; });
   const float entropy = log_sd[0] + log_sd[1] + ACTIONS * 0.5f + log_two_pi;
   return {sum(sums.policy), sum(sums.value), entropy};
 }

@@ -99,9 +99,7 @@ def test_nan_comes_out_and_nothing_hangs(kernel: str, place: str):
     zero = np.zeros_like(case.params)
     order = np.tile(np.arange(64, dtype=np.int32), (2, 1))
     settings = config(minibatch_size=32, update_epochs=2)
-    params = learning.update(
-        kernel, ONE_KIND_RAW, settings, case.params, zero, zero, 0, *case.batch(), order
-    )[0]
+    params = learning.update(kernel, ONE_KIND_RAW, settings, case.params, zero, zero, 0, *case.batch(), order)[0]
     assert np.isnan(params).any()
 
 
@@ -119,6 +117,4 @@ def test_names_and_unknown_names():
     assert KERNELS[-1] == "portable"
     assert set(KERNELS) <= {"avx512", "avx2", "portable"}
     with pytest.raises(ValueError, match="unknown name 'sse'"):
-        learning.forward(
-            "sse", ONE_KIND_RAW, learning.init_network(ONE_KIND_RAW, 0), np.zeros((1, 192), np.uint8)
-        )
+        learning.forward("sse", ONE_KIND_RAW, learning.init_network(ONE_KIND_RAW, 0), np.zeros((1, 192), np.uint8))

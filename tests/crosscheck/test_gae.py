@@ -23,9 +23,7 @@ def test_lambda_one_gives_the_return():
     reward = np.array([1.0, 2.0, 3.0], np.float32)
     value = np.array([0.5, -1.0, 4.0], np.float32)
     _, target = _engine.learning.gae(reward, value, 10.0, 0.5, 1.0)
-    np.testing.assert_allclose(
-        target, [1 + 0.5 * (2 + 0.5 * (3 + 0.5 * 10)), 2 + 0.5 * (3 + 5), 8], rtol=1e-6
-    )
+    np.testing.assert_allclose(target, [1 + 0.5 * (2 + 0.5 * (3 + 0.5 * 10)), 2 + 0.5 * (3 + 5), 8], rtol=1e-6)
 
 
 def test_lengths_are_checked():

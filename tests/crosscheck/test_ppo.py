@@ -90,9 +90,7 @@ def test_update_of_ten_epochs(kernel: str, target: str):
     params, m, v, updates, seen = learning.update(
         kernel, ONE_KIND_RAW, settings, case.params, zero, zero, 0, *case.batch(), order
     )
-    expected, losses = reference.update(
-        case.params.astype(np.float64), case.full(), doubles(case), order, settings
-    )
+    expected, losses = reference.update(case.params.astype(np.float64), case.full(), doubles(case), order, settings)
     assert updates == 40
     moved = np.abs(expected - case.params)
     assert moved.max() > 2e-3

@@ -19,10 +19,7 @@ def test_ranges_and_distribution(shape: tuple[int, int, int, int]):
     assert params.shape[1] == learning.param_count(shape) == inputs * 64 + 64 + 64 * 64 + 64 + 192 + 16
     first = params[:, : inputs * 64 + 64] * np.sqrt(inputs)
     at = inputs * 64 + 64
-    later = (
-        np.concatenate([params[:, at : at + 65 * 64], params[:, -16 - 64 : -16], params[:, -16:-13]], axis=1)
-        * 8.0
-    )
+    later = np.concatenate([params[:, at : at + 65 * 64], params[:, -16 - 64 : -16], params[:, -16:-13]], axis=1) * 8.0
     for values in (first.ravel(), later.ravel()):
         assert np.abs(values).max() <= 1.0
         assert np.abs(values).max() > 0.999
@@ -34,16 +31,12 @@ def test_ranges_and_distribution(shape: tuple[int, int, int, int]):
 
 def test_mean_head_is_orthogonal_with_gain():
     for seed in range(50):
-        head = (
-            learning.init_network(ONE_KIND_RAW, seed)[-16 - 192 : -16 - 64].reshape(2, 64).astype(np.float64)
-        )
+        head = learning.init_network(ONE_KIND_RAW, seed)[-16 - 192 : -16 - 64].reshape(2, 64).astype(np.float64)
         np.testing.assert_allclose(head @ head.T, 1e-4 * np.eye(2), atol=1e-10)
 
 
 def test_directions_of_the_mean_head_are_uniform():
-    heads = (
-        np.stack([learning.init_network(ONE_KIND_RAW, s)[-208:-80].reshape(2, 64) for s in range(300)]) * 100
-    )
+    heads = np.stack([learning.init_network(ONE_KIND_RAW, s)[-208:-80].reshape(2, 64) for s in range(300)]) * 100
     assert np.abs(heads.mean(0)).max() < 5 / np.sqrt(64 * 300)
     assert heads.var() == pytest.approx(1 / 64, rel=1e-3)
 
@@ -69,6 +62,4 @@ def test_wrong_arguments_are_named():
     with pytest.raises(ValueError, match="rays must be 0 to 32"):
         learning.init_network((33, 3, 18, 5), 0)
     with pytest.raises(ValueError, match="unknown name 'none'"):
-        learning.forward(
-            "none", ONE_KIND_RAW, learning.init_network(ONE_KIND_RAW, 0), np.zeros((1, 192), np.uint8)
-        )
+        learning.forward("none", ONE_KIND_RAW, learning.init_network(ONE_KIND_RAW, 0), np.zeros((1, 192), np.uint8))
