@@ -46,9 +46,22 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
     direction_y.get()[r] = direction.data()[2 * from + 1];
   }
   const Aligned<int32_t> type(circle_type.data(), circle_type.size());
-  const RayScene scene = {x.get(),  y.get(),  radius.get(), type.get(), static_cast<int32_t>(circles.shape(0)),
-                          ax.get(), ay.get(), bx.get(),     by.get(),   static_cast<int32_t>(segments.shape(0)),
-                          wall_type, direction_x.get(), direction_y.get(), static_cast<int32_t>(rays), start, length};
+  const RayScene scene = {x.get(),
+                          y.get(),
+                          radius.get(),
+                          type.get(),
+                          static_cast<int32_t>(circles.shape(0)),
+                          ax.get(),
+                          ay.get(),
+                          bx.get(),
+                          by.get(),
+                          static_cast<int32_t>(segments.shape(0)),
+                          wall_type,
+                          direction_x.get(),
+                          direction_y.get(),
+                          static_cast<int32_t>(rays),
+                          start,
+                          length};
   float reading[PACKED_RAYS];
   uint8_t hit[PACKED_RAYS];
   for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(scene, reading, hit);
@@ -69,15 +82,19 @@ double calibrate(const std::string& kernel_name, int64_t rounds) {
 
 void bind_kernel(nb::module_& module) {
   nb::module_ kernel = module.def_submodule("kernel", "Kernels by themselves: one implementation per instruction set.");
-  kernel.def("kernel_names", [] {
-    std::vector<std::string> names;
-    for (const char* const* name = kernel_names(); *name != nullptr; ++name) names.emplace_back(*name);
-    return names;
-  }, "Names of the kernels that this processor can run, best first.");
-  kernel.def("cast_rays", cast_rays, nb::arg("kernel"), nb::arg("circles"), nb::arg("circle_type"), nb::arg("segments"),
-             nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
-             "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
-             "done `repeats` times, to be timed.");
+  kernel.def(
+      "kernel_names",
+      [] {
+        std::vector<std::string> names;
+        for (const char* const* name = kernel_names(); *name != nullptr; ++name) names.emplace_back(*name);
+        return names;
+      },
+      "Names of the kernels that this processor can run, best first.");
+  kernel.def(
+      "cast_rays", cast_rays, nb::arg("kernel"), nb::arg("circles"), nb::arg("circle_type"), nb::arg("segments"),
+      nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
+      "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
+      "done `repeats` times, to be timed.");
   kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"),
              "Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels.");
 }

@@ -35,7 +35,7 @@ using ObservationSizes = std::tuple<int32_t, int32_t, int32_t, int32_t>;
 NetworkShape to_shape(const ObservationSizes& sizes) {
   const auto [rays, types, touches, dense] = sizes;
   if (rays < 0 || rays > PACKED_RAYS) throw nb::value_error("shape: rays must be 0 to 32");
-  if (types < 1 || types > MAX_RAY_TYPES) throw nb::value_error("shape: types must be 1 to 16");
+  if (types < 1 || types > 255) throw nb::value_error("shape: types must be 1 to 255");
   if (touches < 0 || touches > 64) throw nb::value_error("shape: touches must be 0 to 64");
   if (dense < 0 || dense > MAX_DENSE) throw nb::value_error("shape: dense must be 0 to 6");
   return {{rays, types, touches, dense}};
@@ -62,7 +62,7 @@ struct BatchArrays {
       }
       if (touches < 64 && (one.touch >> touches) != 0) throw nb::value_error("observation: touch out of range");
     }
-    batch = {observation.get(), action.data(), log_prob.data(), first.data(), second.data(), nullptr,
+    batch = {observation.get(),          action.data(), log_prob.data(), first.data(), second.data(), nullptr,
              static_cast<int32_t>(count)};
   }
 };
@@ -86,8 +86,11 @@ struct LearnerArrays {
   size_t size;
 
   LearnerArrays(const Floats& p, const Floats& m, const Floats& v, int64_t steps)
-      : params(p.data(), p.size()), first_moment(m.data(), m.size()), second_moment(v.data(), v.size()),
-        updates(steps), size(p.size()) {
+      : params(p.data(), p.size()),
+        first_moment(m.data(), m.size()),
+        second_moment(v.data(), v.size()),
+        updates(steps),
+        size(p.size()) {
     check_length(m.size(), size, "first_moment");
     check_length(v.size(), size, "second_moment");
     if (size % 16 != 0) throw nb::value_error("params: the length must be a multiple of 16");
@@ -202,20 +205,22 @@ nb::tuple learn_once(const std::string& kernel_name, ObservationSizes sizes, nb:
   const BatchArrays arrays(shape, observation, action, log_prob, value, reward);
   check_minibatch(config, arrays.batch.count);
   check_length(observation.shape(0), static_cast<size_t>(config.rollout_steps), "observation");
-  const Rollout rollout = {arrays.batch.observation, action.data(),        log_prob.data(), value.data(), reward.data(),
-                           bootstrap,                arrays.batch.count};
+  const Rollout rollout = {
+      arrays.batch.observation, action.data(), log_prob.data(), value.data(), reward.data(), bootstrap,
+      arrays.batch.count};
   const Aligned<float> scratch(static_cast<size_t>(learn_scratch_size(shape, config)));
   LearnerArrays learner(params, first_moment, second_moment, updates);
-  return learner.result(learn(kernel, shape, config, rollout, {seed, Purpose::minibatch, agent_id, step}, scratch.get(),
-                              learner.view()));
+  return learner.result(
+      learn(kernel, shape, config, rollout, {seed, Purpose::minibatch, agent_id, step}, scratch.get(), learner.view()));
 }
 
 }  // namespace
 
 void bind_learning(nb::module_& module) {
   nb::module_ learning = module.def_submodule("learning", "Network, PPO and GAE by themselves, for each kernel.");
-  learning.def("param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
-               "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
+  learning.def(
+      "param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
+      "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
   learning.def("pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
                "Packed observations (n, 192) from reading + 1 and type of each ray, touch bits and dense entries.");
   learning.def("unpack", unpack_all, nb::arg("shape"), nb::arg("observation"), "Full observations (n, size).");
@@ -234,31 +239,40 @@ void bind_learning(nb::module_& module) {
                nb::arg("first_moment"), nb::arg("second_moment"), nb::arg("updates"), nb::arg("observation"),
                nb::arg("action"), nb::arg("log_prob"), nb::arg("value"), nb::arg("reward"), nb::arg("bootstrap"),
                nb::arg("seed"), nb::arg("agent_id"), nb::arg("step"), "Advantages, order and update of one learner.");
-  learning.def("gae", [](Floats reward, Floats value, float bootstrap, float gamma, float lambda) {
-    check_length(value.size(), reward.size(), "value");
-    std::vector<float> advantage(reward.size()), target(reward.size());
-    estimate_advantage(reward.data(), value.data(), bootstrap, static_cast<int32_t>(reward.size()), gamma, lambda,
-                       advantage.data(), target.data());
-    return nb::make_tuple(to_numpy(advantage.data(), {reward.size()}), to_numpy(target.data(), {reward.size()}));
-  }, nb::arg("reward"), nb::arg("value"), nb::arg("bootstrap"), nb::arg("gamma"), nb::arg("gae_lambda"),
-  "Advantage and value target of each step.");
-  learning.def("permutation", [](uint64_t seed, uint32_t agent_id, uint32_t step, int32_t count, int32_t epochs) {
-    if (count < 0 || epochs < 0) throw nb::value_error("count and epochs must not be negative");
-    const size_t rows = static_cast<size_t>(epochs), length = static_cast<size_t>(count);
-    std::vector<int32_t> order(rows * length);
-    uint32_t index = 0;
-    for (size_t e = 0; e < rows; ++e) {
-      permute({seed, Purpose::minibatch, agent_id, step}, count, index, order.data() + e * length);
-    }
-    return to_numpy(order.data(), {rows, length});
-  }, nb::arg("seed"), nb::arg("agent_id"), nb::arg("step"), nb::arg("count"), nb::arg("epochs"),
-  "The order (epochs, count) that `learn` uses.");
-  learning.def("init_network", [](ObservationSizes sizes, uint64_t seed, uint32_t agent_id, uint32_t step) {
-    const NetworkShape shape = to_shape(sizes);
-    std::vector<float> params(static_cast<size_t>(shape.size()));
-    init_network(shape, {seed, Purpose::network, agent_id, step}, params.data());
-    return to_numpy(params.data(), {params.size()});
-  }, nb::arg("shape"), nb::arg("seed"), nb::arg("agent_id") = 0, nb::arg("step") = 0, "Fresh parameters.");
+  learning.def(
+      "gae",
+      [](Floats reward, Floats value, float bootstrap, float gamma, float lambda) {
+        check_length(value.size(), reward.size(), "value");
+        std::vector<float> advantage(reward.size()), target(reward.size());
+        estimate_advantage(reward.data(), value.data(), bootstrap, static_cast<int32_t>(reward.size()), gamma, lambda,
+                           advantage.data(), target.data());
+        return nb::make_tuple(to_numpy(advantage.data(), {reward.size()}), to_numpy(target.data(), {reward.size()}));
+      },
+      nb::arg("reward"), nb::arg("value"), nb::arg("bootstrap"), nb::arg("gamma"), nb::arg("gae_lambda"),
+      "Advantage and value target of each step.");
+  learning.def(
+      "permutation",
+      [](uint64_t seed, uint32_t agent_id, uint32_t step, int32_t count, int32_t epochs) {
+        if (count < 0 || epochs < 0) throw nb::value_error("count and epochs must not be negative");
+        const size_t rows = static_cast<size_t>(epochs), length = static_cast<size_t>(count);
+        std::vector<int32_t> order(rows * length);
+        uint32_t index = 0;
+        for (size_t e = 0; e < rows; ++e) {
+          permute({seed, Purpose::minibatch, agent_id, step}, count, index, order.data() + e * length);
+        }
+        return to_numpy(order.data(), {rows, length});
+      },
+      nb::arg("seed"), nb::arg("agent_id"), nb::arg("step"), nb::arg("count"), nb::arg("epochs"),
+      "The order (epochs, count) that `learn` uses.");
+  learning.def(
+      "init_network",
+      [](ObservationSizes sizes, uint64_t seed, uint32_t agent_id, uint32_t step) {
+        const NetworkShape shape = to_shape(sizes);
+        std::vector<float> params(static_cast<size_t>(shape.size()));
+        init_network(shape, {seed, Purpose::network, agent_id, step}, params.data());
+        return to_numpy(params.data(), {params.size()});
+      },
+      nb::arg("shape"), nb::arg("seed"), nb::arg("agent_id") = 0, nb::arg("step") = 0, "Fresh parameters.");
 }
 
 }  // namespace hedon

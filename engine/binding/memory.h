@@ -51,8 +51,8 @@ inline const Kernel& kernel_by_name(const std::string& name) {
 
 inline void check_length(size_t length, size_t expected, const char* name) {
   if (length != expected) {
-    throw nanobind::value_error((std::string(name) + ": length " + std::to_string(length) + ", expected " +
-                           std::to_string(expected)).c_str());
+    throw nanobind::value_error(
+        (std::string(name) + ": length " + std::to_string(length) + ", expected " + std::to_string(expected)).c_str());
   }
 }
 

@@ -12,7 +12,7 @@ struct Avx2Shape {
   static constexpr int lanes = 1;          ///< of 16 columns in a tile
   static constexpr int forward_lanes = 4;  ///< the same for a single row
   static constexpr int samples = 1;        ///< that go through the first layer together
-  static constexpr int chains = 6;        ///< for the measure of the processor's ceiling
+  static constexpr int chains = 6;         ///< for the measure of the processor's ceiling
 };
 
 extern const Kernel AVX2_KERNEL;

@@ -17,7 +17,8 @@ struct NearestHit {
 };
 
 /// Rays start on the body's surface, so what lies between there and the center is at distance 0.
-HEDON_INLINE void take_hit(NearestHit& nearest, LaneMask hit, Lanes from_center, Lanes start, Lanes length, Lanes type) {
+HEDON_INLINE void take_hit(NearestHit& nearest, LaneMask hit, Lanes from_center, Lanes start, Lanes length,
+                           Lanes type) {
   const Lanes distance = larger(broadcast(0.0f), from_center - start);
   const Lanes candidate = select(both(hit, distance <= length), distance, broadcast(NOTHING));
   nearest.type = select(candidate < nearest.distance, type, nearest.type);

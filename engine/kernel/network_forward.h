@@ -12,9 +12,8 @@ namespace {
 inline constexpr int LANES = 16;
 inline constexpr int WIDTH = HIDDEN / LANES;  ///< lanes in a row of hidden units
 
-/// Adds A·B to a tile of R rows and C lanes of columns. begin(r, c) gives what a sum starts from, end(r, c, sum) takes it.
-/// a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE
-/// b   rows of 64, from the tile's first column
+/// Adds A·B to a tile of R rows and C lanes of columns. begin(r, c) gives what a sum starts from, end(r, c, sum) takes
+/// it. a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE b   rows of 64, from the tile's first column
 template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Begin, class End>
 HEDON_INLINE void multiply_tile(const float* a, const float* b, int inner, const Begin& begin, const End& end) {
   Lanes total[R][C];
@@ -40,7 +39,8 @@ HEDON_INLINE void multiply(const float* a, const float* b, int rows, int inner, 
   for (; row + R <= rows; row += R) {
     for (int column = 0; column < HIDDEN; column += C * LANES) {
       multiply_tile<R, C, ROW_STRIDE, INNER_STRIDE>(
-          a + row * ROW_STRIDE, b + column, inner, [&](auto r, auto c) HEDON_INLINED { return begin(row + r, column + c * LANES); },
+          a + row * ROW_STRIDE, b + column, inner,
+          [&](auto r, auto c) HEDON_INLINED { return begin(row + r, column + c * LANES); },
           [&](auto r, auto c, Lanes total) HEDON_INLINED { end(row + r, column + c * LANES, total); });
     }
   }
@@ -66,7 +66,9 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
                               const PackedObservation* const* observation, float* hidden) {
   const ObservationShape& sizes = shape.observation;
   Lanes total[S][WIDTH];
-  unroll<S>([&](auto s) HEDON_INLINED { unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = load(folded + c * LANES); }); });
+  unroll<S>([&](auto s) HEDON_INLINED {
+    unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = load(folded + c * LANES); });
+  });
   const float* group = params + shape.w1();
   const int32_t group_size = sizes.types * HIDDEN;
   for (int32_t r = 0; r < sizes.rays; ++r, group += group_size) {
@@ -101,7 +103,8 @@ HEDON_INLINE void second_layer(const NetworkShape& shape, const float* params, c
   const float* bias = params + shape.b2();
   multiply<Shape::rows, Shape::lanes, HIDDEN, 1>(
       hidden1, params + shape.w2(), count, HIDDEN, [&](int, int column) HEDON_INLINED { return load(bias + column); },
-      [&](int row, int column, Lanes total) HEDON_INLINED { store(hidden2 + row * HIDDEN + column, tanh_lanes(total)); });
+      [&](int row, int column, Lanes total)
+          HEDON_INLINED { store(hidden2 + row * HIDDEN + column, tanh_lanes(total)); });
 }
 
 /// Mean (2) and value of one sample. The second hidden layer comes in registers or memory by `hidden(c)`.
@@ -125,7 +128,8 @@ void forward(const NetworkShape& shape, const float* params, const float* folded
   const PackedObservation* one = &observation;
   first_layer<1>(shape, params, folded, &one, hidden1);
   multiply<1, Shape::forward_lanes, HIDDEN, 1>(
-      hidden1, params + shape.w2(), 1, HIDDEN, [&](int, int column) HEDON_INLINED { return load(params + shape.b2() + column); },
+      hidden1, params + shape.w2(), 1, HIDDEN,
+      [&](int, int column) HEDON_INLINED { return load(params + shape.b2() + column); },
       [&](int, int column, Lanes total) HEDON_INLINED { store(hidden2 + column, tanh_lanes(total)); });
   heads(shape, params, hidden2, output);
 }

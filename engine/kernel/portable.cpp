@@ -11,7 +11,7 @@ struct PortableShape {
   static constexpr int lanes = 1;          ///< of 16 columns in a tile
   static constexpr int forward_lanes = 2;  ///< the same for a single row
   static constexpr int samples = 1;        ///< that go through the first layer together
-  static constexpr int chains = 2;        ///< for the measure of the processor's ceiling
+  static constexpr int chains = 2;         ///< for the measure of the processor's ceiling
 };
 
 extern const Kernel PORTABLE_KERNEL;

@@ -49,8 +49,7 @@ PpoLoss update(const NetworkShape& shape, const LearningConfig& config, const Pp
     mean = {0.0f, 0.0f, 0.0f};
     for (int32_t i = 0; i < minibatches; ++i) {
       const int32_t* order = batch.order + static_cast<int64_t>(epoch) * batch.count + i * config.minibatch_size;
-      const PpoLoss loss =
-          gradient_of_minibatch<Shape>(shape, config, learner.params, batch, order, scratch, gradient);
+      const PpoLoss loss = gradient_of_minibatch<Shape>(shape, config, learner.params, batch, order, scratch, gradient);
       adam(config, shape.size(), gradient, learner);
       mean.policy += loss.policy;
       mean.value += loss.value;

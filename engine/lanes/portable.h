@@ -1,7 +1,8 @@
 /// 16 floats for any processor, as four vectors of four in the compilers' own notation (GCC, Clang).
 ///
-/// The operations are described in `avx512.h`. `multiply_add` rounds twice here: few processors without one of the other
-/// files have a fused one, and emulating it would cost a hundred times as much. So bits differ from the other kernels.
+/// The operations are described in `avx512.h`. `multiply_add` rounds twice here: few processors without one of the
+/// other files have a fused one, and emulating it would cost a hundred times as much. So bits differ from the other
+/// kernels.
 #pragma once
 
 #include "lanes/unroll.h"
@@ -39,10 +40,18 @@ HEDON_INLINE Lanes broadcast(float x) {
   const Float4 all = broadcast4(x);
   return {{all, all, all, all}};
 }
-HEDON_INLINE Lanes operator+(Lanes a, Lanes b) { return each_part([&](int i) HEDON_INLINED { return a.part[i] + b.part[i]; }); }
-HEDON_INLINE Lanes operator-(Lanes a, Lanes b) { return each_part([&](int i) HEDON_INLINED { return a.part[i] - b.part[i]; }); }
-HEDON_INLINE Lanes operator*(Lanes a, Lanes b) { return each_part([&](int i) HEDON_INLINED { return a.part[i] * b.part[i]; }); }
-HEDON_INLINE Lanes operator/(Lanes a, Lanes b) { return each_part([&](int i) HEDON_INLINED { return a.part[i] / b.part[i]; }); }
+HEDON_INLINE Lanes operator+(Lanes a, Lanes b) {
+  return each_part([&](int i) HEDON_INLINED { return a.part[i] + b.part[i]; });
+}
+HEDON_INLINE Lanes operator-(Lanes a, Lanes b) {
+  return each_part([&](int i) HEDON_INLINED { return a.part[i] - b.part[i]; });
+}
+HEDON_INLINE Lanes operator*(Lanes a, Lanes b) {
+  return each_part([&](int i) HEDON_INLINED { return a.part[i] * b.part[i]; });
+}
+HEDON_INLINE Lanes operator/(Lanes a, Lanes b) {
+  return each_part([&](int i) HEDON_INLINED { return a.part[i] / b.part[i]; });
+}
 HEDON_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) { return a * b + c; }
 HEDON_INLINE Lanes square_root(Lanes a) {
   return each_part([&](int i) HEDON_INLINED {
@@ -79,7 +88,8 @@ HEDON_INLINE Lanes larger(Lanes a, Lanes b) { return select(b < a, a, b); }
 
 HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   return each_part([&](int i) HEDON_INLINED {
-    return reinterpret_cast<Float4>(reinterpret_cast<Int4>(a.part[i]) + (reinterpret_cast<Int4>(shifted.part[i]) << 23));
+    return reinterpret_cast<Float4>(reinterpret_cast<Int4>(a.part[i]) +
+                                    (reinterpret_cast<Int4>(shifted.part[i]) << 23));
   });
 }
 

@@ -56,8 +56,8 @@ HEDON_FN void orthogonalize(float gain, float* rows) {
   }
 }
 
-/// Fresh parameters: weights and biases uniform within ±1/sqrt(inputs of the layer), the mean head's weights orthogonal,
-/// log-sd 0. `params` has `shape.size()` floats.
+/// Fresh parameters: weights and biases uniform within ±1/sqrt(inputs of the layer), the mean head's weights
+/// orthogonal, log-sd 0. `params` has `shape.size()` floats.
 HEDON_FN void init_network(const NetworkShape& shape, const RandomStream& stream, float* params) {
   DrawSequence draws{stream, 0};
   const int32_t inputs = shape.observation.size();

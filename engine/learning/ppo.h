@@ -42,8 +42,8 @@ inline int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfi
   return ppo_scratch_size(shape) + static_cast<int64_t>(config.rollout_steps) * (2 + config.update_epochs);
 }
 
-/// One learner's whole update from one rollout of at most `rollout_steps` steps. The order of its minibatches comes from
-/// `stream`, so give each learner and window its own. Allocates nothing. Returns the means of the last epoch.
+/// One learner's whole update from one rollout of at most `rollout_steps` steps. The order of its minibatches comes
+/// from `stream`, so give each learner and window its own. Allocates nothing. Returns the means of the last epoch.
 inline PpoLoss learn(const Kernel& kernel, const NetworkShape& shape, const LearningConfig& config,
                      const Rollout& rollout, const RandomStream& stream, float* scratch, const Learner& learner) {
   float* const advantage = scratch + ppo_scratch_size(shape);
@@ -55,7 +55,8 @@ inline PpoLoss learn(const Kernel& kernel, const NetworkShape& shape, const Lear
   for (int32_t epoch = 0; epoch < config.update_epochs; ++epoch) {
     permute(stream, rollout.count, index, order + static_cast<int64_t>(epoch) * rollout.count);
   }
-  const PpoBatch batch = {rollout.observation, rollout.action, rollout.log_prob, advantage, target, order, rollout.count};
+  const PpoBatch batch = {rollout.observation, rollout.action, rollout.log_prob, advantage, target, order,
+                          rollout.count};
   return kernel.update(shape, config, batch, scratch, learner);
 }
 

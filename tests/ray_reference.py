@@ -45,12 +45,12 @@ def cast(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     reading, kind = np.zeros(len(scene.direction)), np.zeros(len(scene.direction), int)
     for r, (dx, dy) in enumerate(scene.direction.astype(np.float64).tolist()):
         hits = [
-            (circle_distance(*circle, dx, dy, scene.start), int(k))
-            for circle, k in zip(scene.circles.astype(np.float64).tolist(), scene.circle_type, strict=True)
+            (circle_distance(x, y, radius, dx, dy, scene.start), int(k))
+            for (x, y, radius), k in zip(scene.circles.astype(np.float64).tolist(), scene.circle_type, strict=True)
         ]
         hits += [
-            (segment_distance(*ends, dx, dy, scene.start), scene.wall_type)
-            for ends in scene.segments.astype(np.float64).tolist()
+            (segment_distance(ax, ay, bx, by, dx, dy, scene.start), scene.wall_type)
+            for ax, ay, bx, by in scene.segments.astype(np.float64).tolist()
         ]
         near = [(d, k) for d, k in hits if d is not None and d <= scene.length]
         if near:
