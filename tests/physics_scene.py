@@ -1,6 +1,7 @@
 """Scenes for the physics tests: the model's settings, its arena, crowds without overlap, and motors."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -34,9 +35,9 @@ def arena_walls(width=480.0, height=360.0, corner=19.0, chords=4):
     points = []
     for i, (cx, cy) in enumerate([(1, 1), (0, 1), (0, 0), (1, 0)]):
         center = np.array([width - corner if cx else corner, height - corner if cy else corner])
-        for turn in np.linspace(i * np.pi / 2, (i + 1) * np.pi / 2, chords + 1):
-            points.append(center + corner * np.array([math.cos(turn), math.sin(turn)]))
-    points = np.array(points)
+        turn = np.linspace(i * np.pi / 2, (i + 1) * np.pi / 2, chords + 1)
+        points.append(center + corner * np.column_stack([np.cos(turn), np.sin(turn)]))
+    points = np.concatenate(points)
     return np.hstack([points, np.roll(points, -1, axis=0)])
 
 
@@ -51,7 +52,8 @@ def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=
     slots = np.arange(len(bodies)) if slots is None else np.asarray(slots)
     scene = _engine.physics.Scene(
         CONFIG | settings,
-        *size,
+        size[0],
+        size[1],
         RADIUS,
         DENSITY,
         CIRCLE_RADIUS,
@@ -67,7 +69,7 @@ def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=
     return scene
 
 
-def read(scene, slots=slice(None)):
+def read(scene, slots: Any = slice(None)):
     """Copies of all body fields, (6, bodies)."""
     return np.array([scene.array(name)[slots] for name in FIELDS])
 
@@ -82,7 +84,7 @@ def velocities(scene):
     return np.column_stack([scene.array("velocity_x"), scene.array("velocity_y")]).astype(float)
 
 
-def drive(scene, left, right, slots=slice(None)):
+def drive(scene, left, right, slots: Any = slice(None)):
     """Sets force and torque from two motors 135° to either side of the heading (model, section 4)."""
     angle = scene.array("angle")[slots]
     total = np.asarray(left) + np.asarray(right)
@@ -90,6 +92,16 @@ def drive(scene, left, right, slots=slice(None)):
     scene.array("force_y")[slots] = np.cos(angle) * total
     arm = RADIUS * math.sin(math.radians(135.0))
     scene.array("force_torque")[slots] = (np.asarray(right) - np.asarray(left)) * arm
+
+
+def random_drive(scene, steps, seed, slots, period=20):
+    """Yields 0, 1, …, steps - 1, each time with motor forces set; drawn anew every `period` steps."""
+    rng = np.random.default_rng(seed)
+    for start in range(0, steps, period):
+        forces = rng.uniform(-20.0, 80.0, (2, len(slots)))
+        for step in range(start, min(start + period, steps)):
+            drive(scene, forces[0], forces[1], slots)
+            yield step
 
 
 def scatter(rng, bodies, circles, width=480.0, height=360.0, margin=12.0):

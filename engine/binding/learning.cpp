@@ -35,7 +35,7 @@ using ObservationSizes = std::tuple<int32_t, int32_t, int32_t, int32_t>;
 NetworkShape to_shape(const ObservationSizes& sizes) {
   const auto [rays, types, touches, dense] = sizes;
   if (rays < 0 || rays > PACKED_RAYS) throw nb::value_error("shape: rays must be 0 to 32");
-  if (types < 1 || types > 255) throw nb::value_error("shape: types must be 1 to 255");
+  if (types < 1 || types > MAX_RAY_TYPES) throw nb::value_error("shape: types must be 1 to 16");
   if (touches < 0 || touches > 64) throw nb::value_error("shape: touches must be 0 to 64");
   if (dense < 0 || dense > MAX_DENSE) throw nb::value_error("shape: dense must be 0 to 6");
   return {{rays, types, touches, dense}};

@@ -4,6 +4,7 @@
 #include "kernel/network_forward.h"
 #include "kernel/ppo_loss.h"
 #include "kernel/ppo_scratch.h"
+#include "lanes/transpose.h"
 
 namespace hedon {
 namespace {
@@ -58,6 +59,42 @@ HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params,
   }
 }
 
+/// Adds each sample's derivative to the rows of its rays. First, for each ray and type, which samples hit it, as bits
+/// (and one more row of bits for those that hit nothing). Then each row of weights is summed in registers over its
+/// samples, in order: fewer stores than visiting all the rows of one sample at a time.
+HEDON_INLINE void rays_backward(const ObservationShape& sizes, const PackedObservation* const* observation, int count,
+                                const float* by_sum, float* rows) {
+  static_assert(BLOCK <= 64, "one bit per sample");
+  uint64_t hit[PACKED_RAYS * (MAX_RAY_TYPES + 1)];
+  const int32_t stride = sizes.types + 1;
+  for (int32_t i = 0; i < sizes.rays * stride; ++i) hit[i] = 0;
+  for (int s = 0; s < count; ++s) {
+    const PackedObservation& seen = *observation[s];
+    const uint64_t bit = uint64_t{1} << s;
+    uint64_t* of_ray = hit;
+    for (int32_t r = 0; r < sizes.rays; ++r, of_ray += stride) {
+      of_ray[seen.ray[r] != 0.0f ? seen.ray_type[r] : sizes.types] |= bit;
+    }
+  }
+  const uint64_t* bits_of = hit;
+  for (int32_t r = 0; r < sizes.rays; ++r, ++bits_of) {
+    for (int32_t k = 0; k < sizes.types; ++k, ++bits_of, rows += HIDDEN) {
+      uint64_t bits = *bits_of;
+      if (bits == 0) continue;
+      Lanes total[WIDTH];
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { total[c] = load(rows + c * LANES); });
+      for (; bits != 0; bits &= bits - 1) {
+        const int s = __builtin_ctzll(bits);
+        const Lanes x = broadcast(observation[s]->ray[r]);
+        unroll<WIDTH>([&](auto c) HEDON_INLINED {
+          total[c] = multiply_add(x, load(by_sum + s * HIDDEN + c * LANES), total[c]);
+        });
+      }
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { store(rows + c * LANES, total[c]); });
+    }
+  }
+}
+
 /// Backward through the first layer: adds each sample's derivative to the rows of its rays, touches and dense entries.
 template <class Shape>
 HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedObservation* const* observation,
@@ -65,6 +102,7 @@ HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedOb
   const ObservationShape& sizes = shape.observation;
   float* const touch_rows = gradient + shape.w1() + sizes.rays * sizes.types * HIDDEN;
   float* const dense_rows = touch_rows + sizes.touches * HIDDEN;
+  rays_backward(sizes, observation, count, by_sum, gradient + shape.w1());
   alignas(64) float dense[BLOCK * DENSE_STRIDE];
   Lanes bias[WIDTH];
   unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(gradient + shape.b1() + c * LANES); });
@@ -75,12 +113,6 @@ HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedOb
       by[c] = load(by_sum + s * HIDDEN + c * LANES);
       bias[c] = bias[c] + by[c];
     });
-    float* group = gradient + shape.w1();
-    for (int32_t r = 0; r < sizes.rays; ++r, group += sizes.types * HIDDEN) {
-      float* row = group + seen.ray_type[r] * HIDDEN;
-      const Lanes x = broadcast(seen.ray[r]);
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { store(row + c * LANES, multiply_add(x, by[c], load(row + c * LANES))); });
-    }
     for (uint64_t bits = seen.touch; bits != 0; bits &= bits - 1) {
       float* row = touch_rows + __builtin_ctzll(bits) * HIDDEN;
       unroll<WIDTH>([&](auto c) HEDON_INLINED { store(row + c * LANES, load(row + c * LANES) + by[c]); });
@@ -89,7 +121,8 @@ HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedOb
   }
   unroll<WIDTH>([&](auto c) HEDON_INLINED { store(gradient + shape.b1() + c * LANES, bias[c]); });
   multiply<Shape::rows, Shape::lanes, 1, DENSE_STRIDE>(
-      dense, by_sum, sizes.dense, count, [&](int row, int column) HEDON_INLINED { return load(dense_rows + row * HIDDEN + column); },
+      dense, by_sum, sizes.dense, count,
+      [&](int row, int column) HEDON_INLINED { return load(dense_rows + row * HIDDEN + column); },
       [&](int row, int column, Lanes total) HEDON_INLINED { store(dense_rows + row * HIDDEN + column, total); });
 }
 
@@ -140,10 +173,7 @@ PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& c
                               const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
   const PpoScratch memory = split_scratch(scratch);
   fold_bias(shape, params, memory.folded);
-  const float* const w2 = params + shape.w2();
-  for (int row = 0; row < HIDDEN; ++row) {
-    for (int column = 0; column < HIDDEN; ++column) memory.w2_transposed[column * HIDDEN + row] = w2[row * HIDDEN + column];
-  }
+  transpose(params + shape.w2(), HIDDEN, memory.w2_transposed);
   for (int32_t i = 0; i < shape.size(); i += LANES) store(gradient + i, broadcast(0.0f));
 
   const int32_t size = config.minibatch_size;

@@ -13,6 +13,7 @@ namespace hedon {
 
 inline constexpr int PACKED_RAYS = 32;
 inline constexpr int MAX_DENSE = 6;
+inline constexpr int MAX_RAY_TYPES = 16;  ///< of what a ray can hit
 
 /// One observation: 192 bytes, three cache lines.
 struct alignas(64) PackedObservation {
@@ -26,7 +27,7 @@ static_assert(sizeof(PackedObservation) == 192);
 /// Sizes of the observation. Input row of ray r and type k: r * types + k; then touch (type, sector); then dense.
 struct ObservationShape {
   int32_t rays;
-  int32_t types;
+  int32_t types;    ///< at most MAX_RAY_TYPES
   int32_t touches;  ///< types * sectors, at most 64
   int32_t dense;    ///< 5 or 6
 

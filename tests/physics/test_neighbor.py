@@ -1,0 +1,205 @@
+"""The neighbor list misses nothing, and neither it, nor slots, nor threads change a bit."""
+
+import numpy as np
+import pytest
+from physics_scene import CIRCLE_RADIUS, RADIUS, arena_walls, crowd, make_scene, positions, random_drive, read
+
+BODIES = 120
+
+
+def run(steps=120, threads=1, slots=None, rebuild_every=0, seed=1, **settings):
+    """Bits of a driven crowd after some steps, in canonical order, and its counters."""
+    scene = crowd(seed, BODIES, 60, slots, **settings)
+    slots = np.arange(BODIES) if slots is None else slots
+    for step in random_drive(scene, steps, seed + 1, slots):
+        if rebuild_every and step % rebuild_every == 0:
+            scene.set_stale()
+        scene.step(1, threads)
+    place = {slot: rank for rank, slot in enumerate(slots)}
+    contacts = sorted(
+        (row[0], place[row[1]], place[row[2]] if row[0] == 0 else row[2], *row[3:])
+        for row in scene.contacts()
+    )
+    return read(scene, slots).view(np.int32), contacts, scene.counters()
+
+
+@pytest.fixture(scope="module")
+def reference():
+    state, contacts, counters = run()
+    assert len(contacts) > 100
+    assert counters["batches"] > 1
+    return state, contacts, counters
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"threads": 2},
+        {"threads": 3},
+        {"rebuild_every": 1},
+        {"rebuild_every": 7},
+        {"neighbor_skin": 0.5},
+        {"neighbor_skin": 20.0},
+        {"slots": np.random.default_rng(5).permutation(BODIES + 30)[:BODIES], "capacity": BODIES + 30},
+        {"slots": np.arange(BODIES)[::-1], "threads": 2, "neighbor_skin": 9.0},
+    ],
+    ids=str,
+)
+def test_what_must_not_matter_changes_no_bit(reference, change):
+    state, contacts, _ = run(**change)
+    np.testing.assert_array_equal(state, reference[0])
+    assert contacts == reference[1]
+
+
+def test_the_order_does_matter(reference):
+    """Else the test of permuted slots would prove nothing: the order itself decides who is solved first."""
+    scene = crowd(1, BODIES, 60)
+    scene.set_order(list(range(BODIES))[::-1])
+    for _ in random_drive(scene, 120, 2, np.arange(BODIES)):
+        scene.step()
+    assert (read(scene).view(np.int32) != reference[0]).any()
+
+
+def test_the_list_is_used_again_while_it_lasts(reference):
+    assert 10 < reference[2]["builds"] < 80
+
+
+def test_list_holds_every_overlap_of_a_crowd():
+    """Against all pairs in float64, in each of 500 steps of 200 bodies."""
+    scene = crowd(11, 200, 60)
+    circles = np.column_stack([scene.array("circle_x"), scene.array("circle_y")]).astype(float)
+    walls = arena_walls().astype(np.float32).astype(float)
+    starts, along = walls[:, :2], walls[:, 2:] - walls[:, :2]
+    seen = np.zeros(3, int)
+    for _ in random_drive(scene, 500, 12, np.arange(200)):
+        scene.step()
+        place = positions(scene)
+        apart = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1))
+        bodies = {(i, j) for i, j in np.argwhere(apart < 2 * RADIUS) if i < j}
+        reach = np.hypot(*(place[:, None] - circles[None]).transpose(2, 0, 1))
+        foods = {tuple(pair) for pair in np.argwhere(reach < RADIUS + CIRCLE_RADIUS)}
+        offset = place[:, None] - starts[None]
+        t = np.clip((offset * along).sum(2) / (along**2).sum(1), 0, 1)
+        distance = np.linalg.norm(offset - t[..., None] * along, axis=2)
+        sides = {tuple(pair) for pair in np.argwhere(distance < RADIUS)}
+        listed = {kind: {tuple(row[:2]) for row in scene.pairs(kind)} for kind in ("body", "circle", "wall")}
+        assert bodies <= {(min(pair), max(pair)) for pair in listed["body"]}
+        assert foods <= listed["circle"]
+        assert sides <= listed["wall"]
+        seen += [len(bodies), len(foods), len(sides)]
+    assert (seen > 1000).all()
+
+
+@pytest.mark.parametrize(
+    "wall", [[5.0, 140.0, 470.0, 147.0], [300.0, 20.0, 310.0, 340.0], [60.0, 300.0, 420.0, 40.0]]
+)
+def test_walls_in_the_arena_are_found_along_their_whole_length(wall):
+    rng = np.random.default_rng(2)
+    places = rng.uniform([1.0, 1.0], [479.0, 359.0], (400, 2))
+    places[:200] = np.array(wall[:2]) + rng.uniform(0, 1, (200, 1)) * np.subtract(wall[2:], wall[:2])
+    places[:200] += rng.normal(0, 12, (200, 2))
+    scene = make_scene(
+        places, walls=[wall], substeps=1, position_passes=0, velocity_passes=0, pair_limit=20000
+    )
+    scene.step()
+    start, along = np.array(wall[:2]), np.subtract(wall[2:], wall[:2])
+    t = np.clip((places - start) @ along / (along @ along), 0, 1)
+    distance = np.linalg.norm(places - start - t[:, None] * along, axis=1)
+    listed = {row[0] for row in scene.pairs("wall")}
+    assert (
+        set(np.flatnonzero(distance < RADIUS + 3.99))
+        <= listed
+        <= set(np.flatnonzero(distance < RADIUS + 4.01))
+    )
+
+
+def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
+    """A fast body is pushed into a resting one: found, however narrow the skin, with the same bits."""
+
+    def collide(skin):
+        scene = make_scene(
+            [[100.0, 100.0], [126.0, 100.0], [160.0, 104.0]], neighbor_skin=skin, linear_damping=0.0
+        )
+        scene.step(2)
+        scene.array("velocity_x")[0] = 10.0
+        scene.step(6)
+        return read(scene), scene.counters()
+
+    narrow, counters = collide(0.5)
+    wide, wide_counters = collide(60.0)
+    np.testing.assert_array_equal(narrow, wide)
+    assert counters["repeats"] > 0
+    assert wide_counters["repeats"] == 0
+    assert narrow[3, 2] > 0.5  # the third was hit through the second
+
+
+def test_a_full_list_is_a_fault_and_leaves_the_bodies():
+    scene = crowd(1, BODIES, 0, pair_limit=20)
+    before = read(scene)
+    with pytest.raises(RuntimeError, match="neighbor_overflow"):
+        scene.step()
+    np.testing.assert_array_equal(read(scene), before)
+
+
+def test_a_number_that_is_not_finite_is_a_fault():
+    scene = crowd(1, 30, 0)
+    scene.step()
+    scene.array("velocity_x")[7] = np.nan
+    with pytest.raises(RuntimeError, match="not_finite"):
+        scene.step(1, 2)
+
+
+def test_newcomers_are_seen_by_queries_at_once_and_act_in_the_next_step():
+    scene = make_scene([[100.0, 100.0]], circles=[[300.0, 300.0], [0.0, 0.0]])
+    scene.array("circle_present")[1] = 0
+    scene.step()
+    assert 1 not in scene.near("circle", 100.0, 113.0, 1.0)
+    scene.add_circle(1, 100.0, 113.0)
+    assert 1 in scene.near("circle", 100.0, 113.0, 1.0)
+    scene.step()
+    assert (1, 0, 1) in {row[:3] for row in scene.contacts()}
+
+
+def test_queries_give_all_items_within_reach_once():
+    scene = crowd(2, 150, 100)
+    scene.step()
+    place = positions(scene)
+    for x, y, reach in [(240.0, 180.0, 50.0), (0.0, 0.0, 30.0), (480.0, 360.0, 200.0), (-50.0, 400.0, 120.0)]:
+        near = scene.near("body", x, y, reach)
+        assert len(near) == len(set(near))
+        # The grid keeps the places of the last build.
+        within = np.flatnonzero(np.hypot(*(place - [x, y]).T) < reach - 2.0)
+        assert set(within) <= set(near)
+
+
+def test_an_empty_order_is_a_step_of_nothing():
+    scene = make_scene([[100.0, 100.0]], circles=[[300.0, 300.0]], walls=arena_walls())
+    scene.step()
+    scene.set_order([])
+    scene.step(3, 2)
+    assert scene.contacts() == [] or scene.pairs("body") == []
+    assert scene.near("circle", 300.0, 300.0, 1.0) == [0]
+
+
+def test_impulses_survive_a_change_of_the_order():
+    """A death far away leaves a resting stack as it was, a turned order nearly so."""
+
+    def stack(order):
+        places = [[300.0, 300.0], [100.0, 109.9], [100.0, 129.8]]
+        scene = make_scene(places, walls=[[0.0, 100.0, 200.0, 100.0]], substeps=1)
+        scene.array("force_y")[1:] = -100.0
+        scene.step(40)
+        carried = scene.pairs("body")[0][2]
+        scene.set_order(order)
+        scene.array("force_y")[:] = 0.0
+        scene.step()
+        return carried, read(scene)[:, 1:]
+
+    carried, unchanged = stack([0, 1, 2])
+    assert carried > 5.0
+    np.testing.assert_array_equal(stack([1, 2])[1], unchanged)
+    np.testing.assert_allclose(stack([2, 1])[1], unchanged, atol=1e-5)
+    # Without warm start the stack would stay at rest; with it, the old impulses push it first.
+    cold = make_scene(unchanged[:2].T, walls=[[0.0, 100.0, 200.0, 100.0]], substeps=1)
+    cold.step()
+    assert np.abs(cold.array("velocity_y")).max() < 1e-6 < np.abs(unchanged[4]).max()
