@@ -49,7 +49,7 @@ class Case:
     advantage: np.ndarray
     target: np.ndarray
 
-    def batch(self) -> tuple[np.ndarray, ...]:
+    def batch(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The arguments that `gradient` and `update` take after the parameters."""
         return self.observation, self.action, self.log_prob, self.advantage, self.target
 

@@ -11,7 +11,9 @@ namespace {
 class FloatMode {
  public:
 #if defined(__SSE__)
-  FloatMode() : saved_(__builtin_ia32_stmxcsr()) { __builtin_ia32_ldmxcsr(0x9fc0); }  // all exceptions masked, FTZ, DAZ, nearest
+  FloatMode() : saved_(__builtin_ia32_stmxcsr()) {
+    __builtin_ia32_ldmxcsr(0x9fc0);
+  }  // all exceptions masked, FTZ, DAZ, nearest
   ~FloatMode() { __builtin_ia32_ldmxcsr(saved_); }
 
  private:

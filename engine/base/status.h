@@ -27,12 +27,17 @@ struct StatusText {
 
 inline constexpr StatusText STATUS_TEXT[] = {
     {"ok", "No error.", ""},
-    {"neighbor_overflow", "More neighboring pairs than the list can hold.", "Lower the number of agents or physics.neighbor_skin."},
-    {"contact_outside_skin", "A body moved further than the neighbor list allows for.", "Raise physics.neighbor_skin or lower physics.max_speed."},
-    {"event_overflow", "More births or deaths between two reads than the event buffer holds.", "Read the events more often."},
-    {"not_finite", "A number of the state is not finite.", "Look at the named agent; lower learning.learning_rate or the forces."},
+    {"neighbor_overflow", "More neighboring pairs than the list can hold.",
+     "Lower the number of agents or physics.neighbor_skin."},
+    {"contact_outside_skin", "A body moved further than the neighbor list allows for.",
+     "Raise physics.neighbor_skin or lower physics.max_speed."},
+    {"event_overflow", "More births or deaths between two reads than the event buffer holds.",
+     "Read the events more often."},
+    {"not_finite", "A number of the state is not finite.",
+     "Look at the named agent; lower learning.learning_rate or the forces."},
     {"outside_arena", "A body left the arena.", "Lower physics.dt or the forces."},
-    {"initial_placement", "The initial agents or foods find no free place in the arena.", "Lower the initial counts or enlarge the arena."},
+    {"initial_placement", "The initial agents or foods find no free place in the arena.",
+     "Lower the initial counts or enlarge the arena."},
     {"id_overflow", "A counter of agents or steps is exhausted.", "Start a new run."},
 };
 static_assert(sizeof(STATUS_TEXT) / sizeof(StatusText) == static_cast<int>(Status::count));

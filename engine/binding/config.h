@@ -16,10 +16,10 @@ namespace hedon {
 /// Names of an enumeration's values, for `fill`.
 template <class E>
 struct EnumNames;
-#define HEDON_ENUM(E, names)                  \
-  template <>                                 \
-  struct EnumNames<E> {                       \
-    static constexpr auto& text = names;      \
+#define HEDON_ENUM(E, names)             \
+  template <>                            \
+  struct EnumNames<E> {                  \
+    static constexpr auto& text = names; \
   }
 HEDON_ENUM(CriticTarget, CRITIC_TARGET_NAMES);
 HEDON_ENUM(MutationNoise, MUTATION_NOISE_NAMES);

@@ -120,9 +120,8 @@ class Scene {
     StaticCircles::for_each_field([&](const char* field, auto member) {
       match((std::string("circle_") + field).c_str(), member, state_.circles);
     });
-    BodyForce::for_each_field([&](const char* field, auto member) {
-      match((std::string("force_") + field).c_str(), member, force_);
-    });
+    BodyForce::for_each_field(
+        [&](const char* field, auto member) { match((std::string("force_") + field).c_str(), member, force_); });
     if (found.is_none()) throw nb::key_error(name.c_str());
     return found;
   }
@@ -205,15 +204,16 @@ void bind_physics(nb::module_& module) {
       .def(nb::init<nb::dict, float, float, float, float, float, int64_t, int64_t,
                     const std::vector<std::array<float, 4>>&, int64_t>(),
            nb::arg("config"), nb::arg("width"), nb::arg("height"), nb::arg("radius"), nb::arg("density"),
-           nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"),
-           nb::arg("pair_limit") = 0)
+           nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"), nb::arg("pair_limit") = 0)
       .def("step", &Scene::step, nb::arg("steps") = 1, nb::arg("threads") = 1, nb::arg("record") = true,
            nb::call_guard<nb::gil_scoped_release>(), "Steps; raises RuntimeError with the name of a fault.")
       .def("set_order", &Scene::set_order, nb::arg("slots"), "Slots of the bodies that live, in canonical order.")
       .def("array", &Scene::array, nb::arg("name"),
-           nb::sig("def array(self, name: str) -> numpy.typing.NDArray[typing.Any]"), "A writable view of one array by slot.")
+           nb::sig("def array(self, name: str) -> numpy.typing.NDArray[typing.Any]"),
+           "A writable view of one array by slot.")
       .def("pairs", &Scene::pairs, nb::arg("kind"),
-           nb::sig("def pairs(self, kind: str) -> list[tuple[int, int, float, float, int]]"), "Listed pairs with impulses and marks.")
+           nb::sig("def pairs(self, kind: str) -> list[tuple[int, int, float, float, int]]"),
+           "Listed pairs with impulses and marks.")
       .def("contacts", &Scene::contacts, "Contacts that the visitor heard of in the last step.")
       .def("near", &Scene::near, nb::arg("kind"), nb::arg("x"), nb::arg("y"), nb::arg("reach"))
       .def("add_circle", &Scene::add_circle, nb::arg("slot"), nb::arg("x"), nb::arg("y"))

@@ -50,18 +50,40 @@ void bind_random(nb::module_& module) {
         std::vector<double> out(static_cast<size_t>(count));
         for (size_t i = 0; i < out.size(); ++i) {
           const Random4 r = stream.draw(static_cast<uint32_t>(i));
-          if (name == "uniform") out[i] = to_uniform(r.word[0]);
-          else if (name == "normal") out[i] = to_normal(r.word[0], r.word[1]).first;
-          else if (name == "cauchy") out[i] = to_cauchy(r.word[0]);
-          else throw nb::value_error("form: 'uniform', 'normal' or 'cauchy'");
+          if (name == "uniform")
+            out[i] = to_uniform(r.word[0]);
+          else if (name == "normal")
+            out[i] = to_normal(r.word[0], r.word[1]).first;
+          else if (name == "cauchy")
+            out[i] = to_cauchy(r.word[0]);
+          else
+            throw nb::value_error("form: 'uniform', 'normal' or 'cauchy'");
         }
         return own(std::move(out));
       },
       nb::arg("seed"), nb::arg("form"), nb::arg("count"), "`count` draws of a distribution.");
   random.def("exp", [](FloatsIn x) { return map(x, exp_double); }, nb::arg("x"));
   random.def("log", [](FloatsIn x) { return map(x, log_double); }, nb::arg("x"));
-  random.def("sin", [](FloatsIn x) { return map(x, [](double v) { double s, c; sincos_double(v, &s, &c); return s; }); }, nb::arg("x"));
-  random.def("cos", [](FloatsIn x) { return map(x, [](double v) { double s, c; sincos_double(v, &s, &c); return c; }); }, nb::arg("x"));
+  random.def(
+      "sin",
+      [](FloatsIn x) {
+        return map(x, [](double v) {
+          double s, c;
+          sincos_double(v, &s, &c);
+          return s;
+        });
+      },
+      nb::arg("x"));
+  random.def(
+      "cos",
+      [](FloatsIn x) {
+        return map(x, [](double v) {
+          double s, c;
+          sincos_double(v, &s, &c);
+          return c;
+        });
+      },
+      nb::arg("x"));
 }
 
 }  // namespace hedon

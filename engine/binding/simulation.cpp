@@ -78,7 +78,8 @@ class PythonSimulation {
 
   void run(int64_t steps) {
     if (steps < 0) throw nb::value_error("steps: at least 0");
-    if (simulation_.pool().forked()) throw std::runtime_error("this process was forked from the simulation's; make a new one");
+    if (simulation_.pool().forked())
+      throw std::runtime_error("this process was forked from the simulation's; make a new one");
     if (running_.exchange(true)) throw std::runtime_error("busy: the simulation is running in another thread");
     {
       const nb::gil_scoped_release release;
@@ -92,7 +93,8 @@ class PythonSimulation {
     World& from = world(index);
     std::vector<int64_t> rows(static_cast<size_t>(from.clock().event_count));
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
-    nb::dict out = columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
+    nb::dict out =
+        columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
     from.clock().event_count = 0;
     return out;
   }
@@ -130,7 +132,8 @@ class PythonSimulation {
     const auto view = []<class T>(const T& array) {
       return Array<const typename T::Scalar>{array.data(), static_cast<int64_t>(array.shape(0))};
     };
-    if (!simulation_.set_scene(index, {view(x), view(y), view(angle), view(energy), view(food_x), view(food_y), view(food_kind)})) {
+    if (!simulation_.set_scene(
+            index, {view(x), view(y), view(angle), view(energy), view(food_x), view(food_y), view(food_kind)})) {
       throw nb::value_error("more agents than slots, or more foods of a kind than its capacity, or an unknown kind");
     }
   }
@@ -140,13 +143,16 @@ class PythonSimulation {
     const Kernel* kernel = find_kernel(name.c_str());
     if (kernel != nullptr) return kernel;
     std::string known;
-    for (const char* const* at = kernel_names(); *at != nullptr; ++at) known += std::string(known.empty() ? "" : ", ") + *at;
-    throw nb::value_error(("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
+    for (const char* const* at = kernel_names(); *at != nullptr; ++at)
+      known += std::string(known.empty() ? "" : ", ") + *at;
+    throw nb::value_error(
+        ("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
   }
 
   static std::vector<Segment> to_segments(const WallsIn& walls) {
     std::vector<Segment> segments;
-    for (size_t i = 0; i < walls.shape(0); ++i) segments.push_back({{walls(i, 0), walls(i, 1)}, {walls(i, 2), walls(i, 3)}});
+    for (size_t i = 0; i < walls.shape(0); ++i)
+      segments.push_back({{walls(i, 0), walls(i, 1)}, {walls(i, 2), walls(i, 3)}});
     return segments;
   }
 
@@ -169,8 +175,9 @@ class PythonSimulation {
 
 /// Arrays that have one row per slot; all others are flat.
 bool is_by_slot(const std::string& name) {
-  static const std::set<std::string> names = {"alive", "living", "free", "eaten", "genome", "touch", "params", "folded_bias",
-                                              "first_moment", "second_moment", "updates", "action", "log_prob", "value", "reward"};
+  static const std::set<std::string> names = {"alive",   "living", "free",        "eaten",        "genome",
+                                              "touch",   "params", "folded_bias", "first_moment", "second_moment",
+                                              "updates", "action", "log_prob",    "value",        "reward"};
   return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
 }
 
@@ -208,7 +215,8 @@ nb::list view_names(PythonSimulation& self) {
       names.append(name);
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
       T::for_each_field([&](const char* column, auto member) {
-        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(std::declval<T>().*member)>>) names.append(name + "." + column);
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(std::declval<T>().*member)>>)
+          names.append(name + "." + column);
       });
     }
   });
@@ -219,32 +227,51 @@ nb::list view_names(PythonSimulation& self) {
 
 void bind_simulation(nb::module_& module) {
   using S = PythonSimulation;
-  nb::class_<S>(module, "Simulation", "Many worlds under one config. Views are read-only and valid until the next `run`.")
-      .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&, const std::vector<int32_t>&>(),
+  nb::class_<S>(module, "Simulation",
+                "Many worlds under one config. Views are read-only and valid until the next `run`.")
+      .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&,
+                    const std::vector<int32_t>&>(),
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
            nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{})
       .def("run", &S::run, nb::arg("steps"), "Advances every world that is not over; releases the interpreter lock.")
       .def("take_rows", &S::take_rows, nb::arg("world"),
-           nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"), "Columns of the agents that died since the last call.")
+           nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
+           "Columns of the agents that died since the last call.")
       .def("living_rows", &S::living_rows, nb::arg("world"),
-           nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"), "Columns of the living, in the order of their ids.")
+           nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
+           "Columns of the living, in the order of their ids.")
       .def("observations", &S::observations, nb::arg("world"),
-           nb::sig("def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]"), "Full observations of the living: (living, size).")
-      .def("set_scene", &S::set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
-           nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"), "Empties a world and puts these agents and foods into it.")
-      .def("view", [](nb::handle self, int world, const std::string& path) { return view(self, world, path); },
-           nb::arg("world"), nb::arg("path"),
-           nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"), "One array of a world's state, by slot.")
+           nb::sig("def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]"),
+           "Full observations of the living: (living, size).")
+      .def("set_scene", &S::set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"),
+           nb::arg("energy"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
+           "Empties a world and puts these agents and foods into it.")
+      .def(
+          "view", [](nb::handle self, int world, const std::string& path) { return view(self, world, path); },
+          nb::arg("world"), nb::arg("path"),
+          nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"),
+          "One array of a world's state, by slot.")
       .def("view_names", &view_names, "Paths that `view` knows.")
-      .def("counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
-      .def("clock", [](S& s, int world) { return to_dict(s.world(world).clock()); }, nb::arg("world"))
-      .def("digest", [](S& s, int world) { s.world(world); return s.get().digest(world); }, nb::arg("world"))
-      .def("seconds", [](S& s, int world) {
-             s.world(world);
-             nb::dict out;
-             for (size_t p = 0; p < s.get().seconds(world).size(); ++p) out[PART_NAMES[p]] = s.get().seconds(world)[p];
-             return out;
-           }, nb::arg("world"), "Seconds spent in each part by the world's first thread.")
+      .def(
+          "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
+      .def(
+          "clock", [](S& s, int world) { return to_dict(s.world(world).clock()); }, nb::arg("world"))
+      .def(
+          "digest",
+          [](S& s, int world) {
+            s.world(world);
+            return s.get().digest(world);
+          },
+          nb::arg("world"))
+      .def(
+          "seconds",
+          [](S& s, int world) {
+            s.world(world);
+            nb::dict out;
+            for (size_t p = 0; p < s.get().seconds(world).size(); ++p) out[PART_NAMES[p]] = s.get().seconds(world)[p];
+            return out;
+          },
+          nb::arg("world"), "Seconds spent in each part by the world's first thread.")
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })
       .def_prop_ro("kernel", [](S& s) { return s.get().kernel().name; })

@@ -21,10 +21,13 @@ struct GenomeShape {
 HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 /// A founder's genome: independent normals around the configured means.
-HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t agent_id, float* genome) {
+HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t agent_id,
+                          float* genome) {
   const RandomStream random{seed, Purpose::initial_genome, agent_id, 0};
   for (int32_t g = 0; g < shape.size(); ++g) {
-    const float mean = g < shape.kinds ? config.initial_mean_food : g == shape.action() ? config.initial_mean_action : 0.0f;
+    const float mean = g < shape.kinds       ? config.initial_mean_food
+                       : g == shape.action() ? config.initial_mean_action
+                                             : 0.0f;
     const Random4 bits = random.draw(static_cast<uint32_t>(g));
     genome[g] = clip(mean + config.initial_sd * to_normal(bits.word[0], bits.word[1]).first, -config.weight_limit,
                      config.weight_limit);
@@ -37,7 +40,8 @@ HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, 
 HEDON_FN void inherit(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t child_id,
                       uint32_t birth_in_window, const float* parent, float* child) {
   const bool frozen = config.mutation_noise == MutationNoise::frozen;
-  const RandomStream random{seed, frozen ? Purpose::frozen_mutation : Purpose::mutation, frozen ? birth_in_window : child_id, 0};
+  const RandomStream random{seed, frozen ? Purpose::frozen_mutation : Purpose::mutation,
+                            frozen ? birth_in_window : child_id, 0};
   for (int32_t g = 0; g < shape.size(); ++g) {
     const float noise = to_cauchy(random.draw(static_cast<uint32_t>(g)).word[0]);
     child[g] = clip(parent[g] + config.mutation_scale * noise, -config.weight_limit, config.weight_limit);

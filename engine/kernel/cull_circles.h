@@ -9,7 +9,8 @@ namespace {
 
 /// See `Kernel::cull_circles`. A circle is left out where it lies beyond the rays' reach or wholly behind one of the
 /// fan's edges; what is kept may still be missed by every ray.
-int32_t cull_circles(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count, int32_t* found) {
+int32_t cull_circles(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count,
+                     int32_t* found) {
   const Lanes center_x = broadcast(fan.x), center_y = broadcast(fan.y), reach = broadcast(fan.reach);
   const Lanes right_x = broadcast(fan.right_x), right_y = broadcast(fan.right_y);
   const Lanes left_x = broadcast(fan.left_x), left_y = broadcast(fan.left_y);

@@ -58,10 +58,10 @@ struct RayScene {
 
 /// The sector of the plane that one agent's rays can reach.
 struct Fan {
-  float x, y;                          ///< the agent's center [u]
-  float reach;                         ///< of the rays, from the center [u]
-  float right_x, right_y;              ///< direction of the right-most ray; 0 where the fan is not convex
-  float left_x, left_y;                ///< direction of the left-most ray; 0 where the fan is not convex
+  float x, y;              ///< the agent's center [u]
+  float reach;             ///< of the rays, from the center [u]
+  float right_x, right_y;  ///< direction of the right-most ray; 0 where the fan is not convex
+  float left_x, left_y;    ///< direction of the left-most ray; 0 where the fan is not convex
 };
 
 struct Kernel {
@@ -90,8 +90,8 @@ struct Kernel {
   int32_t (*cull_circles)(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count,
                           int32_t* found);
 
-  /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type` likewise.
-  /// Both have PACKED_RAYS entries, 0 past the scene's rays.
+  /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type`
+  /// likewise. Both have PACKED_RAYS entries, 0 past the scene's rays.
   void (*cast_rays)(const RayScene& scene, float* reading, uint8_t* type);
 
   /// Multiply-adds in registers, to measure this processor's ceiling. Reads a factor (below 1) from `result` and

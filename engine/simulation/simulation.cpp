@@ -87,7 +87,8 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
   std::vector<int32_t> count(static_cast<size_t>(shape_.kinds));
   for (int64_t f = 0; f < scene.food_kind.count; ++f) {
     const int32_t kind = scene.food_kind[f];
-    if (kind < 0 || kind >= shape_.kinds || ++count[static_cast<size_t>(kind)] > config_.food[kind].capacity) return false;
+    if (kind < 0 || kind >= shape_.kinds || ++count[static_cast<size_t>(kind)] > config_.food[kind].capacity)
+      return false;
   }
   empty(target);
   for (int64_t i = 0; i < scene.x.count; ++i) {
@@ -110,16 +111,17 @@ uint64_t Simulation::digest(int index) const {
     hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
     hash ^= hash >> 32;
   };
-  for_each_array(worlds_[static_cast<size_t>(index)].state, "", [&]<class T>(const std::string&, const Array<T>& array) {
-    const size_t bytes = static_cast<size_t>(array.count) * sizeof(T);
-    const char* data = reinterpret_cast<const char*>(array.data);
-    mix(bytes);
-    for (size_t at = 0; at < bytes; at += 8) {
-      uint64_t word = 0;
-      memcpy(&word, data + at, bytes - at < 8 ? bytes - at : 8);
-      mix(word);
-    }
-  });
+  for_each_array(worlds_[static_cast<size_t>(index)].state, "",
+                 [&]<class T>(const std::string&, const Array<T>& array) {
+                   const size_t bytes = static_cast<size_t>(array.count) * sizeof(T);
+                   const char* data = reinterpret_cast<const char*>(array.data);
+                   mix(bytes);
+                   for (size_t at = 0; at < bytes; at += 8) {
+                     uint64_t word = 0;
+                     memcpy(&word, data + at, bytes - at < 8 ? bytes - at : 8);
+                     mix(word);
+                   }
+                 });
   return hash;
 }
 
@@ -145,7 +147,8 @@ void Simulation::run(int64_t steps) {
   std::deque<TeamState> single(static_cast<size_t>(threads));
   std::deque<TeamState> teams(static_cast<size_t>(shared));
   const auto first_thread = [&](int team) { return team * threads / shared; };
-  for (int team = 0; team < shared; ++team) teams[static_cast<size_t>(team)].size = first_thread(team + 1) - first_thread(team);
+  for (int team = 0; team < shared; ++team)
+    teams[static_cast<size_t>(team)].size = first_thread(team + 1) - first_thread(team);
 
   pool_->run([&](int thread) {
     for (int i = next.fetch_add(1); i < alone; i = next.fetch_add(1)) {
@@ -154,7 +157,8 @@ void Simulation::run(int64_t steps) {
     for (int team = 0; team < shared; ++team) {
       const int first = first_thread(team);
       if (thread < first || thread >= first_thread(team + 1)) continue;
-      advance_with(Team(teams[static_cast<size_t>(team)], thread - first), thread, going[static_cast<size_t>(alone + team)], steps);
+      advance_with(Team(teams[static_cast<size_t>(team)], thread - first), thread,
+                   going[static_cast<size_t>(alone + team)], steps);
     }
   });
 }

@@ -28,7 +28,8 @@ class Simulation {
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
-             const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel, const std::vector<int32_t>& slot_order);
+             const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
+             const std::vector<int32_t>& slot_order);
 
   /// Empties a world and puts these agents and foods into it, wherever they are: for looking at chosen scenes.
   /// False where they are more than the world can hold.

@@ -32,13 +32,19 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
 
     const int64_t row = slot * int64_t{shape.steps};
     const int64_t first = int64_t{slot} * shape.network.size();
-    const Rollout rollout{&world.observation(slot, 0), &state.action[row * ACTIONS], &state.log_prob[row],
-                          &state.value[row], &state.reward[row], output[ACTIONS], shape.steps};
+    const Rollout rollout{&world.observation(slot, 0),
+                          &state.action[row * ACTIONS],
+                          &state.log_prob[row],
+                          &state.value[row],
+                          &state.reward[row],
+                          output[ACTIONS],
+                          shape.steps};
     const Learner learner{&state.params[first], &state.first_moment[first], &state.second_moment[first],
                           &state.updates[slot]};
     const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
                               static_cast<uint32_t>(clock.step)};
-    learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride, learner);
+    learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride,
+          learner);
     world.kernel->fold_bias(shape.network, learner.params, world.folded_bias(slot));
   });
   group.once([&] {

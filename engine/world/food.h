@@ -15,7 +15,8 @@ HEDON_FN Vec2 draw_food_place(const World& world, int32_t k, const RandomStream&
   const PlacementConfig& placement = world.config->food[k].placement;
   const Random4 bits = random.draw(index);
   if (placement.form == PlacementForm::uniform) {
-    return {world.config->arena.width * to_uniform(bits.word[0]), world.config->arena.height * to_uniform(bits.word[1])};
+    return {world.config->arena.width * to_uniform(bits.word[0]),
+            world.config->arena.height * to_uniform(bits.word[1])};
   }
   const Vec2 center = placement.centers[world.state.food_stock[k].center];
   const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
@@ -91,7 +92,8 @@ HEDON_FN void grow(World& world) {
     FoodStock& stock = world.state.food_stock[k];
     stock.number += static_cast<double>(config.growth_rate);
     if (stock.number > config.capacity) stock.number = config.capacity;
-    const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k), static_cast<uint32_t>(world.clock().step)};
+    const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k),
+                              static_cast<uint32_t>(world.clock().step)};
     place_missing_food(world, k, random, config.candidates);
   }
 }

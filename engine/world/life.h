@@ -60,7 +60,8 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   life.force_left += left;
   life.force_right += right;
 
-  const float r = reward(world.shape->genome, config.reward, world.genome(slot), meal, force, world.constants->max_force);
+  const float r =
+      reward(world.shape->genome, config.reward, world.genome(slot), meal, force, world.constants->max_force);
   state.reward[slot * int64_t{world.shape->steps} + t] = r;
   life.reward += r;
 
@@ -96,7 +97,8 @@ HEDON_FN bool find_child_place(const World& world, int32_t parent, Vec2* place) 
   for (int32_t i = 0; i < birth.attempts; ++i) {
     const Random4 bits = random.draw(static_cast<uint32_t>(i));
     const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
-    *place = {body.x[parent] + birth.distance_sd.x * normal.first, body.y[parent] + birth.distance_sd.y * normal.second};
+    *place = {body.x[parent] + birth.distance_sd.x * normal.first,
+              body.y[parent] + birth.distance_sd.y * normal.second};
     if (can_place(world, *place, world.config->body.radius)) return true;
   }
   return false;
@@ -112,7 +114,8 @@ HEDON_FN void breed(World& world) {
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
     const int32_t slot = state.living[i];
     if (!(scratch.birth_draw[slot] < birth_rate(world.config->birth, state.life[slot].energy))) continue;
-    const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id), step};
+    const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id),
+                              step};
     const uint32_t key = random.draw(0).word[0];
     int32_t at = parents++;
     for (; at > 0 && scratch.parent_key[at - 1] > key; --at) {
@@ -145,7 +148,8 @@ HEDON_FN void reap(World& world) {
     const Life& life = state.life[slot];
     const int64_t age = clock.step + 1 - life.birth_step;
     const bool dies = age > 0 && (world.scratch.starved[slot] != 0 ||
-                                  world.scratch.death_draw[slot] < hazard(world.config->hazard, static_cast<double>(age), life.energy));
+                                  world.scratch.death_draw[slot] <
+                                      hazard(world.config->hazard, static_cast<double>(age), life.energy));
     if (dies) {
       bury(world, slot);
     } else {

@@ -66,7 +66,8 @@ HEDON_FN bool misses(const Fan& fan, Vec2 a, Vec2 b) {
 }
 
 /// Casts the rays of the agent at position `self` of the living order. `scratch` holds indices of circles.
-HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, int32_t* scratch, PackedObservation& out) {
+HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, int32_t* scratch,
+                              PackedObservation& out) {
   const SensorConfig& sensor = world.config->sensor;
   const WorldConstants& constants = *world.constants;
   const Scene& scene = world.scene;
@@ -89,8 +90,21 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, in
   }
 
   alignas(64) Candidates seen;
-  RayScene rays{seen.x, seen.y, seen.radius, seen.type, 0, seen.ax, seen.ay, seen.bx, seen.by, 0,
-                world.shape->wall_type(), direction_x, direction_y, sensor.ray_count, world.config->body.radius,
+  RayScene rays{seen.x,
+                seen.y,
+                seen.radius,
+                seen.type,
+                0,
+                seen.ax,
+                seen.ay,
+                seen.bx,
+                seen.by,
+                0,
+                world.shape->wall_type(),
+                direction_x,
+                direction_y,
+                sensor.ray_count,
+                world.config->body.radius,
                 sensor.ray_length};
   const int32_t found = world.kernel->cull_circles(fan, scene.x.data, scene.y.data, scene.radius.data,
                                                    static_cast<int32_t>(scene.count), scratch);

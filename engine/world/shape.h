@@ -18,9 +18,9 @@ namespace hedon {
 inline constexpr int AGENT_TYPE = 0;
 
 struct WorldShape {
-  int32_t slots;        ///< most agents alive at a time
-  int32_t kinds;        ///< food kinds
-  int32_t foods;        ///< most foods present at a time, all kinds
+  int32_t slots;  ///< most agents alive at a time
+  int32_t kinds;  ///< food kinds
+  int32_t foods;  ///< most foods present at a time, all kinds
   int32_t walls;
   int32_t outer_walls;  ///< the first walls, a closed convex polygon
   int32_t events;       ///< deaths that can wait for the reader
@@ -55,13 +55,13 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
 /// Numbers that every step needs, worked out once.
 struct WorldConstants {
   BodyShape body;
-  float motor_arm;              ///< lever of each motor about the center [u]
-  float max_force;              ///< largest norm of the two forces: the norm of (f_max, f_max)
-  float mouth_cosine;           ///< cosine of the mouth's half angle
-  float ray_sine[MAX_RAYS];     ///< of each ray's angle to the heading; past the last ray the last repeats
+  float motor_arm;           ///< lever of each motor about the center [u]
+  float max_force;           ///< largest norm of the two forces: the norm of (f_max, f_max)
+  float mouth_cosine;        ///< cosine of the mouth's half angle
+  float ray_sine[MAX_RAYS];  ///< of each ray's angle to the heading; past the last ray the last repeats
   float ray_cosine[MAX_RAYS];
-  bool fan_convex;              ///< the fan spans less than half a turn, so that its edges can cull
-  float sector_sine[65];        ///< of each touch sector's first edge, counter-clockwise of the heading
+  bool fan_convex;        ///< the fan spans less than half a turn, so that its edges can cull
+  float sector_sine[65];  ///< of each touch sector's first edge, counter-clockwise of the heading
   float sector_cosine[65];
 };
 

@@ -1,7 +1,7 @@
 /// All that a world is at one moment: read this first.
 ///
-/// Agents live in *slots*, which are reused; an `agent_id` never is. `living` lists the slots of the living in the order
-/// of their ids, and every loop over agents follows it, so that which slot an agent got changes nothing.
+/// Agents live in *slots*, which are reused; an `agent_id` never is. `living` lists the slots of the living in the
+/// order of their ids, and every loop over agents follows it, so that which slot an agent got changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -54,30 +54,29 @@ struct Counters {
   double energy_shared;    ///< given by parents to children: moved, neither made nor lost
   double energy_lost;      ///< held by agents when they died
 
-  HEDON_FIELDS(Counters, births, deaths, births_failed_full, births_failed_space, agent_steps, learners,
-               energy_initial, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped,
-               energy_shared, energy_lost)
+  HEDON_FIELDS(Counters, births, deaths, births_failed_full, births_failed_space, agent_steps, learners, energy_initial,
+               energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped, energy_shared, energy_lost)
 };
 
 /// Growth of one food kind.
 struct FoodStock {
-  double number;       ///< the internal number n_t; its floor is how many foods there should be
-  int64_t eaten;       ///< since the world began
-  int32_t present;     ///< foods in the arena
-  int32_t center;      ///< the Gaussian in use, for switching placement
+  double number;    ///< the internal number n_t; its floor is how many foods there should be
+  int64_t eaten;    ///< since the world began
+  int32_t present;  ///< foods in the arena
+  int32_t center;   ///< the Gaussian in use, for switching placement
 
   HEDON_FIELDS(FoodStock, number, eaten, present, center)
 };
 
 /// Single numbers of a world.
 struct Clock {
-  int64_t step;             ///< steps completed
-  int64_t extinct_step;     ///< -1 while anyone lives
+  int64_t step;          ///< steps completed
+  int64_t extinct_step;  ///< -1 while anyone lives
   int32_t next_agent_id;
   int32_t living_count;
   int32_t free_count;
   int32_t births_in_window;
-  int32_t event_count;      ///< deaths not yet taken by the reader
+  int32_t event_count;  ///< deaths not yet taken by the reader
   int32_t reserved;
 
   HEDON_FIELDS(Clock, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, event_count,
@@ -90,14 +89,14 @@ struct WorldState {
   Array<Counters> counters;  // (1)
 
   // Agents, by slot.
-  Array<uint8_t> alive;     // (slots)
-  Array<int32_t> living;    // (slots) slots of the living in the order of their ids
-  Array<int32_t> free;      // (slots) stack of free slots
-  Array<Life> life;         // (slots)
-  Array<int32_t> eaten;     // (slots, kinds) foods eaten in this life
-  Array<float> genome;      // (slots, genes)
-  Array<uint64_t> touch;    // (slots) bit type * sectors + sector, of the last step
-  PhysicsState physics;     // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
+  Array<uint8_t> alive;   // (slots)
+  Array<int32_t> living;  // (slots) slots of the living in the order of their ids
+  Array<int32_t> free;    // (slots) stack of free slots
+  Array<Life> life;       // (slots)
+  Array<int32_t> eaten;   // (slots, kinds) foods eaten in this life
+  Array<float> genome;    // (slots, genes)
+  Array<uint64_t> touch;  // (slots) bit type * sectors + sector, of the last step
+  PhysicsState physics;   // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
 
   Array<FoodStock> food_stock;  // (kinds)
 
@@ -116,12 +115,13 @@ struct WorldState {
   Array<float> reward;                   // (slots, rollout_steps)
 
   // Deaths that the reader has not yet taken.
-  Array<Life> event;            // (events)
-  Array<int32_t> event_eaten;   // (events, kinds)
-  Array<float> event_genome;    // (events, genes)
+  Array<Life> event;           // (events)
+  Array<int32_t> event_eaten;  // (events, kinds)
+  Array<float> event_genome;   // (events, genes)
 
-  HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock, params, folded_bias, first_moment, second_moment, updates, observation,
-               action, log_prob, value, reward, event, event_eaten, event_genome)
+  HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
+               params, folded_bias, first_moment, second_moment, updates, observation, action, log_prob, value, reward,
+               event, event_eaten, event_genome)
 };
 
 }  // namespace hedon

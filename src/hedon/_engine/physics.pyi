@@ -20,7 +20,7 @@ class Scene:
     def array(self, name: str) -> numpy.typing.NDArray[Any]:
         """A writable view of one array by slot."""
 
-    def pairs(self, kind: str) -> list[dict[str, Any]]:
+    def pairs(self, kind: str) -> list[tuple[int, int, float, float, int]]:
         """Listed pairs with impulses and marks."""
 
     def contacts(self) -> list:

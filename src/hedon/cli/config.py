@@ -5,7 +5,6 @@ from typing import Annotated, Any
 import typer
 
 from hedon.cli.console import make_console
-
 from hedon.config import Config, ConfigError, Problem, load_config
 from hedon.config.problem import format_value, nearest
 

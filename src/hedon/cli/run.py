@@ -64,9 +64,7 @@ def run(
     folder = out or default_folder(config, world_seeds)
     console = make_console()
     worlds = f"{len(world_seeds)} world{'s' if len(world_seeds) > 1 else ''}"
-    console.print(
-        f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}"
-    )
+    console.print(f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}")
     plan = RunPlan(config, world_seeds, steps, folder, threads, frames)
     with make_display(console, tuple(config.food), config.genome.neutral_count, world_seeds) as display:
         manifest = run_plan(plan, display)
@@ -82,9 +80,7 @@ def run(
     files = write_report(open_run(folder))
     console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
     took = duration(manifest.run_seconds or 0.0)
-    console.print(
-        f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}"
-    )
+    console.print(f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}")
     console.print(f"Look at {folder / 'figures'}; make them again with: hedon report {folder}")
 
 

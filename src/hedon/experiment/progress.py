@@ -125,7 +125,7 @@ class LiveDisplay:
             bar,
             table,
             Text(
-                "Births, deaths and food: in the last window. Weights: means over the living. Ctrl-C: end after this window.",
+                "Births, deaths, food: in the last window. Weights: means over the living. Ctrl-C ends after this window.",
                 style="dim",
             ),
         )

@@ -73,7 +73,9 @@ class Display(Protocol):
 
 
 def run(plan: RunPlan, display: Display | None = None) -> Manifest:
-    """Runs a plan and keeps its records, silently where no display is given. Ctrl-C ends it after the current window, with all results kept.
+    """Runs a plan and keeps its records, silently where no display is given.
+
+    Ctrl-C ends it after the current window, with all results kept; a second one ends it at once, likewise.
 
     Returns:
         The manifest as it was saved at the end.
