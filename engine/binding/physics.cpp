@@ -155,7 +155,8 @@ class Scene {
   std::vector<int32_t> near(const std::string& kind, float x, float y, float reach) const {
     std::vector<int32_t> out;
     const auto add = [&](int32_t item) { out.push_back(item); };
-    for_each_near(kind == "body" ? state_.body_grid : state_.circle_grid, x, y, reach, add);
+    if (kind == "body") for_each_body_near(state_, x, y, reach, add);
+    else for_each_circle_near(state_, x, y, reach, add);
     return out;
   }
 
@@ -165,6 +166,12 @@ class Scene {
     state_.circles.y[slot] = y;
     state_.circles.present[slot] = 1;
     insert(state_.circle_grid, slot, x, y);
+    mark_stale(state_);
+  }
+
+  void remove_circle(int32_t slot) {
+    state_.circles.present[slot] = 0;
+    remove(state_.circle_grid, slot);
     mark_stale(state_);
   }
 
@@ -217,6 +224,7 @@ void bind_physics(nb::module_& module) {
       .def("contacts", &Scene::contacts, "Contacts that the visitor heard of in the last step.")
       .def("near", &Scene::near, nb::arg("kind"), nb::arg("x"), nb::arg("y"), nb::arg("reach"))
       .def("add_circle", &Scene::add_circle, nb::arg("slot"), nb::arg("x"), nb::arg("y"))
+      .def("remove_circle", &Scene::remove_circle, nb::arg("slot"))
       .def("set_stale", &Scene::set_stale, "Call after changing places, circles or the order.")
       .def("counters", &Scene::counters);
 }

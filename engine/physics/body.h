@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/fields.h"
+#include "base/math.h"
 #include "base/vec2.h"
 
 namespace hedon {
@@ -21,7 +22,7 @@ struct BodyShape {
 
 /// A disc of uniform density (π·radius²·density; inertia ½·mass·radius²), and static circles of `circle_radius`.
 HEDON_FN BodyShape make_disc(float radius, float density, float circle_radius) {
-  const float mass = density * 3.14159265358979323846f * radius * radius;
+  const float mass = density * PI_F * radius * radius;
   return {radius, mass, 0.5f * mass * radius * radius, circle_radius};
 }
 

@@ -24,6 +24,7 @@ struct BodyContact {
   int32_t first, second;    ///< places
   float normal_x, normal_y;  ///< unit vector from the first center to the second
   float arm;                ///< [u]
+  float turn;               ///< change of angular velocity per tangential impulse [1/u]
   float tangent_mass;       ///< effective mass along the tangent, per mass of a body
   float normal_impulse;     ///< accumulated, >= 0 [u/s]
   float tangent_impulse;    ///< accumulated [u/s]
@@ -34,9 +35,10 @@ struct BodyContact {
 /// A body that overlaps a static circle or a wall.
 struct StaticContact {
   int32_t body;             ///< place
-  int32_t other;            ///< slot of the circle or index of the wall
-  float normal_x, normal_y;  ///< unit vector from the body's center to the other's nearest point or center
+  float anchor_x, anchor_y;  ///< where the body's center would just touch [u]
+  float normal_x, normal_y;  ///< unit vector from the body's center to the circle's or to the wall's nearest point
   float arm;                ///< [u]
+  float turn;               ///< change of angular velocity per tangential impulse [1/u]
   float tangent_mass;       ///< effective mass along the tangent, per mass of a body
   float normal_impulse;     ///< accumulated, >= 0 [u/s]
   float tangent_impulse;    ///< accumulated [u/s]

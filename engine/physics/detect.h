@@ -62,17 +62,21 @@ HEDON_FN FoundContacts find_body_contacts(const NeighborList& list, const Physic
                                           const BatchRange& range, const SolverConstants& c, float radius,
                                           Visitor& visitor) {
   const PairList& pairs = list.bodies;
-  const PairScratch& work = scratch.bodies;
+  const int32_t* first = pairs.first.data;
+  const int32_t* second = pairs.second.data;
+  float* normal_impulse = scratch.bodies.normal.data;
+  float* tangent_impulse = scratch.bodies.tangent.data;
   const Vec2* position = scratch.position.data;
-  int32_t* active = work.active.data + range.first_body_pair;
+  const Motion* motion = scratch.motion.data;
+  int32_t* active = scratch.active.data + range.first_body_pair;
   const float touch = 4.0f * radius * radius;
   int32_t count = 0;
   for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
-    const bool touching = squared_length(position[pairs.second[pair]] - position[pairs.first[pair]]) < touch;
+    const bool touching = squared_length(position[second[pair]] - position[first[pair]]) < touch;
     active[count] = pair;
     count += touching;
-    work.normal[pair] = touching ? work.normal[pair] : 0.0f;
-    work.tangent[pair] = touching ? work.tangent[pair] : 0.0f;
+    normal_impulse[pair] = touching ? normal_impulse[pair] : 0.0f;
+    tangent_impulse[pair] = touching ? tangent_impulse[pair] : 0.0f;
   }
   if (count == 0) return {0, false};
 
@@ -81,12 +85,12 @@ HEDON_FN FoundContacts find_body_contacts(const NeighborList& list, const Physic
   for (int32_t place = range.first_place; place < range.last_place; ++place) colors[place] = 0;
   int32_t next[COLORS + 1] = {};
   for (int32_t i = 0; i < count; ++i) {
-    uint32_t& first = colors[pairs.first[active[i]]];
-    uint32_t& second = colors[pairs.second[active[i]]];
+    uint32_t& a = colors[first[active[i]]];
+    uint32_t& b = colors[second[active[i]]];
     // The last color takes all that is left over; its contacts may share bodies, which costs time only.
-    const int taken = std::countr_zero(~(first | second) | 0x80000000u);
-    first |= 1u << taken;
-    second |= 1u << taken;
+    const int taken = std::countr_zero(~(a | b) | 0x80000000u);
+    a |= 1u << taken;
+    b |= 1u << taken;
     color[i] = static_cast<uint8_t>(taken);
     ++next[taken + 1];
   }
@@ -97,17 +101,17 @@ HEDON_FN FoundContacts find_body_contacts(const NeighborList& list, const Physic
   for (int32_t i = 0; i < count; ++i) {
     const int32_t pair = active[i];
     BodyContact& contact = contacts[next[color[i]]++];
-    contact.first = pairs.first[pair];
-    contact.second = pairs.second[pair];
+    contact.first = first[pair];
+    contact.second = second[pair];
     const Direction normal = direction_of(position[contact.second] - position[contact.first]);
     contact.normal_x = normal.x;
     contact.normal_y = normal.y;
     contact.arm = 0.5f * normal.distance;
-    contact.tangent_mass = 0.5f / (1.0f + contact.arm * contact.arm * c.inverse_gyration);
-    contact.normal_impulse = work.normal[pair];
-    contact.tangent_impulse = work.tangent[pair];
-    contact.approach =
-        relative_velocity(contact, scratch.motion[contact.first], scratch.motion[contact.second]).normal;
+    contact.turn = contact.arm * c.inverse_gyration;
+    contact.tangent_mass = 0.5f / (1.0f + contact.arm * contact.turn);
+    contact.normal_impulse = normal_impulse[pair];
+    contact.tangent_impulse = tangent_impulse[pair];
+    contact.approach = relative_velocity(contact, motion[contact.first], motion[contact.second]).normal;
     contact.pair = pair;
     fast |= contact.approach < -c.restitution_threshold;
     const int32_t a = list.slot[contact.first], b = list.slot[contact.second];
@@ -131,7 +135,8 @@ HEDON_FN FoundContacts find_static_contacts(PairKind kind, const NeighborList& l
   bool fast = false;
   for (int32_t pair = first_pair; pair < last_pair; ++pair) {
     const int32_t body = pairs.first[pair], other = pairs.second[pair];
-    const Vec2 between = nearest(other, position[body]) - position[body];
+    const Vec2 point = nearest(other, position[body]);
+    const Vec2 between = point - position[body];
     if (!(squared_length(between) < touch * touch)) {
       work.normal[pair] = 0.0f;
       work.tangent[pair] = 0.0f;
@@ -140,11 +145,13 @@ HEDON_FN FoundContacts find_static_contacts(PairKind kind, const NeighborList& l
     const Direction normal = direction_of(between);
     StaticContact& contact = contacts[count++];
     contact.body = body;
-    contact.other = other;
+    contact.anchor_x = point.x - touch * normal.x;
+    contact.anchor_y = point.y - touch * normal.y;
     contact.normal_x = normal.x;
     contact.normal_y = normal.y;
     contact.arm = radius + 0.5f * (normal.distance - touch);
-    contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.arm * c.inverse_gyration);
+    contact.turn = contact.arm * c.inverse_gyration;
+    contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.turn);
     contact.normal_impulse = work.normal[pair];
     contact.tangent_impulse = work.tangent[pair];
     contact.approach = relative_velocity(contact, scratch.motion[body]).normal;

@@ -13,6 +13,22 @@
 
 namespace hedon {
 
+/// Part of the skin that a body may use up before the list is built again: half, less what rounding may hide.
+inline constexpr float SKIN_SHARE = 0.49f;
+
+/// Calls f(slot) for a superset of the bodies whose centers lie within `reach` [u] of a point, wherever they moved
+/// since the last build. A body that has left the order since is still named unless it was taken out.
+template <class F>
+HEDON_FN void for_each_body_near(const PhysicsState& state, float x, float y, float reach, F&& f) {
+  for_each_near(state.body_grid, x, y, reach + 0.5f * state.neighbors.head[0].skin, f);
+}
+
+/// Calls f(slot) for a superset of the circles whose centers lie within `reach` [u] of a point.
+template <class F>
+HEDON_FN void for_each_circle_near(const PhysicsState& state, float x, float y, float reach, F&& f) {
+  for_each_near(state.circle_grid, x, y, reach, f);
+}
+
 /// Keeps the first fault.
 HEDON_FN void raise_fault(Fault& fault, Status status, double value) {
   if (fault.status != Status::ok) return;

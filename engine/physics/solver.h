@@ -83,11 +83,10 @@ HEDON_FN ContactVelocity relative_velocity(const StaticContact& contact, const M
 }
 
 /// Applies an impulse per mass to a pair: onto the second body, and its opposite onto the first.
-HEDON_FN void apply(const BodyContact& contact, float inverse_gyration, float normal, float tangent, Motion& a,
-                    Motion& b) {
+HEDON_FN void apply(const BodyContact& contact, float normal, float tangent, Motion& a, Motion& b) {
   const float x = normal * contact.normal_x - tangent * contact.normal_y;
   const float y = normal * contact.normal_y + tangent * contact.normal_x;
-  const float spin = contact.arm * inverse_gyration * tangent;
+  const float spin = contact.turn * tangent;
   a.x -= x;
   a.y -= y;
   a.angular -= spin;
@@ -96,10 +95,10 @@ HEDON_FN void apply(const BodyContact& contact, float inverse_gyration, float no
   b.angular -= spin;
 }
 
-HEDON_FN void apply(const StaticContact& contact, float inverse_gyration, float normal, float tangent, Motion& a) {
+HEDON_FN void apply(const StaticContact& contact, float normal, float tangent, Motion& a) {
   a.x -= normal * contact.normal_x - tangent * contact.normal_y;
   a.y -= normal * contact.normal_y + tangent * contact.normal_x;
-  a.angular -= contact.arm * inverse_gyration * tangent;
+  a.angular -= contact.turn * tangent;
 }
 
 /// Effective mass along the normal, per mass of a body: a half for two equal bodies, one against what never moves.
@@ -123,11 +122,9 @@ HEDON_FN ContactVelocity accumulate(Contact& contact, const SolverConstants& c, 
 HEDON_FN void solve_velocity(BodyContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     BodyContact& contact = contacts[i];
-    Motion a = motion[contact.first], b = motion[contact.second];
+    Motion &a = motion[contact.first], &b = motion[contact.second];
     const ContactVelocity change = accumulate(contact, c, relative_velocity(contact, a, b));
-    apply(contact, c.inverse_gyration, change.normal, change.tangent, a, b);
-    motion[contact.first] = a;
-    motion[contact.second] = b;
+    apply(contact, change.normal, change.tangent, a, b);
   }
 }
 
@@ -135,26 +132,25 @@ HEDON_FN void solve_velocity(BodyContact* contacts, int32_t count, const SolverC
 HEDON_FN void solve_velocity(StaticContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     StaticContact& contact = contacts[i];
-    Motion a = motion[contact.body];
+    Motion& a = motion[contact.body];
     const ContactVelocity change = accumulate(contact, c, relative_velocity(contact, a));
-    apply(contact, c.inverse_gyration, change.normal, change.tangent, a);
-    motion[contact.body] = a;
+    apply(contact, change.normal, change.tangent, a);
   }
 }
 
 /// Applies the impulses of the substep before.
-HEDON_FN void warm_start(const BodyContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
+HEDON_FN void warm_start(const BodyContact* contacts, int32_t count, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     const BodyContact& contact = contacts[i];
-    apply(contact, c.inverse_gyration, contact.normal_impulse, contact.tangent_impulse, motion[contact.first],
+    apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.first],
           motion[contact.second]);
   }
 }
 
-HEDON_FN void warm_start(const StaticContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
+HEDON_FN void warm_start(const StaticContact* contacts, int32_t count, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     const StaticContact& contact = contacts[i];
-    apply(contact, c.inverse_gyration, contact.normal_impulse, contact.tangent_impulse, motion[contact.body]);
+    apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.body]);
   }
 }
 
@@ -176,7 +172,7 @@ HEDON_FN void apply_restitution(BodyContact* contacts, int32_t count, const Solv
     BodyContact& contact = contacts[i];
     Motion &a = motion[contact.first], &b = motion[contact.second];
     const float change = bounce(contact, c, relative_velocity(contact, a, b).normal);
-    if (change != 0.0f) apply(contact, c.inverse_gyration, change, 0.0f, a, b);
+    if (change != 0.0f) apply(contact, change, 0.0f, a, b);
   }
 }
 
@@ -185,7 +181,7 @@ HEDON_FN void apply_restitution(StaticContact* contacts, int32_t count, const So
     StaticContact& contact = contacts[i];
     Motion& a = motion[contact.body];
     const float change = bounce(contact, c, relative_velocity(contact, a).normal);
-    if (change != 0.0f) apply(contact, c.inverse_gyration, change, 0.0f, a);
+    if (change != 0.0f) apply(contact, change, 0.0f, a);
   }
 }
 
@@ -194,35 +190,29 @@ HEDON_FN float correction(const SolverConstants& c, float separation) {
   return clamp(c.correction_rate * (separation + c.slop), -c.max_correction, 0.0f);
 }
 
-/// One pass of position correction between bodies: each moves half the way. `distance` is that of touching centers.
+/// One pass of position correction between bodies: each moves half the way. The separation is that of the present
+/// places along the normal of the contact, which differs from the true one by less than the slop after a substep's
+/// motion. `distance` is that of touching centers [u].
 HEDON_FN void correct_positions(const BodyContact* contacts, int32_t count, const SolverConstants& c, float distance,
                                 Vec2* position) {
   for (int32_t i = 0; i < count; ++i) {
     const BodyContact& contact = contacts[i];
+    const Vec2 normal{contact.normal_x, contact.normal_y};
     const Vec2 a = position[contact.first], b = position[contact.second];
-    const Vec2 between = b - a;
-    const float squared = squared_length(between);
-    if (!(squared > 0.0f)) continue;
-    const float apart = sqrtf(squared);
-    const Vec2 push = (0.5f * correction(c, apart - distance) / apart) * between;
+    const Vec2 push = (0.5f * correction(c, dot(b - a, normal) - distance)) * normal;
     position[contact.first] = a + push;
     position[contact.second] = b - push;
   }
 }
 
-/// One pass of position correction against what never moves. `nearest(other, center)` is its point that counts,
-/// `distance` that of a touching center.
-template <class Nearest>
-HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, const SolverConstants& c, float distance,
-                                Vec2* position, Nearest&& nearest) {
+/// One pass of position correction against what never moves.
+HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, const SolverConstants& c,
+                                Vec2* position) {
   for (int32_t i = 0; i < count; ++i) {
     const StaticContact& contact = contacts[i];
+    const Vec2 normal{contact.normal_x, contact.normal_y}, anchor{contact.anchor_x, contact.anchor_y};
     const Vec2 a = position[contact.body];
-    const Vec2 between = nearest(contact.other, a) - a;
-    const float squared = squared_length(between);
-    if (!(squared > 0.0f)) continue;
-    const float apart = sqrtf(squared);
-    position[contact.body] = a + (correction(c, apart - distance) / apart) * between;
+    position[contact.body] = a + correction(c, dot(anchor - a, normal)) * normal;
   }
 }
 

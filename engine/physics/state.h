@@ -75,9 +75,8 @@ struct PairScratch {
   Array<int32_t> second;  ///< rank, slot or index
   Array<float> normal;    ///< [u/s]
   Array<float> tangent;   ///< [u/s]
-  Array<int32_t> active;  ///< pairs that touch in this substep
 
-  HEDON_FIELDS(PairScratch, first, second, normal, tangent, active)
+  HEDON_FIELDS(PairScratch, first, second, normal, tangent)
 };
 
 /// What one batch says about its try of a step.
@@ -100,17 +99,17 @@ struct PhysicsScratch {
   Array<Motion> motion;      ///< by place
   Array<float> angle;        ///< by place, not wrapped within a step [rad]
   Array<uint32_t> colors;    ///< by place: colors of the contacts of the body
-  Array<uint8_t> color;      ///< of each active body pair
+  Array<int32_t> active;     ///< pairs of bodies that touch in this substep
+  Array<uint8_t> color;      ///< of each of them
   PairScratch bodies;
   PairScratch circles;
   PairScratch walls;
   Array<BodyContact> body_contacts;
-  Array<StaticContact> circle_contacts;
-  Array<StaticContact> wall_contacts;
+  Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;  ///< (MAX_BATCHES)
 
-  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, color, bodies,
-               circles, walls, body_contacts, circle_contacts, wall_contacts, reports)
+  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, active, color, bodies,
+               circles, walls, body_contacts, static_contacts, reports)
 };
 
 /// How much of everything the arrays hold.
@@ -177,8 +176,10 @@ void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& v
   visit("walls", state.walls, capacity.walls);
   visit("body_grid.head", state.body_grid.head, cells);
   visit("body_grid.next", state.body_grid.next, capacity.bodies);
+  visit("body_grid.cell", state.body_grid.cell, capacity.bodies);
   visit("circle_grid.head", state.circle_grid.head, cells);
   visit("circle_grid.next", state.circle_grid.next, capacity.circles);
+  visit("circle_grid.cell", state.circle_grid.cell, capacity.circles);
   NeighborList& list = state.neighbors;
   visit("head", list.head, int64_t{1});
   visit("slot", list.slot, capacity.bodies);
@@ -202,13 +203,13 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit("motion", scratch.motion, capacity.bodies);
   visit("angle", scratch.angle, capacity.bodies);
   visit("colors", scratch.colors, capacity.bodies);
+  visit("active", scratch.active, capacity.body_pairs);
   visit("color", scratch.color, capacity.body_pairs);
   visit_arrays(scratch.bodies, capacity.body_pairs, visit);
   visit_arrays(scratch.circles, capacity.circle_pairs, visit);
   visit_arrays(scratch.walls, capacity.wall_pairs, visit);
   visit("body_contacts", scratch.body_contacts, capacity.body_pairs);
-  visit("circle_contacts", scratch.circle_contacts, capacity.circle_pairs);
-  visit("wall_contacts", scratch.wall_contacts, capacity.wall_pairs);
+  visit("static_contacts", scratch.static_contacts, capacity.circle_pairs + capacity.wall_pairs);
   visit("reports", scratch.reports, int64_t{MAX_BATCHES});
 }
 

@@ -77,6 +77,15 @@ HEDON_FN void commit_batch(const PhysicsState& state, const PhysicsScratch& scra
   store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
+/// Keeps what the contacts accumulated for the next substep.
+template <class Contact>
+HEDON_FN void keep_impulses(const Contact* contacts, int32_t count, const PairScratch& work) {
+  for (int32_t i = 0; i < count; ++i) {
+    work.normal[contacts[i].pair] = contacts[i].normal_impulse;
+    work.tangent[contacts[i].pair] = contacts[i].tangent_impulse;
+  }
+}
+
 /// Caps the velocities, moves the bodies by them.
 HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
   for (int32_t place = range.first_place; place < range.last_place; ++place) {
@@ -114,8 +123,7 @@ HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, con
   Motion* motion = scratch.motion.data;
   Vec2* position = scratch.position.data;
   BodyContact* bodies = scratch.body_contacts.data + range.first_body_pair;
-  StaticContact* circles = scratch.circle_contacts.data + range.first_circle_pair;
-  StaticContact* walls = scratch.wall_contacts.data + range.first_wall_pair;
+  StaticContact* statics = scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
   const float body_touch = 2.0f * shape.radius;
   const float circle_touch = shape.radius + shape.circle_radius;
   const auto circle_center = [&](int32_t circle, Vec2) {
@@ -134,37 +142,29 @@ HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, con
     const FoundContacts body = find_body_contacts(list, scratch, range, c, shape.radius, visitor);
     const FoundContacts circle = find_static_contacts(
         PairKind::circle, list, list.circles, scratch.circles, scratch, range.first_circle_pair,
-        range.last_circle_pair, c, shape.radius, circle_touch, circles, visitor, circle_center);
+        range.last_circle_pair, c, shape.radius, circle_touch, statics, visitor, circle_center);
+    StaticContact* walls = statics + circle.count;
     const FoundContacts wall = find_static_contacts(PairKind::wall, list, list.walls, scratch.walls, scratch,
                                                     range.first_wall_pair, range.last_wall_pair, c, shape.radius,
                                                     shape.radius, walls, visitor, wall_point);
+    const int32_t static_count = circle.count + wall.count;
 
-    warm_start(bodies, body.count, c, motion);
-    warm_start(circles, circle.count, c, motion);
-    warm_start(walls, wall.count, c, motion);
+    warm_start(bodies, body.count, motion);
+    warm_start(statics, static_count, motion);
     for (int32_t pass = 0; pass < config.velocity_passes; ++pass) {
       solve_velocity(bodies, body.count, c, motion);
-      solve_velocity(circles, circle.count, c, motion);
-      solve_velocity(walls, wall.count, c, motion);
+      solve_velocity(statics, static_count, c, motion);
     }
     if (body.fast) apply_restitution(bodies, body.count, c, motion);
-    if (circle.fast) apply_restitution(circles, circle.count, c, motion);
-    if (wall.fast) apply_restitution(walls, wall.count, c, motion);
-    const auto keep_impulses = [](const auto* contacts, int32_t count, const PairScratch& work) {
-      for (int32_t i = 0; i < count; ++i) {
-        work.normal[contacts[i].pair] = contacts[i].normal_impulse;
-        work.tangent[contacts[i].pair] = contacts[i].tangent_impulse;
-      }
-    };
+    if (circle.fast || wall.fast) apply_restitution(statics, static_count, c, motion);
     keep_impulses(bodies, body.count, scratch.bodies);
-    keep_impulses(circles, circle.count, scratch.circles);
+    keep_impulses(statics, circle.count, scratch.circles);
     keep_impulses(walls, wall.count, scratch.walls);
 
     integrate(scratch, range, c);
     for (int32_t pass = 0; pass < config.position_passes; ++pass) {
       correct_positions(bodies, body.count, c, body_touch, position);
-      correct_positions(circles, circle.count, c, circle_touch, position, circle_center);
-      correct_positions(walls, wall.count, c, shape.radius, position, wall_point);
+      correct_positions(statics, static_count, c, position);
     }
     const float moved = squared_moved(list, scratch, range);
     if (moved > report.squared_moved) report.squared_moved = moved;
@@ -189,8 +189,6 @@ HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batch
   return all;
 }
 
-/// Part of the skin that a body may use up: half, less what rounding may hide.
-inline constexpr float SKIN_SHARE = 0.49f;
 /// Doublings of the skin within a step before it is given up.
 inline constexpr int MAX_REPEATS = 8;
 

@@ -149,15 +149,34 @@ def test_newcomers_are_seen_by_queries_at_once_and_act_in_the_next_step():
     assert (1, 0, 1) in {row[:3] for row in scene.contacts()}
 
 
+def test_circles_may_come_and_go_in_one_slot():
+    """Eaten and grown again between two steps, here or elsewhere: each query sees what is there."""
+    scene = make_scene([[400.0, 300.0]], circles=[[100.0, 100.0], [102.0, 109.0], [109.0, 102.0]])
+    scene.step()
+    scene.add_circle(1, 101.0, 110.0)
+    assert sorted(scene.near("circle", 105.0, 105.0, 10.0)) == [0, 1, 2]
+    for slot in (2, 0, 1):
+        scene.remove_circle(slot)
+    assert scene.near("circle", 105.0, 105.0, 10.0) == []
+    scene.add_circle(1, 300.0, 300.0)
+    scene.add_circle(2, 100.0, 100.0)
+    scene.add_circle(1, 101.0, 101.0)
+    assert sorted(scene.near("circle", 105.0, 105.0, 10.0)) == [1, 2]
+    assert scene.near("circle", 300.0, 300.0, 5.0) == []
+    scene.remove_circle(0)
+    scene.step()
+    assert sorted(scene.near("circle", 105.0, 105.0, 10.0)) == [1, 2]
+
+
 def test_queries_give_all_items_within_reach_once():
     scene = crowd(2, 150, 100)
-    scene.step()
+    for _ in random_drive(scene, 7, 3, np.arange(150)):
+        scene.step()
     place = positions(scene)
     for x, y, reach in [(240.0, 180.0, 50.0), (0.0, 0.0, 30.0), (480.0, 360.0, 200.0), (-50.0, 400.0, 120.0)]:
         near = scene.near("body", x, y, reach)
         assert len(near) == len(set(near))
-        # The grid keeps the places of the last build.
-        within = np.flatnonzero(np.hypot(*(place - [x, y]).T) < reach - 2.0)
+        within = np.flatnonzero(np.hypot(*(place - [x, y]).T) < reach)
         assert set(within) <= set(near)
 
 
