@@ -155,8 +155,10 @@ class Scene {
   std::vector<int32_t> near(const std::string& kind, float x, float y, float reach) const {
     std::vector<int32_t> out;
     const auto add = [&](int32_t item) { out.push_back(item); };
-    if (kind == "body") for_each_body_near(state_, x, y, reach, add);
-    else for_each_circle_near(state_, x, y, reach, add);
+    if (kind == "body")
+      for_each_body_near(state_, x, y, reach, add);
+    else
+      for_each_circle_near(state_, x, y, reach, add);
     return out;
   }
 

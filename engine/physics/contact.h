@@ -21,29 +21,29 @@ struct alignas(16) Motion {
 
 /// Two bodies that overlap.
 struct BodyContact {
-  int32_t first, second;    ///< places
+  int32_t first, second;     ///< places
   float normal_x, normal_y;  ///< unit vector from the first center to the second
-  float arm;                ///< [u]
-  float turn;               ///< change of angular velocity per tangential impulse [1/u]
-  float tangent_mass;       ///< effective mass along the tangent, per mass of a body
-  float normal_impulse;     ///< accumulated, >= 0 [u/s]
-  float tangent_impulse;    ///< accumulated [u/s]
-  float approach;           ///< normal velocity before solving; negative where they approach [u/s]
-  int32_t pair;             ///< in the list
+  float arm;                 ///< [u]
+  float turn;                ///< change of angular velocity per tangential impulse [1/u]
+  float tangent_mass;        ///< effective mass along the tangent, per mass of a body
+  float normal_impulse;      ///< accumulated, >= 0 [u/s]
+  float tangent_impulse;     ///< accumulated [u/s]
+  float approach;            ///< normal velocity before solving; negative where they approach [u/s]
+  int32_t pair;              ///< in the list
 };
 
 /// A body that overlaps a static circle or a wall.
 struct StaticContact {
-  int32_t body;             ///< place
+  int32_t body;              ///< place
   float anchor_x, anchor_y;  ///< where the body's center would just touch [u]
   float normal_x, normal_y;  ///< unit vector from the body's center to the circle's or to the wall's nearest point
-  float arm;                ///< [u]
-  float turn;               ///< change of angular velocity per tangential impulse [1/u]
-  float tangent_mass;       ///< effective mass along the tangent, per mass of a body
-  float normal_impulse;     ///< accumulated, >= 0 [u/s]
-  float tangent_impulse;    ///< accumulated [u/s]
-  float approach;           ///< normal velocity before solving; negative where they approach [u/s]
-  int32_t pair;             ///< in the list
+  float arm;                 ///< [u]
+  float turn;                ///< change of angular velocity per tangential impulse [1/u]
+  float tangent_mass;        ///< effective mass along the tangent, per mass of a body
+  float normal_impulse;      ///< accumulated, >= 0 [u/s]
+  float tangent_impulse;     ///< accumulated [u/s]
+  float approach;            ///< normal velocity before solving; negative where they approach [u/s]
+  int32_t pair;              ///< in the list
 };
 
 }  // namespace hedon

@@ -115,8 +115,7 @@ HEDON_FN FoundContacts find_body_contacts(const NeighborList& list, const Physic
     contact.pair = pair;
     fast |= contact.approach < -c.restitution_threshold;
     const int32_t a = list.slot[contact.first], b = list.slot[contact.second];
-    visitor.on_contact(PairKind::body, a, b, Vec2{normal.x, normal.y}, scratch.angle[contact.first],
-                       pairs.mark[pair]);
+    visitor.on_contact(PairKind::body, a, b, Vec2{normal.x, normal.y}, scratch.angle[contact.first], pairs.mark[pair]);
     visitor.on_contact(PairKind::body, b, a, Vec2{-normal.x, -normal.y}, scratch.angle[contact.second],
                        pairs.mark[pair]);
   }

@@ -1,7 +1,8 @@
 /// A uniform grid of cells, each with a chain of the items whose center lay in it when they were put there.
 ///
 /// Filling costs time in proportion to the items and cells. Single items may be put in and taken out at any
-/// time, so that a query sees a newcomer at once. Items outside the area belong to the cells at its edge; queries reach them there.
+/// time, so that a query sees a newcomer at once. Items outside the area belong to the cells at its edge; queries reach
+/// them there.
 #pragma once
 
 #include <cstdint>
@@ -53,18 +54,6 @@ HEDON_FN void insert(const Grid& grid, int32_t item, float x, float y) {
   grid.next[item] = grid.head[cell];
   grid.head[cell] = item;
   grid.cell[item] = cell;
-}
-
-/// Takes an item out of the cell of the place at which it was put.
-HEDON_FN void remove(const Grid& grid, int32_t item, float x, float y) {
-  const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
-  const int32_t row = cell_along(y, grid.inverse_cell, grid.rows);
-  int32_t* at = &grid.head[static_cast<int64_t>(row) * grid.columns + column];
-  while (*at != item) {
-    if (*at < 0) return;
-    at = &grid.next[*at];
-  }
-  *at = grid.next[item];
 }
 
 /// Calls f(item) for each item of the cells that the rectangle touches: a superset of the items within it.

@@ -20,8 +20,10 @@ HEDON_FN int32_t find_root(const Array<int32_t>& parent, int32_t rank) {
 HEDON_FN void join(const Array<int32_t>& parent, int32_t a, int32_t b) {
   a = find_root(parent, a);
   b = find_root(parent, b);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
 }
 
 /// Batches of a list of so many bodies: enough for some threads, large enough to keep each one busy.
@@ -41,8 +43,10 @@ HEDON_FN void assign_places(NeighborHead& head, const PhysicsScratch& scratch, i
     const int32_t root = find_root(scratch.parent, rank);
     total += pairs;
     // The root has the lowest rank of its island, so its own entry is complete before others add to it.
-    if (root == rank) scratch.work[rank] = pairs + 1;
-    else scratch.work[root] += pairs + 1;
+    if (root == rank)
+      scratch.work[rank] = pairs + 1;
+    else
+      scratch.work[root] += pairs + 1;
     scratch.batch[rank] = -1;
   }
   const int32_t batches = batch_count(bodies);

@@ -19,9 +19,9 @@ namespace hedon {
 
 /// What every substep needs, computed once per step.
 struct SolverConstants {
-  float dt;                     ///< [s]
-  float linear_decay;           ///< of velocities per substep
-  float angular_decay;          ///< of angular velocities per substep
+  float dt;             ///< [s]
+  float linear_decay;   ///< of velocities per substep
+  float angular_decay;  ///< of angular velocities per substep
   float inverse_mass;
   float inverse_inertia;
   float inverse_gyration;       ///< mass / inertia [1/u²]
@@ -29,11 +29,11 @@ struct SolverConstants {
   float restitution;            ///< coefficient
   float restitution_threshold;  ///< approach speed from which contacts bounce [u/s]
   float correction_rate;
-  float slop;                   ///< overlap that is left alone [u]
-  float max_correction;         ///< per pass [u]
-  float max_speed;              ///< per axis [u/s]
-  float max_angular_speed;      ///< [rad/s]
-  float glide;                  ///< free path in a step per speed after the force [s]
+  float slop;               ///< overlap that is left alone [u]
+  float max_correction;     ///< per pass [u]
+  float max_speed;          ///< per axis [u/s]
+  float max_angular_speed;  ///< [rad/s]
+  float glide;              ///< free path in a step per speed after the force [s]
 };
 
 HEDON_FN SolverConstants make_constants(const PhysicsConfig& config, const BodyShape& shape) {
@@ -142,8 +142,7 @@ HEDON_FN void solve_velocity(StaticContact* contacts, int32_t count, const Solve
 HEDON_FN void warm_start(const BodyContact* contacts, int32_t count, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     const BodyContact& contact = contacts[i];
-    apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.first],
-          motion[contact.second]);
+    apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.first], motion[contact.second]);
   }
 }
 

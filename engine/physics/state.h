@@ -31,14 +31,14 @@ struct PairList {
 
 /// The counts and flags of the neighbor list.
 struct NeighborHead {
-  int32_t bodies;                       ///< in the list
-  int32_t batches;                      ///< in use
-  int32_t stale;                        ///< 1: build anew before the next step; the caller sets it too
-  float skin;                           ///< of the last build [u]
-  float free_path;                      ///< of the fastest body in the last step [u]
+  int32_t bodies;   ///< in the list
+  int32_t batches;  ///< in use
+  int32_t stale;    ///< 1: build anew before the next step; the caller sets it too
+  float skin;       ///< of the last build [u]
+  float free_path;  ///< of the fastest body in the last step [u]
   int32_t unused;
-  int64_t builds;                       ///< so far
-  int64_t repeats;                      ///< steps tried again because a body outran the skin
+  int64_t builds;                        ///< so far
+  int64_t repeats;                       ///< steps tried again because a body outran the skin
   int32_t batch_start[MAX_BATCHES + 2];  ///< first place of each batch; the last entry is not used
 
   HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, unused, builds, repeats, batch_start)
@@ -106,10 +106,10 @@ struct PhysicsScratch {
   PairScratch walls;
   Array<BodyContact> body_contacts;
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
-  Array<BatchReport> reports;  ///< (MAX_BATCHES)
+  Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
-  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, active, color, bodies,
-               circles, walls, body_contacts, static_contacts, reports)
+  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, active, color,
+               bodies, circles, walls, body_contacts, static_contacts, reports)
 };
 
 /// How much of everything the arrays hold.

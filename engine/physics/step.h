@@ -140,13 +140,13 @@ HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, con
       motion[place].angular *= c.angular_decay;
     }
     const FoundContacts body = find_body_contacts(list, scratch, range, c, shape.radius, visitor);
-    const FoundContacts circle = find_static_contacts(
-        PairKind::circle, list, list.circles, scratch.circles, scratch, range.first_circle_pair,
-        range.last_circle_pair, c, shape.radius, circle_touch, statics, visitor, circle_center);
+    const FoundContacts circle =
+        find_static_contacts(PairKind::circle, list, list.circles, scratch.circles, scratch, range.first_circle_pair,
+                             range.last_circle_pair, c, shape.radius, circle_touch, statics, visitor, circle_center);
     StaticContact* walls = statics + circle.count;
-    const FoundContacts wall = find_static_contacts(PairKind::wall, list, list.walls, scratch.walls, scratch,
-                                                    range.first_wall_pair, range.last_wall_pair, c, shape.radius,
-                                                    shape.radius, walls, visitor, wall_point);
+    const FoundContacts wall =
+        find_static_contacts(PairKind::wall, list, list.walls, scratch.walls, scratch, range.first_wall_pair,
+                             range.last_wall_pair, c, shape.radius, shape.radius, walls, visitor, wall_point);
     const int32_t static_count = circle.count + wall.count;
 
     warm_start(bodies, body.count, motion);
@@ -204,9 +204,9 @@ inline constexpr int MAX_REPEATS = 8;
 /// A step is tried in scratch memory. If a body moves further than the neighbor list allows for, the list is built
 /// again with twice the skin and the step tried anew, so that no contact is ever missed.
 template <class Group, class Visitor>
-HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyShape& shape,
-                           const PhysicsState& state, const PhysicsScratch& scratch, const Array<int32_t>& order,
-                           int32_t count, const BodyForce& force, Visitor& visitor, Fault& fault) {
+HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyShape& shape, const PhysicsState& state,
+                           const PhysicsScratch& scratch, const Array<int32_t>& order, int32_t count,
+                           const BodyForce& force, Visitor& visitor, Fault& fault) {
   NeighborHead& head = state.neighbors.head[0];
   const SolverConstants c = make_constants(config, shape);
   bool build = head.stale != 0;

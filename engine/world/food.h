@@ -33,7 +33,7 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
   state.physics.circles.present[f] = 1;
   state.food_stock[k].present += 1;
   insert(state.physics.circle_grid, f, place.x, place.y);
-  state.physics.neighbors.head[0].stale = 1;
+  mark_stale(state.physics);
 }
 
 /// Tries up to `candidates` places until the foods present of kind `k` reach the floor of its internal number.
@@ -72,8 +72,8 @@ HEDON_FN void eat(World& world) {
       if (slot < 0) continue;
       scratch.eater[f] = -1;
       state.physics.circles.present[f] = 0;
-      remove(state.physics.circle_grid, f, state.physics.circles.x[f], state.physics.circles.y[f]);
-      state.physics.neighbors.head[0].stale = 1;
+      remove(state.physics.circle_grid, f);
+      mark_stale(state.physics);
       stock.present -= 1;
       stock.number -= 1.0;
       stock.eaten += 1;

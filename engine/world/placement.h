@@ -5,6 +5,7 @@
 
 #include "base/device.h"
 #include "base/vec2.h"
+#include "physics/neighbor.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -24,20 +25,18 @@ HEDON_FN bool inside_arena(const World& world, Vec2 place, float radius) {
   return true;
 }
 
-/// True where a disc overlaps no agent alive and no food present. The grids know where each was when it was put there;
-/// bodies have moved since by less than the skin of the neighbor list.
+/// True where a disc overlaps no agent alive and no food present.
 HEDON_FN bool free_of_bodies(const World& world, Vec2 place, float radius) {
   const WorldState& state = world.state;
   const PhysicsState& physics = state.physics;
   bool is_free = true;
   const float agent_reach = radius + world.config->body.radius;
-  const float moved = physics.neighbors.head[0].skin;
-  for_each_near(physics.body_grid, place.x, place.y, agent_reach + moved, [&](int32_t slot) {
+  for_each_body_near(physics, place.x, place.y, agent_reach, [&](int32_t slot) {
     const Vec2 apart{physics.bodies.x[slot] - place.x, physics.bodies.y[slot] - place.y};
     if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
   });
   const float food_reach = radius + world.config->body.food_radius;
-  for_each_near(physics.circle_grid, place.x, place.y, food_reach, [&](int32_t f) {
+  for_each_circle_near(physics, place.x, place.y, food_reach, [&](int32_t f) {
     const Vec2 apart{physics.circles.x[f] - place.x, physics.circles.y[f] - place.y};
     if (physics.circles.present[f] && squared_length(apart) < food_reach * food_reach) is_free = false;
   });

@@ -34,7 +34,7 @@ HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int
   body.velocity_y[slot] = 0.0f;
   body.angular_velocity[slot] = 0.0f;
   insert(state.physics.body_grid, slot, place.x, place.y);
-  state.physics.neighbors.head[0].stale = 1;
+  mark_stale(state.physics);
 
   const NetworkShape& network = world.shape->network;
   float* params = world.params(slot);
@@ -78,7 +78,7 @@ HEDON_FN void bury(World& world, int32_t slot) {
   }
   life.death_step = clock.step + 1;
   state.alive[slot] = 0;
-  state.physics.neighbors.head[0].stale = 1;
+  mark_stale(state.physics);
   state.free[clock.free_count++] = slot;
   world.counters().deaths += 1;
   world.counters().energy_lost += life.energy;

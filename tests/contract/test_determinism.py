@@ -69,10 +69,10 @@ def test_which_slot_an_agent_gets_changes_nothing():
 
 def test_a_second_caller_is_refused_while_the_engine_runs():
     simulation = make_simulation()
-    thread = threading.Thread(target=simulation.run, args=(600,))
+    thread = threading.Thread(target=simulation.run, args=(4000,))
     thread.start()
-    time.sleep(0.05)
+    time.sleep(0.2)  # let it begin; it then runs for seconds
     with pytest.raises(EngineError, match="busy"):
         simulation.run(1)
     thread.join()
-    assert simulation.worlds[0].step == 600
+    assert simulation.worlds[0].step == 4000

@@ -30,6 +30,8 @@ class Scene:
 
     def add_circle(self, slot: int, x: float, y: float) -> None: ...
 
+    def remove_circle(self, slot: int) -> None: ...
+
     def set_stale(self) -> None:
         """Call after changing places, circles or the order."""
 

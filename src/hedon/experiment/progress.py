@@ -125,7 +125,7 @@ class LiveDisplay:
             bar,
             table,
             Text(
-                "Births, deaths, food: in the last window. Weights: means over the living. Ctrl-C ends after this window.",
+                "Births, deaths, food: of the last window. Weights: means of the living. Ctrl-C ends after the window.",
                 style="dim",
             ),
         )
