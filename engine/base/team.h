@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <thread>
 
 namespace hedon {
 
@@ -25,7 +24,8 @@ class Team {
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  /// Waits until all members arrive. Spins first, since phases last microseconds, then yields the processor.
+  /// Waits until all members arrive. Spins first, since phases last microseconds, then sleeps: where other programs
+  /// want the processors too, a member that spins on keeps the one that it waits for from running.
   void barrier() {
     if (size_ == 1) return;
     const uint32_t phase = state_->phase.load(std::memory_order_relaxed);
@@ -33,11 +33,14 @@ class Team {
       state_->waiting.store(0, std::memory_order_relaxed);
       state_->next.store(0, std::memory_order_relaxed);
       state_->phase.store(phase + 1, std::memory_order_release);
+      state_->phase.notify_all();
       return;
     }
-    for (int spin = 0; state_->phase.load(std::memory_order_acquire) == phase; ++spin) {
-      if (spin > 4000) std::this_thread::yield();
+    for (int spin = 0; spin < SPINS; ++spin) {
+      if (state_->phase.load(std::memory_order_acquire) != phase) return;
+      relax();
     }
+    while (state_->phase.load(std::memory_order_acquire) == phase) state_->phase.wait(phase, std::memory_order_acquire);
   }
 
   /// Calls body(i) for i in [0, count), in contiguous blocks of nearly equal size: for many small equal pieces.
@@ -71,6 +74,14 @@ class Team {
   }
 
  private:
+  static constexpr int SPINS = 2000;  ///< some 25 µs, longer than the phases in which one member works alone
+
+  static void relax() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
+
   TeamState* state_;
   int rank_;
   int size_;

@@ -81,6 +81,27 @@ void fill(nanobind::handle value, T& out, const std::string& path) {
   }
 }
 
+/// What `fill` would have read: for a test that every setting arrives.
+template <class T>
+nanobind::object unfill(const T& value) {
+  namespace nb = nanobind;
+  if constexpr (std::is_enum_v<T>) {
+    return nb::str(EnumNames<T>::text[static_cast<int>(value)]);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    return nb::cast(value);
+  } else if constexpr (std::is_same_v<T, Vec2>) {
+    return nb::make_tuple(value.x, value.y);
+  } else if constexpr (IsFixedList<T>::value) {
+    nb::list out;
+    for (int32_t i = 0; i < value.count; ++i) out.append(unfill(value.items[i]));
+    return out;
+  } else {
+    nb::dict out;
+    T::for_each_field([&](const char* name, auto member) { out[name] = unfill(value.*member); });
+    return out;
+  }
+}
+
 /// A config struct from a nested dict.
 template <class T>
 T to_config(nanobind::dict dict) {

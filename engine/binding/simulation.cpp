@@ -227,6 +227,9 @@ nb::list view_names(PythonSimulation& self) {
 
 void bind_simulation(nb::module_& module) {
   using S = PythonSimulation;
+  module.def("read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
+             nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
+             "What the engine understood of a config.");
   nb::class_<S>(module, "Simulation",
                 "Many worlds under one config. Views are read-only and valid until the next `run`.")
       .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&,

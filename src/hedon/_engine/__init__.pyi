@@ -15,6 +15,9 @@ from hedon._engine import (
 )
 
 
+def read_config(config: dict[str, Any]) -> dict[str, Any]:
+    """What the engine understood of a config."""
+
 class Simulation:
     """
     Many worlds under one config. Views are read-only and valid until the next `run`.

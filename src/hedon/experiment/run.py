@@ -90,6 +90,7 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         recorder = _Recorder(simulation, writer)
         started = time.perf_counter()
         status = "failed"
+        step = 0
         try:
             for step in _steps(simulation, plan, interrupted):
                 if step % plan.config.learning.rollout_steps == 0 or step == plan.steps or simulation.extinct:
@@ -98,11 +99,8 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
                     recorder.frame()
                 if display is not None:
                     display.update(recorder.moment(step, plan.steps, time.perf_counter() - started))
-            # A second Ctrl-C ends within a window: what happened since its start is recorded too.
-            recorder.interval()
-            done = simulation.extinct or simulation.worlds[0].step >= plan.steps
-            complete = done or max(world.step for world in simulation.worlds) >= plan.steps
-            status = "finished" if complete else "interrupted"
+            recorder.interval()  # after a second Ctrl-C: what happened since the last window began
+            status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
         finally:
             seconds = time.perf_counter() - started
             manifest = _last_manifest(manifest, simulation, status, seconds)
@@ -140,9 +138,9 @@ class _Recorder:
         self.writer = writer
         self.samplers = [PopulationSampler(world) for world in simulation.worlds]
         self.rows = [sampler.sample() for sampler in self.samplers]
-        self.ended = [False for _ in simulation.worlds]
         self.last_step = [0 for _ in simulation.worlds]
         self.living_due = 0.0
+        self.shown = False
 
     def interval(self) -> None:
         """Writes the deaths since the last interval and one population row per world that moved."""
@@ -157,6 +155,9 @@ class _Recorder:
             self.writer.append("population", self.rows[i])
         if time.perf_counter() >= self.living_due:
             self.living()
+        if not self.shown:  # the first rows reach the disk at once, so that a reader sees that the run is on
+            self.writer.flush()
+            self.shown = True
 
     def living(self) -> None:
         """Replaces the file of the living agents."""

@@ -1,0 +1,209 @@
+"""`hedon run` as a user calls it."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hedon
+from hedon.cli.run import RunError, parse_seeds
+from hedon.experiment.sample import LEDGER
+
+QUICK = ("--set", "learning.rollout_steps=256", "--set", "learning.update_epochs=1")
+LIVELY = ("--set", "birth.kappa=0.01", "--set", "hazard.kappa=0.1")
+
+
+def call(*arguments, **options):
+    return subprocess.run(["hedon", *map(str, arguments)], capture_output=True, text=True, check=False, **options)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A short run of two worlds, and what the command printed."""
+    folder = tmp_path_factory.mktemp("run with spaces and ümläut") / "out"
+    seeds = ("--seeds", "3,5", "--steps", 1300, "--frames", 100, "--out", folder)
+    answer = call("run", "poison", *seeds, *QUICK, *LIVELY, "--fidelity", "released")
+    assert answer.returncode == 0, answer.stderr
+    return folder, answer.stdout
+
+
+def test_a_run_leaves_what_is_documented(finished):
+    folder, printed = finished
+    files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    expected = {"config.toml", "manifest.json", "summary.json", "final.npz", "agents/living.parquet"}
+    expected |= {f"figures/{name}.png" for name in ("weights", "history", "population", "world")}
+    assert expected <= files
+    assert any(name.startswith("frames/part-") for name in files)
+    assert "poison released: 2 worlds" in printed
+    assert "step 1,300 of 1,300" in printed
+
+
+def test_the_manifest_says_how_to_repeat_the_run(finished):
+    folder, _ = finished
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["seeds"] == [3, 5]
+    assert manifest["status"] == "finished"
+    assert manifest["steps_done"] == [1300, 1300]
+    assert manifest["kernel"] in ("avx512", "avx2", "portable")
+    assert manifest["fidelity"] == "released"
+    config = hedon.load_config(folder / "config.toml")
+    assert config.genome.mutation_noise == "frozen"
+    simulation = hedon.Simulation(config, manifest["seeds"], kernel=manifest["kernel"])
+    simulation.run(1300)
+    run = hedon.open_run(folder)
+    living = run.agents().filter(pl.col("world") == 1, pl.col("death_step").is_null()).sort("agent_id")
+    np.testing.assert_array_equal(living["agent_id"], simulation.worlds[1].agents()["agent_id"])
+    np.testing.assert_array_equal(living["w_poison"], simulation.worlds[1].agents()["genome"][:, 1])
+
+
+def test_tables_agree_with_one_another(finished):
+    run = hedon.open_run(finished[0])
+    agents, population = run.agents(), run.population()
+    for world in (0, 1):
+        mine, rows = agents.filter(pl.col("world") == world), population.filter(pl.col("world") == world)
+        assert rows["step"].to_list() == [256, 512, 768, 1024, 1280, 1300]
+        assert rows["steps"].sum() == 1300
+        assert mine.height == 50 + rows["births"].sum()
+        assert mine["death_step"].drop_nulls().len() == rows["deaths"].sum() > 10
+        assert mine["death_step"].null_count() == rows["alive"][-1]
+        assert mine["agent_id"].sort().to_list() == list(range(mine.height))
+        for kind in ("normal", "poison"):
+            assert mine[f"eaten_{kind}"].sum() == rows[f"eaten_{kind}"].sum()
+        lived = (mine["death_step"].fill_null(1300) - mine["birth_step"]).sum()
+        assert lived == rows["agent_steps"].sum()
+        sums = {name: rows[name].sum() for name in LEDGER}
+        held = 50 * 40 + sums["energy_eaten"] + sums["energy_forgiven"] - sums["energy_basic"]
+        held -= sums["energy_action"] + sums["energy_capped"] + sums["energy_lost"]
+        assert rows["energy_total"][-1] == pytest.approx(held, abs=1e-7)
+
+
+def test_frames_hold_every_agent_and_food(finished):
+    run = hedon.open_run(finished[0])
+    frames = run.frames().collect()
+    assert frames["step"].unique().sort().to_list() == list(range(100, 1301, 100))
+    last = frames.filter(pl.col("step") == 1300, pl.col("world") == 0)
+    rows = run.population().filter(pl.col("world") == 0)
+    assert last.filter(pl.col("kind") == "agent").height == rows["alive"][-1]
+    assert last.filter(pl.col("kind") == "poison").height == rows["food_poison"][-1]
+
+
+def test_the_summary_has_its_keys(finished):
+    summary = json.loads((finished[0] / "summary.json").read_text())
+    for world in summary["worlds"]:
+        keys = {"steps_per_second", "alive", "extinct", "births", "deaths", "mean_lifetime", "food_per_step"}
+        assert keys <= world.keys()
+        assert world["steps_per_second"] > 0
+
+
+def test_a_folder_that_holds_a_run_is_left_alone(finished):
+    folder, _ = finished
+    before = (folder / "manifest.json").read_bytes()
+    answer = call("run", "baseline", "--steps", 10, "--out", folder)
+    assert answer.returncode == 2
+    assert "holds a run already" in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert (folder / "manifest.json").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "basline"), ("basline", "baseline")),
+        (("run", "baseline", "--set", "food.normal.growth=1"), ("food.normal.growth", "growth_rate")),
+        (("run", "baseline", "--set", "learning.gamma=1.5"), ("learning.gamma", "1.5")),
+        (("run", "baseline", "--set", "population.initial_count=300"), ("population.initial_count", "300")),
+        (("run", "baseline", "--seeds", "5-1"), ("--seeds", "5-1")),
+        (("run", "baseline", "--seeds", "1,1"), ("appears twice",)),
+        (("run", "baseline", "--fidelity", "correct"), ("correct", "corrected")),
+        (("run", "baseline", "--steps", "0"), ("--steps",)),
+        (("run", "nowhere.toml"), ("nowhere.toml",)),
+        (("report", "nowhere"), ("nowhere",)),
+        (("rnu",), ("rnu", "run")),
+    ],
+)
+def test_mistakes_get_one_clear_message(tmp_path, arguments, words):
+    answer = call(*arguments, cwd=tmp_path)
+    assert answer.returncode == 2
+    assert "Traceback" not in answer.stderr
+    for word in words:
+        assert word in answer.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unknown_kernel_is_named(tmp_path):
+    answer = call("run", "baseline", "--out", tmp_path / "out", env=os.environ | {"HEDON_KERNEL": "sse9"})
+    assert answer.returncode == 2
+    assert "sse9" in answer.stderr
+    assert "portable" in answer.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_ends_after_the_window_and_keeps_everything(tmp_path):
+    folder = tmp_path / "out"
+    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wait_for(folder / "manifest.json")
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    printed, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert "Interrupted after step" in printed
+    assert "Traceback" not in errors
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["status"] == "interrupted"
+    done = manifest["steps_done"][0]
+    assert done > 0
+    assert done % 256 == 0
+    population = hedon.open_run(folder).population()
+    assert population["step"].max() == done
+    assert (folder / "figures" / "population.png").exists()
+
+
+def test_results_can_be_read_while_the_run_goes_on(tmp_path):
+    folder = tmp_path / "out"
+    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        wait_for(folder / "agents" / "living.parquet")
+        assert hedon.open_run(folder).agents().height >= 50
+        assert call("report", folder).returncode == 0
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=60)
+
+
+def test_extinction_is_said_and_recorded(tmp_path):
+    lethal = ("--set", "hazard.kappa=1", "--set", "energy.initial=0", "--set", "birth.kappa=0")
+    answer = call("run", "baseline", "--steps", 20_000, "--out", tmp_path / "out", *lethal)
+    assert answer.returncode == 0, answer.stderr
+    assert "died out at step" in answer.stdout
+    world = json.loads((tmp_path / "out" / "summary.json").read_text())["worlds"][0]
+    assert world["extinct"] is True
+    assert world["alive"] == 0
+    assert world["deaths"] == 50
+
+
+def wait_for(path, seconds=30.0):
+    """Waits until a file exists."""
+    end = time.monotonic() + seconds
+    while not path.exists():
+        assert time.monotonic() < end, f"{path} did not appear"
+        time.sleep(0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "seeds"), [("7", (7,)), ("1-3", (1, 2, 3)), ("1, 4,7-8", (1, 4, 7, 8)), ("0-0", (0,))]
+)
+def test_seeds_are_read(text, seeds):
+    assert parse_seeds(text) == seeds
+
+
+@pytest.mark.parametrize("text", ["", "a", "3-1", "-1", "1,,2", "1-", "18446744073709551616", "1,1-2", "0-99999"])
+def test_seeds_that_are_none_are_refused(text):
+    with pytest.raises(RunError, match="--seeds"):
+        parse_seeds(text)

@@ -1,0 +1,59 @@
+"""Random numbers against published vectors and distributions, and elementary functions against the C library."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from hedon._engine import random
+
+# Known answers of Philox4x32-10 (Salmon et al. 2011, Random123): counter, key, words.
+KNOWN = [
+    ([0] * 4, [0] * 2, [0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8]),
+    ([0xFFFFFFFF] * 4, [0xFFFFFFFF] * 2, [0x408F276D, 0x41C83B0E, 0xA20BC7C6, 0x6D5451FD]),
+    (
+        [0x243F6A88, 0x85A308D3, 0x13198A2E, 0x03707344],
+        [0xA4093822, 0x299F31D0],
+        [0xD16CFE09, 0x94FDCCEB, 0x5001E420, 0x24126EA1],
+    ),
+]
+COUNT = 200_000
+
+
+@pytest.mark.parametrize(("counter", "key", "words"), KNOWN)
+def test_philox_gives_the_published_words(counter, key, words):
+    assert list(random.philox(counter, key)) == words
+
+
+@pytest.mark.parametrize("form", ["uniform", "norm", "cauchy"])
+def test_draws_follow_their_distribution(form):
+    draws = random.draw(20240722, {"norm": "normal"}.get(form, form), COUNT)
+    assert stats.kstest(draws, form).pvalue > 1e-3
+    # Neighbors in the counter are independent.
+    ranks = stats.rankdata(draws) / COUNT
+    assert abs(np.corrcoef(ranks[:-1], ranks[1:])[0, 1]) < 4 / np.sqrt(COUNT)
+
+
+def test_seeds_give_different_draws():
+    assert not np.any(random.draw(1, "uniform", 100) == random.draw(2, "uniform", 100))
+
+
+def test_uniforms_stay_below_one():
+    draws = random.draw(3, "uniform", COUNT)
+    assert draws.min() >= 0.0
+    assert draws.max() < 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high", "tolerance"),
+    [
+        ("exp", -700, 700, 1e-14),
+        ("log", 1e-300, 1e300, 1.5e-14),  # the first term left out of the series: 2/17 · 0.1716^17
+        ("sin", -1e4, 1e4, 1e-11),  # the argument's reduction loses 1e4 · 1e-16 and the constants' last bits
+        ("cos", -1e4, 1e4, 1e-11),
+    ],
+)
+def test_elementary_functions_agree_with_the_c_library(name, low, high, tolerance):
+    x = np.geomspace(low, high, 100_001) if name == "log" else np.linspace(low, high, 100_001)
+    expected = getattr(np, name)(x)
+    scale = np.abs(expected) if name == "exp" else np.maximum(np.abs(expected), 1.0)
+    assert np.max(np.abs(getattr(random, name)(x) - expected) / scale) < tolerance
