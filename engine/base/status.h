@@ -35,7 +35,7 @@ inline constexpr StatusText STATUS_TEXT[] = {
      "Read the events more often."},
     {"not_finite", "A number of the state is not finite.",
      "Look at the named agent; lower learning.learning_rate or the forces."},
-    {"outside_arena", "A body left the arena.", "Lower physics.dt or the forces."},
+    {"outside_arena", "A body left the arena.", "Lower physics.max_speed, physics.dt or the forces."},
     {"initial_placement", "The initial agents or foods find no free place in the arena.",
      "Lower the initial counts or enlarge the arena."},
     {"id_overflow", "A counter of agents or steps is exhausted.", "Start a new run."},
