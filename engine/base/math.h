@@ -121,8 +121,9 @@ HEDON_FN void sincos_float(float x, float* sine, float* cosine) {
   *cosine = static_cast<float>(c);
 }
 
-/// Wraps an angle [rad] that left [0, 2π) by at most one turn back into it.
+/// Wraps an angle [rad] into [0, 2π).
 HEDON_FN float wrap_angle(float angle) {
+  if (angle < -TWO_PI_F || angle >= 2.0f * TWO_PI_F) angle -= TWO_PI_F * floorf(angle / TWO_PI_F);
   if (angle < 0.0f) angle += TWO_PI_F;
   if (angle >= TWO_PI_F) angle -= TWO_PI_F;
   return angle < 0.0f ? 0.0f : angle;

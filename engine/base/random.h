@@ -62,6 +62,10 @@ struct RandomStream {
 
 /// Uniform in [0, 1), a multiple of 2^-24.
 HEDON_FN float to_uniform(uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+/// Uniform in [0, 1), a multiple of 2^-53: for chances per step, which may be far below 2^-24.
+HEDON_FN double to_fine_uniform(uint32_t word0, uint32_t word1) {
+  return static_cast<double>(((static_cast<uint64_t>(word0) << 32) | word1) >> 11) * 0x1p-53;
+}
 /// Uniform in (0, 1), an odd multiple of 2^-33: never 0 or 1, for logarithms and tangents.
 HEDON_FN double to_open_uniform(uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1p-32; }
 /// Uniform in {0, …, count - 1}, by multiplication; the bias is below count / 2^32.

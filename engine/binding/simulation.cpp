@@ -181,7 +181,8 @@ bool is_by_slot(const std::string& name) {
   return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
 }
 
-/// A read-only view of one array of a world's state, by its path; columns of structs are strided.
+/// A read-only view of one array of a world's state, by its path; columns of structs are strided. Packed observations
+/// are bytes, (slots, rollout_steps + 1, 192), as `learning.unpack` takes them.
 nb::object view(nb::handle self, int index, const std::string& path) {
   World& world = nb::cast<PythonSimulation&>(self).world(index);
   const size_t slots = static_cast<size_t>(world.shape->slots);
@@ -193,6 +194,11 @@ nb::object view(nb::handle self, int index, const std::string& path) {
       const bool table = is_by_slot(name) && count != slots;
       const size_t shape[2] = {table ? slots : count, table ? count / slots : 1};
       out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, table ? 2 : 1, shape, self));
+    } else if constexpr (std::is_same_v<T, PackedObservation>) {
+      if (name != path) return;
+      const size_t shape[3] = {slots, count / slots, sizeof(T)};
+      out =
+          nb::cast(nb::ndarray<nb::numpy, const uint8_t>(reinterpret_cast<const uint8_t*>(array.data), 3, shape, self));
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
       T::for_each_field([&](const char* column, auto member) {
         using Field = std::remove_cvref_t<decltype(array.data->*member)>;
@@ -211,7 +217,7 @@ nb::object view(nb::handle self, int index, const std::string& path) {
 nb::list view_names(PythonSimulation& self) {
   nb::list names;
   for_each_array(self.world(0).state, "", [&]<class T>(const std::string& name, Array<T>&) {
-    if constexpr (std::is_arithmetic_v<T>) {
+    if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, PackedObservation>) {
       names.append(name);
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
       T::for_each_field([&](const char* column, auto member) {

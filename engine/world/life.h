@@ -13,16 +13,16 @@
 namespace hedon {
 
 /// Probability of dying in a step at age `age` [step] and energy `energy`.
-HEDON_FN float hazard(const HazardConfig& config, double age, double energy) {
+HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
   const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * energy);
   // 1 - 1/(1 + x), written so that nothing cancels when x is small.
   const double by_energy = config.kappa * (x / (1.0 + x));
-  return static_cast<float>(by_energy + config.alpha_age * exp_double(config.beta_age * age));
+  return by_energy + config.alpha_age * exp_double(config.beta_age * age);
 }
 
 /// Probability of having a child in a step at energy `energy`.
-HEDON_FN float birth_rate(const BirthConfig& config, double energy) {
-  return static_cast<float>(config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy)));
+HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
+  return config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy));
 }
 
 /// One agent's step as its body feels it: meals and costs, then its reward and its draws for birth and death.
@@ -68,8 +68,8 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
                             static_cast<uint32_t>(world.clock().step)};
   const Random4 bits = random.draw(0);
-  scratch.birth_draw[slot] = to_uniform(bits.word[0]);
-  scratch.death_draw[slot] = to_uniform(bits.word[1]);
+  scratch.birth_draw[slot] = to_fine_uniform(bits.word[0], bits.word[1]);
+  scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
 }
 
 /// Adds what the living gained and spent in this step to the ledger, in their order.

@@ -74,7 +74,8 @@ HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
   c.motor_arm = static_cast<float>(config.body.radius * sine);
   c.max_force = config.motor.max_force * sqrtf(2.0f);
   sincos_double(config.sensor.mouth_spread * degree, &sine, &cosine);
-  c.mouth_cosine = static_cast<float>(cosine);
+  // A mouth all around: rounding must not leave a gap straight behind.
+  c.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;
   const int32_t rays = config.sensor.ray_count;
   const double spread = config.sensor.ray_spread * degree;
   for (int32_t r = 0; r < MAX_RAYS; ++r) {

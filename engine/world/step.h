@@ -17,6 +17,33 @@ namespace hedon {
 enum class Part : int32_t { sense_and_act, physics, life, learning, count };
 inline constexpr const char* PART_NAMES[] = {"sense_and_act", "physics", "life", "learning"};
 
+/// Says when a fault of the physics was, and of whom: the first agent whose forces were not finite.
+HEDON_FN void name_fault(World& world) {
+  Fault& fault = world.fault();
+  fault.step = world.clock().step;
+  if (fault.status != Status::not_finite) return;
+  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+    const int32_t slot = world.state.living[i];
+    const float sum = world.scratch.force_left[slot] + world.scratch.force_right[slot];
+    if (sum - sum == 0.0f) continue;
+    fault.agent_id = world.state.life[slot].agent_id;
+    fault.value = sum;
+    return;
+  }
+}
+
+/// Finds bodies that were so fast that they slipped through the outer walls.
+HEDON_FN void check_inside(World& world) {
+  const BodyState& body = world.state.physics.bodies;
+  const ArenaConfig& arena = world.config->arena;
+  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+    const int32_t slot = world.state.living[i];
+    const float x = body.x[slot], y = body.y[slot];
+    if (x >= 0.0f && x <= arena.width && y >= 0.0f && y <= arena.height) continue;
+    return world.fail(Status::outside_arena, world.state.life[slot].agent_id, x < 0.0f || x > arena.width ? x : y);
+  }
+}
+
 /// Advances a world by one step. All members of the group call it; `t` is the step within the window.
 /// `lap(part)` is told when each part ends.
 template <class Group, class Lap>
@@ -40,12 +67,16 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
                state.living, clock.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
                world.fault());
   if (world.fault().status != Status::ok) {
-    group.once([&] { world.fault().step = clock.step; });
+    group.once([&] { name_fault(world); });
     return;
   }
   lap(Part::physics);
 
-  group.once([&] { eat(world); });
+  group.once([&] {
+    check_inside(world);
+    eat(world);
+  });
+  if (world.fault().status != Status::ok) return;
   group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, state.living[i], t); });
   group.once([&] {
     keep_ledger(world);

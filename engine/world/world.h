@@ -30,8 +30,8 @@ struct StepScratch {
   Array<float> force_x, force_y, torque;      ///< the same, on the body
   Array<float> heading_sine, heading_cosine;  ///< at the start of the step
   Array<float> start_angle, start_x, start_y;
-  Array<int32_t> meal;                  ///< (slots, kinds) foods eaten in this step
-  Array<float> birth_draw, death_draw;  ///< uniform in [0, 1)
+  Array<int32_t> meal;                   ///< (slots, kinds) foods eaten in this step
+  Array<double> birth_draw, death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved;
   Array<int32_t> eater;         ///< (foods) slot of the agent that gets the food, -1 for none

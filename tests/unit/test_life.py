@@ -252,3 +252,56 @@ def test_no_place_for_the_founders_is_named():
     bars += [[20.0, y, 460.0, y] for y in range(30, 335, 15)]
     with pytest.raises(EngineError, match="initial_placement"):
         make_simulation(f"arena.inner_walls={bars}")
+
+
+@pytest.mark.parametrize(("chance", "deaths"), [(4e-8, 0), (6e-8, 1)])
+def test_chances_of_death_far_below_the_spacing_of_floats_are_kept(chance, deaths):
+    # Of seed 590, agent 20 draws 5.2e-8 in step 356: less than 2^-24, the spacing of uniform floats.
+    ageless = (f"hazard.alpha_age={chance}", "hazard.beta_age=0", "hazard.kappa=0")
+    simulation = make_simulation(*STILL, *CHILDLESS, *ageless, seeds=(590,))
+    simulation.run(357)
+    assert simulation.worlds[0].counters["deaths"] == deaths
+
+
+@pytest.mark.parametrize(("chance", "tries"), [(3e-8, 0), (4e-8, 1)])
+def test_chances_of_birth_far_below_the_spacing_of_floats_are_kept(chance, tries):
+    # Of seed 1890, agent 49 draws 3.4e-8 in step 82.
+    simulation = make_simulation(*STILL, *DEATHLESS, f"birth.kappa={2 * chance}", "birth.beta=0", seeds=(1890,))
+    simulation.run(83)
+    counters = simulation.worlds[0].counters
+    assert counters["births"] + counters["births_failed_space"] == tries
+
+
+def test_a_mouth_all_around_has_no_gap():
+    simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0", "sensor.mouth_spread=180")
+    x, y = (axis.ravel() for axis in np.meshgrid(40 + 44.0 * np.arange(10), 40 + 50.0 * np.arange(6)))
+    for seed in (16, 26, 81):  # of food straight behind, one in thousands lay beyond a cosine of -1 by rounding
+        angle = np.random.default_rng(seed).uniform(0, 2 * np.pi, len(x))
+        behind = np.column_stack([x + 13.5 * np.sin(angle), y - 13.5 * np.cos(angle)])
+        set_scene(simulation, np.column_stack([x, y, angle]), behind)
+        simulation.run(1)
+        assert np.all(_agents(simulation)["eaten"] == 1)
+
+
+def test_headings_are_wrapped_however_fast_a_body_turns():
+    fast = ("motor.max_force=10000", "motor.min_force=-10000", "physics.max_angular_speed=1000", "physics.substeps=40")
+    simulation = make_simulation(*SAFE, *fast)
+    for _ in range(20):
+        simulation.run(1)
+        angle = _agents(simulation)["angle"]
+        assert np.all((angle >= 0) & (angle < 2 * np.pi))
+
+
+def test_a_body_that_slips_through_a_wall_is_named():
+    # Of radius 0.5, a body passes a wall within one substep at the speed cap of 10 u/s.
+    simulation = make_simulation(*SAFE, "body.radius=0.5", "body.food_radius=0.2", "motor.max_force=1000")
+    with pytest.raises(EngineError, match=r"outside_arena.*World 0, step \d+, value .*, agent \d+.*max_speed"):
+        simulation.run(500)
+
+
+def test_an_agent_whose_numbers_are_not_finite_is_named():
+    wild = ("learning.learning_rate=1", "learning.value_coef=1000", "learning.adam_epsilon=1e-30")
+    reward = ("reward.action_coef=1000", "genome.weight_limit=1000", "genome.initial_mean_action=1000")
+    simulation = make_simulation(*QUICK, *SAFE, *wild, *reward, "learning.update_epochs=50")
+    with pytest.raises(EngineError, match=r"not_finite.*agent \d+"):
+        simulation.run(2000)
