@@ -23,7 +23,7 @@ def collect_provenance() -> dict[str, Any]:
         "cpu_count": usable_cpus(),
         "git_revision": revision,
         "git_modified": modified,
-        "command_line": tuple(sys.argv),
+        "command_line": (Path(sys.argv[0]).name, *sys.argv[1:]),
         "started": utc_now(),
     }
 
