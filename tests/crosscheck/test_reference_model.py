@@ -8,7 +8,8 @@ from dataclasses import fields
 import numpy as np
 import ppo_reference
 import pytest
-from reference_model import COUNTED, Agent, Deed, Model, Stock, World, normals
+from reference_draw import normals
+from reference_model import COUNTED, Agent, Deed, Model, Stock, World
 from worlds import set_scene
 
 from hedon.config.load import load_config
