@@ -28,7 +28,7 @@ struct StatusText {
 inline constexpr StatusText STATUS_TEXT[] = {
     {"ok", "No error.", ""},
     {"neighbor_overflow", "More neighboring pairs than the list can hold.",
-     "Lower the number of agents or physics.neighbor_skin."},
+     "Lower the number of agents, physics.neighbor_skin, physics.max_speed or the forces."},
     {"contact_outside_skin", "A body moved further than the neighbor list allows for.",
      "Raise physics.neighbor_skin or lower physics.max_speed."},
     {"event_overflow", "More births or deaths between two reads than the event buffer holds.",

@@ -33,7 +33,8 @@ struct WorldShape {
   HEDON_FN int32_t types() const { return kinds + 2; }
 };
 
-/// Deaths per slot that can wait for the reader. Python reads at least once per window, in which about one in ten dies.
+/// Deaths per slot that can wait for the reader. The host loop reads a few times per second; of a thousand steps, in
+/// which about one in ten dies.
 inline constexpr int EVENTS_PER_SLOT = 16;
 
 HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t outer_walls) {

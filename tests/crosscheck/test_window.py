@@ -32,9 +32,10 @@ def rows_of(simulation: Simulation, name: str, slots: Any) -> np.ndarray:
     return table.reshape(len(table), WINDOW, -1) if name == "action" else table
 
 
-def live_a_window(simulation: Simulation) -> dict[int, dict[str, list[Any]]]:
+def live_a_window(simulation: Simulation) -> dict[int, dict[str, Any]]:
     """Runs a window step by step; what each agent saw, did and got, by its id, and its learner before the last step."""
-    world, told = simulation.worlds[0], {}
+    world = simulation.worlds[0]
+    told: dict[int, dict[str, Any]] = {}
     for t in range(WINDOW):
         slots, ids, seen = world.living.tolist(), world.agents()["agent_id"].tolist(), world.observations()
         learner = {name: world.view(name)[slots] for name in ("params", "first_moment", "second_moment", "updates")}
@@ -86,10 +87,13 @@ def test_a_window_of_learning(case):
             simulation.engine.kernel,
             shape,
             settings,
-            *(mine[name] for name in ("params", "first_moment", "second_moment")),
+            mine["params"],
+            mine["first_moment"],
+            mine["second_moment"],
             int(mine["updates"]),
             np.ascontiguousarray(packed[i, :-1]),
-            *(rows[name] for name in ROWS[:2]),
+            rows["action"],
+            rows["log_prob"],
             rows["value"],
             rows["reward"],
             float(bootstrap),

@@ -93,6 +93,7 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         step = 0
         try:
             for step in _steps(simulation, plan, interrupted):
+                recorder.deaths()
                 if step % plan.config.learning.rollout_steps == 0 or step == plan.steps or simulation.extinct:
                     recorder.interval()
                 if plan.frames and step % plan.frames == 0:
@@ -125,7 +126,9 @@ def _steps(simulation: Simulation, plan: RunPlan, interrupted: "_Interrupts") ->
         begun = time.perf_counter()
         simulation.run(steps)
         seconds = max(time.perf_counter() - begun, 1e-6)
-        piece = max(1, min(int(steps * PIECE_SECONDS / seconds), 4 * piece))
+        # The engine keeps the deaths of a piece until they are read: let them fill an eighth of its room, not all.
+        full = 8 * max(world.waiting_deaths for world in simulation.worlds)
+        piece = max(1, int(min(steps * PIECE_SECONDS / seconds, 4 * piece, steps / full if full else steps * 4)))
         step += steps
         yield step
 
@@ -142,15 +145,20 @@ class _Recorder:
         self.living_due = 0.0
         self.shown = False
 
+    def deaths(self) -> None:
+        """Writes those who died since the last call. The engine has room for some, so this is done in every piece."""
+        for i, world in enumerate(self.simulation.worlds):
+            lives = self.simulation.engine.take_rows(i)
+            if len(lives["agent_id"]):
+                self.writer.append("agents", agent_rows(world, lives))
+
     def interval(self) -> None:
-        """Writes the deaths since the last interval and one population row per world that moved."""
+        """Writes what has not been written of the deaths and one population row per world that moved."""
+        self.deaths()
         for i, world in enumerate(self.simulation.worlds):
             if world.step == self.last_step[i]:
                 continue
             self.last_step[i] = world.step
-            lives = self.simulation.engine.take_rows(i)
-            if len(lives["agent_id"]):
-                self.writer.append("agents", agent_rows(world, lives))
             self.rows[i] = self.samplers[i].sample()
             self.writer.append("population", self.rows[i])
         if time.perf_counter() >= self.living_due:

@@ -107,6 +107,11 @@ class World:
         return self.extinct_step is not None
 
     @property
+    def waiting_deaths(self) -> float:
+        """Deaths that have not been read yet, as a share of the engine's room for them."""
+        return self._engine.clock(self.index)["event_count"] / len(self.view("event.birth_step"))
+
+    @property
     def counters(self) -> dict[str, Any]:
         """Births, deaths, failures and the energy ledger since the world began."""
         return self._engine.counters(self.index)

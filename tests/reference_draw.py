@@ -1,0 +1,39 @@
+"""Counted random numbers in plain Python integers: the engine's, once more."""
+
+import math
+
+PURPOSES = (
+    *("action", "life_and_death", "parent_order", "child_place", "child_heading", "mutation", "initial_genome"),
+    *("initial_place", "network", "minibatch", "food_place", "frozen_mutation", "initial_heading", "initial_food"),
+)
+"""What draws are for, in the order of their numbers."""
+
+
+def philox(counter: tuple[int, int, int, int], key: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Philox4x32-10. Source: Salmon et al. (2011)."""
+    mask = 0xFFFFFFFF
+    c0, c1, c2, c3 = counter
+    k0, k1 = key
+    for _ in range(10):
+        a, b = 0xD2511F53 * c0, 0xCD9E8D57 * c2
+        c0, c1, c2, c3 = (b >> 32) ^ c1 ^ k0, b & mask, (a >> 32) ^ c3 ^ k1, a & mask
+        k0, k1 = (k0 + 0x9E3779B9) & mask, (k1 + 0xBB67AE85) & mask
+    return c0, c1, c2, c3
+
+
+def uniform(word: int) -> float:
+    return (word >> 8) / 2**24
+
+
+def fine_uniform(high: int, low: int) -> float:
+    return (((high << 32) | low) >> 11) / 2**53
+
+
+def normals(word0: int, word1: int) -> tuple[float, float]:
+    radius = math.sqrt(-2 * math.log((word0 + 0.5) / 2**32))
+    angle = 2 * math.pi * (word1 + 0.5) / 2**32
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+def cauchy(word: int) -> float:
+    return math.tan(math.pi * ((word + 0.5) / 2**32 - 0.5))

@@ -1,0 +1,29 @@
+"""The host loop's records."""
+
+import polars as pl
+
+from hedon.config.load import load_config
+from hedon.experiment.run import RunPlan, run
+
+# A window in which far more die than the engine's buffer of 16 per slot holds.
+BRIEF = (
+    "learning.rollout_steps=16384",
+    "learning.update_epochs=0",
+    "population.capacity=12",
+    "population.initial_count=12",
+    "energy.initial=400",
+    "energy.basic_cost=0",
+    "food.normal.growth_rate=0",
+    "hazard.alpha_age=0.02",
+    "birth.kappa=0.5",
+)
+
+
+def test_deaths_are_kept_however_many_a_window_has(tmp_path):
+    config = load_config("baseline", overrides=BRIEF)
+    run(RunPlan(config, (1,), 1500, tmp_path / "run", threads=1))
+    dead = pl.read_parquet(tmp_path / "run" / "agents" / "*.parquet").filter(pl.col("death_step").is_not_null())
+    assert len(dead) > 16 * 12
+    assert dead["agent_id"].n_unique() == len(dead)
+    population = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet")
+    assert population["deaths"].sum() == len(dead)
