@@ -6,7 +6,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <unistd.h>
+
 #include <atomic>
+#include <cstdio>
 #include <set>
 #include <string>
 
@@ -63,8 +66,8 @@ class PythonSimulation {
  public:
   PythonSimulation(nb::dict config, WallsIn walls, int32_t outer_walls, const std::vector<uint64_t>& seeds, int threads,
                    const std::string& kernel, const std::vector<int32_t>& slot_order)
-      : simulation_(to_config<WorldConfig>(config), to_segments(walls), outer_walls, seeds,
-                    threads > 0 ? threads : available_processors(), need_kernel(kernel), slot_order) {
+      : simulation_(need_memory(to_config<WorldConfig>(config), walls.shape(0), seeds.size(), count_threads(threads)),
+                    to_segments(walls), outer_walls, seeds, count_threads(threads), need_kernel(kernel), slot_order) {
     raise_faults();
   }
 
@@ -147,6 +150,24 @@ class PythonSimulation {
       known += std::string(known.empty() ? "" : ", ") + *at;
     throw nb::value_error(
         ("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
+  }
+
+  static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
+
+  /// Refuses what this machine cannot hold, before anything is reserved.
+  static WorldConfig need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
+    const double needed = static_cast<double>(
+        Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads));
+    const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+    if (needed > present) {
+      char text[160];
+      snprintf(text, sizeof text,
+               "the worlds need %.1f GB of memory, and this machine has %.1f GB: lower population.capacity, "
+               "learning.rollout_steps or the number of seeds",
+               needed / 1e9, present / 1e9);
+      throw nb::value_error(text);
+    }
+    return config;
   }
 
   static std::vector<Segment> to_segments(const WallsIn& walls) {
@@ -233,9 +254,10 @@ nb::list view_names(PythonSimulation& self) {
 
 void bind_simulation(nb::module_& module) {
   using S = PythonSimulation;
-  module.def("read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
-             nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
-             "What the engine understood of a config.");
+  module.def(
+      "read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
+      nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
+      "What the engine understood of a config.");
   nb::class_<S>(module, "Simulation",
                 "Many worlds under one config. Views are read-only and valid until the next `run`.")
       .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&,

@@ -27,6 +27,22 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_;
 };
 
+/// Lays out all that a world needs, from `at` on unless null; returns the bytes that it takes.
+int64_t lay_out_world(World& world, char* at) {
+  int64_t bytes = 0;
+  const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
+  bytes += lay_out(world.state, next());
+  bytes += lay_out(world.physics_scratch, next());
+  bytes += lay_out(world.scratch, next());
+  bytes += lay_out(world.scene, next());
+  return bytes;
+}
+
+/// Floats of scratch for each thread that learns, in whole cache lines.
+int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
+  return (learn_scratch_size(shape.network, config.learning) + 15) / 16 * 16;
+}
+
 }  // namespace
 
 Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
@@ -48,29 +64,30 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     world.kernel = kernel_;
     world.seed = seeds[i];
     set_counts(world, threads);
-    const auto lay_out_all = [&](char* at) {
-      int64_t bytes = 0;
-      const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
-      bytes += lay_out(world.state, next());
-      bytes += lay_out(world.physics_scratch, next());
-      bytes += lay_out(world.scratch, next());
-      bytes += lay_out(world.scene, next());
-      return bytes;
-    };
-    memory_.emplace_back(lay_out_all(nullptr));
-    lay_out_all(memory_.back().data());
-    empty(world);
+    memory_.emplace_back(lay_out_world(world, nullptr));
+    lay_out_world(world, memory_.back().data());
+    begin(world);
     found(world);
   }
   pool_ = std::make_unique<Pool>(threads);
-  learn_stride_ = (learn_scratch_size(shape_.network, config_.learning) + 15) / 16 * 16;
+  learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
 }
 
-void Simulation::empty(World& world) {
-  for_each_array(world.state, "", []<class T>(const std::string&, Array<T>& array) {
-    memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
-  });
+int64_t Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
+  const WorldShape shape = make_shape(config, walls, walls);
+  const WorldConstants constants = make_constants(config);
+  World world{};
+  world.config = &config;
+  world.shape = &shape;
+  world.constants = &constants;
+  set_counts(world, threads);
+  return worlds * lay_out_world(world, nullptr) +
+         threads * learn_stride(shape, config) * static_cast<int64_t>(sizeof(float));
+}
+
+/// Makes zeroed memory an empty world: all slots free, no agent, no food.
+void Simulation::begin(World& world) {
   Clock& clock = world.clock();
   clock.extinct_step = -1;
   for (int32_t slot = shape_.slots - 1; slot >= 0; --slot) {
@@ -90,7 +107,10 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
     if (kind < 0 || kind >= shape_.kinds || ++count[static_cast<size_t>(kind)] > config_.food[kind].capacity)
       return false;
   }
-  empty(target);
+  for_each_array(target.state, "", []<class T>(const std::string&, Array<T>& array) {
+    memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
+  });
+  begin(target);
   for (int64_t i = 0; i < scene.x.count; ++i) {
     const int32_t slot = spawn(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i], 0);
     init_genome(shape_.genome, config_.genome, target.seed, static_cast<uint32_t>(i), target.genome(slot));

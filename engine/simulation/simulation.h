@@ -31,6 +31,9 @@ class Simulation {
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
              const std::vector<int32_t>& slot_order);
 
+  /// Bytes that a simulation reserves: to be compared with what the machine has, before it is made.
+  static int64_t bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
+
   /// Empties a world and puts these agents and foods into it, wherever they are: for looking at chosen scenes.
   /// False where they are more than the world can hold.
   bool set_scene(int index, const SceneInput& scene);
@@ -51,7 +54,7 @@ class Simulation {
   int64_t bytes_per_world() const { return memory_.empty() ? 0 : memory_.front().size(); }
 
  private:
-  void empty(World& world);
+  void begin(World& world);
   void advance_with(Team team, int thread, int world, int64_t steps);
 
   WorldConfig config_;

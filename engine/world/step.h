@@ -84,6 +84,7 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
     reap(world);
     grow(world);
     clock.step += 1;
+    if (clock.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(clock.step));
   });
   lap(Part::life);
 }

@@ -305,3 +305,9 @@ def test_an_agent_whose_numbers_are_not_finite_is_named():
     simulation = make_simulation(*QUICK, *SAFE, *wild, *reward, "learning.update_epochs=50")
     with pytest.raises(EngineError, match=r"not_finite.*agent \d+"):
         simulation.run(2000)
+
+
+def test_worlds_that_do_not_fit_into_memory_are_refused():
+    huge = ("population.capacity=100000", "learning.rollout_steps=65536")
+    with pytest.raises(EngineError, match=r"need [\d.]+ GB of memory.*population\.capacity"):
+        make_simulation(*huge, seeds=range(100))
