@@ -57,12 +57,14 @@ HEDON_FN void cast_candidates(const World& world, RayScene& rays, PackedObservat
   rays.circles = rays.segments = 0;
 }
 
-/// True where the fan cannot touch the segment from `a` to `b`, both relative to the fan's center.
+/// True where the fan surely misses the segment from `a` to `b`, both relative to the fan's center: it lies behind an
+/// edge, or even its whole line is out of reach.
 HEDON_FN bool misses(const Fan& fan, Vec2 a, Vec2 b) {
   const Vec2 right{fan.right_x, fan.right_y}, left{fan.left_x, fan.left_y};
   if (cross(right, a) < 0.0f && cross(right, b) < 0.0f) return true;
   if (cross(a, left) < 0.0f && cross(b, left) < 0.0f) return true;
-  return squared_length(nearest_on_segment(a, b, {0.0f, 0.0f})) > fan.reach * fan.reach;
+  const float area = cross(a, b);
+  return area * area > fan.reach * fan.reach * squared_length(b - a);
 }
 
 /// Casts the rays of the agent at position `self` of the living order. `scratch` holds indices of circles.
