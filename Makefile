@@ -16,6 +16,7 @@ test: sync
 	$(RUN) lint-imports
 	$(RUN) pyright
 	$(RUN) pytest
+	$(RUN) python tests/sanitize.py asan
 
 sync: $(UV) compiler
 	$(UV) sync --quiet

@@ -1,6 +1,7 @@
 """The door: plain nested tables become a `Config`, or one error that names everything that is wrong."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
@@ -26,18 +27,45 @@ def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
     Raises:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another.
     """
+    config, errors = _try(tables)
+    problems = list(dict.fromkeys(_problem(details) for details in errors))
+    if errors:
+        # What is wrong by itself is set aside, so that what contradicts among the rest is told at once as well.
+        config, _ = _try(_without(tables, [details["loc"] for details in errors]))
+    if config is not None:
+        wrong = [problem.path for problem in problems]
+        problems += [each for each in contradictions(config) if not any(_overlap(each.path, path) for path in wrong)]
+    if problems or config is None:
+        raise ConfigError(origin, problems)
+    return config
+
+
+def _try(tables: Mapping[str, Any]) -> "tuple[Config | None, list[ErrorDetails]]":
     from pydantic import ValidationError
 
     try:
         # By way of JSON: only there does a strict validator take tables for dataclasses, lists for tuples.
-        config = _validator().validate_json(json.dumps(tables, default=str))
+        return _validator().validate_json(json.dumps(tables, default=str)), []
     except ValidationError as error:
-        problems = [_problem(details) for details in error.errors(include_url=False)]
-        raise ConfigError(origin, dict.fromkeys(problems)) from None
-    problems = list(contradictions(config))
-    if problems:
-        raise ConfigError(origin, problems)
-    return config
+        return None, error.errors(include_url=False)
+
+
+def _overlap(path: str, other: str) -> bool:
+    """Whether two paths name the same setting, or one the other's section."""
+    a, b = (re.split(r"[.\[]", each) for each in (path, other))
+    return all(x == y for x, y in zip(a, b, strict=False))
+
+
+def _without(tables: Mapping[str, Any], locations: Sequence[Sequence[str | int]]) -> dict[str, Any]:
+    """A copy of nested tables without the settings at these places."""
+    kept = {}
+    for name, value in tables.items():
+        inner = [location[1:] for location in locations if location[0] == name]
+        if isinstance(value, Mapping) and all(inner):
+            kept[name] = _without(value, inner)
+        elif not inner:
+            kept[name] = value
+    return kept
 
 
 def validated(config: Config, origin: str = "config") -> Config:

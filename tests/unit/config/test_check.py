@@ -117,3 +117,13 @@ def test_all_contradictions_come_at_once() -> None:
         "population.initial_count",
         "energy.initial",
     ]
+
+
+def test_contradictions_are_told_together_with_what_is_wrong_by_itself():
+    with pytest.raises(ConfigError) as caught:
+        load_config("baseline", overrides=["learning.gamma=2", "population.initial_count=300", "arena.widht=3"])
+    assert {problem.path for problem in caught.value.problems} == {
+        "learning.gamma",
+        "population.initial_count",
+        "arena.widht",
+    }
