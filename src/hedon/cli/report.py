@@ -1,11 +1,14 @@
 """The command `hedon report`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hedon.cli.console import make_console
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 def report(
@@ -22,7 +25,12 @@ def report(
 
         hedon report runs/small && jq .mean_lifetime runs/small/summary.json
     """
-    # Imported here: they take a second, which no other command should wait for.
+    show_report(run, make_console())
+
+
+def show_report(run: Path, console: "Console") -> None:
+    """Writes a run's summary and figures, and prints the table and where the files are."""
+    # Imported here: they take seconds, for which neither another command nor the start of a run should wait.
     import json
 
     from hedon.analysis.report import write_report
@@ -30,7 +38,6 @@ def report(
     from hedon.record.reader import open_run
 
     files = write_report(open_run(run))
-    console = make_console()
     console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
     for file in files:
         console.print(f"wrote {file}", soft_wrap=True)

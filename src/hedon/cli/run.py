@@ -6,11 +6,12 @@ from typing import Annotated
 import typer
 
 from hedon.cli.console import make_console
+from hedon.cli.report import show_report
 from hedon.error import HedonError
 
 DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
-MAX_SEED = 2**64 - 1
+MAX_SEED = 2**63 - 1
 MAX_STEPS = 2**31 - 1
 
 
@@ -49,15 +50,10 @@ def run(
 
     HEDON_KERNEL forces an instruction set: avx512, avx2 or portable.
     """
-    import json
-
-    from hedon.analysis.report import write_report
-    from hedon.analysis.summary_table import summary_table
     from hedon.config.load import load_config
     from hedon.experiment.progress import duration, make_display
     from hedon.experiment.run import RunPlan, default_folder
     from hedon.experiment.run import run as run_plan
-    from hedon.record.reader import open_run
 
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
@@ -73,15 +69,10 @@ def run(
             console.print(f"The world of seed {seed} died out at step {extinct:,}.")
     if manifest.status == "interrupted":
         done = max(manifest.steps_done)
-        console.print(
-            f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.",
-            highlight=False,
-        )
-    files = write_report(open_run(folder))
-    console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
-    took = duration(manifest.run_seconds or 0.0)
-    console.print(f"{took} of simulation. Tables, summary and {len(files)} files for reading: {folder}")
-    console.print(f"Look at {folder / 'figures'}; make them again with: hedon report {folder}")
+        console.print(f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.")
+    console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
+    show_report(folder, console)
+    console.print(f"Make them again with: hedon report {folder}")
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
