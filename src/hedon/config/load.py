@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import Config
+from hedon.config.dump import digest
 from hedon.config.layer import Table, settle_food, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
@@ -53,6 +54,13 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     if problems:
         raise ConfigError(origin, problems)
     return from_tables(merged, origin + " with --set" if tables else origin)
+
+
+def is_modified(config: Config) -> bool:
+    """Whether any setting but names and colors differs from the preset and fidelity that the config names."""
+    if config.preset not in PRESETS or config.fidelity not in FIDELITIES:
+        return True
+    return digest(config) != digest(load_config(config.preset, config.fidelity))
 
 
 @cache

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
+from hedon.config.load import is_modified
 from hedon.experiment.sample import PopulationSampler, Rows, agent_rows, frame_rows
 from hedon.experiment.simulation import Simulation, World
 from hedon.record.manifest import Manifest
@@ -217,6 +218,8 @@ def _first_manifest(plan: RunPlan, simulation: Simulation) -> Manifest:
         steps_asked=plan.steps,
         preset=config.preset,
         fidelity=config.fidelity,
+        name=config.name,
+        modified=is_modified(config),
         config_digest=digest(config),
         kernel=simulation.engine.kernel,
         threads=simulation.engine.threads,

@@ -24,6 +24,8 @@ class Manifest:
         steps_asked: steps that each world was to make [step].
         preset: name of the preset that the config began with.
         fidelity: "corrected", "released" or "text".
+        name: what the config calls itself: the preset, or the file without its ending.
+        modified: whether any setting differs from the preset with the fidelity; None in manifests of old.
         config_digest: digest of the resolved config.
         kernel: instruction set that the engine used.
         threads: threads that the engine used.
@@ -44,6 +46,8 @@ class Manifest:
     steps_asked: int
     preset: str | None = None
     fidelity: str | None = None
+    name: str | None = None
+    modified: bool | None = None
     config_digest: str | None = None
     kernel: str | None = None
     threads: int | None = None

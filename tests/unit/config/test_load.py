@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, load_config
-from hedon.config.load import describe_fidelity, describe_preset
+from hedon.config.load import describe_fidelity, describe_preset, is_modified
 
 Write = Callable[[str], Path]
 
@@ -176,3 +176,12 @@ def test_complete_file_takes_no_fidelity(write: Write) -> None:
 def test_name_can_be_given(write: Write) -> None:
     assert load_config(write('name = "My run"\n')).name == "My run"
     assert load_config("small", overrides=['name="second try"']).name == "second try"
+
+
+def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Write) -> None:
+    assert not is_modified(load_config("poison", "released"))
+    assert not is_modified(load_config("poison", overrides=['food.poison.color="#112233"']))
+    assert not is_modified(load_config(write('preset = "small"\nfidelity = "text"\n')))
+    assert is_modified(load_config("poison", overrides=["energy.initial=7"]))
+    assert is_modified(load_config(write("[food.mushroom]\nenergy = 3.0\n")))
+    assert is_modified(dataclasses.replace(Config(), preset="mine"))

@@ -73,6 +73,8 @@ def test_manifest_faults_are_named(tmp_path: Path) -> None:
     values = json.loads(path.read_text())
     path.write_text(json.dumps(values | {"later": 1}))
     assert load_manifest(tmp_path) == manifest
+    path.write_text(json.dumps({name: value for name, value in values.items() if name not in ("name", "modified")}))
+    assert load_manifest(tmp_path).modified is None
     path.write_text(json.dumps(values | {"format_version": 99}))
     with pytest.raises(RecordError, match="update hedon"):
         load_manifest(tmp_path)
