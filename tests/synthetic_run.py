@@ -161,6 +161,8 @@ def write_run(
     neutral_count: int = 1,
     extinct: int | None = None,
     preset: str | None = "baseline",
+    name: str | None = "baseline",
+    modified: bool | None = False,
     snapshot: bool = True,
     **options: Any,
 ) -> Path:
@@ -172,6 +174,8 @@ def write_run(
         steps_asked=intervals * INTERVAL,
         preset=preset,
         fidelity="corrected",
+        name=name,
+        modified=modified,
         hedon_version="0.1.0",
         kernel="portable",
         status="finished",

@@ -39,7 +39,7 @@ def test_a_run_leaves_what_is_documented(finished):
     expected |= {f"figures/{name}.png" for name in ("weights", "history", "population", "world")}
     assert expected <= files
     assert any(name.startswith("frames/part-") for name in files)
-    assert "poison released: 2 worlds" in printed
+    assert "poison (released, modified): 2 worlds" in printed
     assert "step 1,300 of 1,300" in printed
 
 
@@ -51,6 +51,8 @@ def test_the_manifest_says_how_to_repeat_the_run(finished):
     assert manifest["steps_done"] == [1300, 1300]
     assert manifest["kernel"] in ("avx512", "avx2", "portable")
     assert manifest["fidelity"] == "released"
+    assert manifest["name"] == "poison"
+    assert manifest["modified"] is True
     config = hedon.load_config(folder / "config.toml")
     assert config.genome.mutation_noise == "frozen"
     simulation = hedon.Simulation(config, manifest["seeds"], kernel=manifest["kernel"])

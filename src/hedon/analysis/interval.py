@@ -8,6 +8,8 @@ import numpy as np
 from scipy import stats
 
 LEVEL = 0.95
+SHOWN_FROM = 3
+"""Worlds from which on an interval is shown to a reader: over two it is so wide that it misleads."""
 
 
 @dataclass(frozen=True)

@@ -41,10 +41,13 @@ def summarize(run: Run) -> dict[str, Any]:
     worlds = [
         _world(run, index, agents, population, weights.get(index, {})) for index in range(len(run.manifest.seeds))
     ]
-    manifest, paper = run.manifest, paper_figures(run.manifest.preset)
+    manifest = run.manifest
+    paper = paper_figures(manifest.preset) if manifest.modified is False else None
     summary = {
+        "name": manifest.name,
         "preset": manifest.preset,
         "fidelity": manifest.fidelity,
+        "modified": manifest.modified,
         "hedon_version": manifest.hedon_version,
         "kernel": manifest.kernel,
         "status": manifest.status,

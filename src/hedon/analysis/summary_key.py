@@ -1,8 +1,10 @@
 """What the keys of `summary.json` mean: the single source of its documentation."""
 
 RUN_KEYS: dict[str, str] = {
+    "name": "what the config is called: the preset, or its file without the ending; or null",
     "preset": "name of the preset, or null",
     "fidelity": "corrected, released or text, or null",
+    "modified": "whether any setting differs from the preset with the fidelity; null where the manifest does not say",
     "hedon_version": "version that made the run",
     "kernel": "instruction set that the engine used",
     "status": "running, finished, interrupted or failed",
@@ -22,7 +24,8 @@ RUN_KEYS: dict[str, str] = {
     "weights": "by genome column: worlds' mean weight as mean and interval; neutral markers show drift alone",
     "pooled": "over the dead of all worlds, each agent alike: agents, mean_lifetime, food_per_step",
     "surviving": "the same means and intervals without the extinct worlds, which the paper replaced",
-    "paper": "of this preset: mean_lifetime, food_per_step, population, generation, claim; or null",
+    "paper": "of this preset: mean_lifetime, food_per_step, population, generation, claim; null unless `modified` is "
+    "false",
     "damaged_parts": "files that could not be read and are missing in all numbers",
     "worlds": "list, one entry per world, see below",
 }

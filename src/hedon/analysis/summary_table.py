@@ -9,6 +9,10 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from hedon.analysis.interval import SHOWN_FROM
+from hedon.analysis.paper import STEPS
+from hedon.analysis.weight import LAST_AGENTS
+
 _NOTHING = "-"
 _QUANTITIES = {  # key of the summary: name, key among the paper's figures
     "mean_lifetime": ("mean lifetime of the dead [step]", "mean_lifetime"),
@@ -64,18 +68,28 @@ def format_number(value: float | None) -> str:
 
 
 def _over_worlds(summary: Mapping[str, Any]) -> Table:
-    count, paper = len(summary["worlds"]), summary["paper"] or {}
-    name = " ".join(str(summary[key]) for key in ("preset", "fidelity") if summary[key])
-    headers = ("mean over worlds", "value", "95 % interval", "paper")
-    table = _table(f"{name or 'run'}: {count} world{'s' if count > 1 else ''}", headers)
+    count, paper = len(summary["worlds"]), summary["paper"]
+    headers = ["mean over worlds", "value", "95 % interval"]
+    if paper is not None:
+        headers.append(f"paper ({STEPS / 1e6:g}e6 steps)")
+    table = _table(escape(f"{_name(summary)}: {count} world{'s' if count > 1 else ''}"), headers)
     for key, (label, source) in _QUANTITIES.items():
-        table.add_row(escape(label), *_interval(summary[key]), _reported(paper.get(source)))
+        reported = [] if paper is None else [_reported(paper.get(source))]
+        table.add_row(escape(label), *_interval(summary[key]), *reported)
     for weight, interval in summary["weights"].items():
-        table.add_row(f"weight {weight}", *_interval(interval), "")
-    if paper.get("claim"):
+        table.add_row(f"weight {weight}", *_interval(interval))
+    if paper is not None and paper["claim"]:
         table.caption = f"The paper: {paper['claim']}."
         table.caption_justify = "left"
     return table
+
+
+def _name(summary: Mapping[str, Any]) -> str:
+    """What was run: "baseline (corrected)", or "mushrooms (baseline, corrected, modified)"."""
+    name = summary["name"] or summary["preset"] or "run"
+    preset = summary["preset"] if summary["preset"] != name else None
+    remarks = [text for text in (preset, summary["fidelity"], "modified" if summary["modified"] else None) if text]
+    return f"{name} ({', '.join(remarks)})" if remarks else name
 
 
 def _world_by_world(summary: Mapping[str, Any]) -> Table:
@@ -88,7 +102,7 @@ def _world_by_world(summary: Mapping[str, Any]) -> Table:
 
 def _weights(summary: Mapping[str, Any]) -> Table:
     names = list(summary["weights"])
-    table = _table("weights of the 5000 agents born last, mean ± sd", ("seed", *names))
+    table = _table(f"weights of the agents born last (at most {LAST_AGENTS}), mean ± sd", ("seed", *names))
     for world in summary["worlds"]:
         spreads = [world["weights"][name] for name in names]
         cells = [f"{_weight(spread['mean'])} ± {_weight(spread['sd'])}" for spread in spreads]
@@ -111,8 +125,9 @@ def _table(title: str, headers: Sequence[str]) -> Table:
 
 
 def _interval(interval: Mapping[str, Any]) -> tuple[str, str]:
-    bounds = [interval["low"], interval["high"]]
-    both = _NOTHING if None in bounds else f"{format_number(bounds[0])} … {format_number(bounds[1])}"
+    both = _NOTHING
+    if interval["worlds"] >= SHOWN_FROM:
+        both = f"{format_number(interval['low'])} … {format_number(interval['high'])}"
     return format_number(interval["mean"]), both
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
 
-from hedon.analysis.interval import mean_interval
+from hedon.analysis.interval import SHOWN_FROM, mean_interval
 from hedon.analysis.style import PALE, step_unit
 
 
@@ -34,7 +34,7 @@ def draw_traces(
         if len(x) and world["bin"].max() < history["bin"].max():  # type: ignore[operator]
             axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
     x, mean, low, high = over_worlds(history, column)
-    if len(worlds) > 2:
+    if len(worlds) >= SHOWN_FROM:
         axes.fill_between(x / unit, low, high, color=color, alpha=0.13, linewidth=0)
     marker = "o" if len(x) == 1 else ""
     axes.plot(
@@ -60,7 +60,7 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
     known = history.filter(pl.col(column).is_not_null())
     for bin_rows in known.partition_by("bin"):
         interval = mean_interval(bin_rows[column])
-        low, high = (interval.low, interval.high) if interval.worlds > 2 else (None, None)
+        low, high = (interval.low, interval.high) if interval.worlds >= SHOWN_FROM else (None, None)
         rows.append([bin_rows["step"].to_numpy().max(), interval.mean, low, high])
     table = np.array(sorted(rows), np.float64).reshape(-1, 4)
     return table[:, 0], table[:, 1], table[:, 2], table[:, 3]

@@ -60,7 +60,7 @@ def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> Non
 
 
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
-    run = open_run(write_run(tmp_path / "run", intervals=0, worlds=1, preset=None, neutral_count=0))
+    run = open_run(write_run(tmp_path / "run", intervals=0, worlds=1, preset=None, name=None, neutral_count=0))
     summary = summarize(run)
     assert summary["paper"] is None
     assert summary["worlds"][0]["alive"] == 50
@@ -83,7 +83,35 @@ def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     assert "mean lifetime of the dead [step]" in text
     assert "6,310" in text
     assert "1 of 3 worlds died out" in text
-    assert "baseline corrected: 3 worlds" in text
+    assert "baseline (corrected): 3 worlds" in text
+    assert "paper (10.24e6 steps)" in text
+
+
+@pytest.mark.parametrize(
+    ("options", "title"),
+    [
+        ({"name": "mushrooms", "modified": True}, "mushrooms (baseline, corrected, modified): 1 world"),
+        ({"modified": True}, "baseline (corrected, modified): 1 world"),
+        ({"name": None, "modified": None}, "baseline (corrected): 1 world"),  # a manifest of old
+    ],
+    ids=["own file", "override", "unknown"],
+)
+def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path, options: dict, title: str) -> None:
+    summary = summarize(open_run(write_run(tmp_path / "run", intervals=5, worlds=1, **options)))
+    assert summary["paper"] is None
+    text = _print(summary)
+    assert title in text
+    assert "paper" not in text.lower()
+
+
+def test_the_table_has_intervals_from_three_worlds_on(tmp_path: Path) -> None:
+    lines = []
+    for worlds in (2, 3):
+        summary = summarize(open_run(write_run(tmp_path / f"{worlds}", intervals=20, worlds=worlds)))
+        assert summary["alive"]["low"] is not None
+        lines += [line for line in _print(summary).splitlines() if "agents alive" in line]
+    assert "…" not in lines[0].replace("130 … 150", "")
+    assert "…" in lines[1].replace("130 … 150", "")
 
 
 def test_numbers_for_a_reader() -> None:
