@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from hedon.analysis.style import (
+    MUTED,
     NEUTRAL_COLOR,
     PALE,
     new_figure,
@@ -23,6 +24,8 @@ from hedon.analysis.style import (
 from hedon.analysis.weight import LAST_AGENTS, last_agents
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes
+_SHARE_WITHIN = 0.98  # of the agents, in each weight; the few beyond would squeeze all others
+_MARGIN = 1.3
 _BINS = 60
 _DENSITY_COLOR = "#6b7884"
 _LEGEND_SEEDS = 10  # more would hide the data
@@ -35,6 +38,7 @@ def draw_weights(
 
     Colors tell worlds apart, or the time of birth where there is one world. The curves beyond the axes are
     the distributions over all agents, with that of the first neutral marker behind them in gray.
+    The axes reach as far as nearly all agents; crosses at their edge stand for those beyond.
 
     Args:
         agents: table `agents`.
@@ -44,7 +48,8 @@ def draw_weights(
     """
     rows = last_agents(agents, count)
     names = [f"w_{kind}" for kind in food_kinds]
-    reach = max(_MIN_HALF_RANGE, 1.08 * _largest(rows, [*names, "w_action"]))
+    reach = _reach(rows, [*names, "w_action"])
+    beyond = rows.filter(pl.any_horizontal(pl.col(*names, "w_action").abs() > reach)).height
     neutral = rows[neutral_names[0]].to_numpy() if neutral_names else np.array([])
     with styled():
         figure = new_figure(3.3 * len(names) + 1.3, 4.5)
@@ -59,6 +64,7 @@ def draw_weights(
         for i, (kind, name) in enumerate(zip(food_kinds, names, strict=True)):
             axes = figure.add_subplot(grid[1, i])
             _scatter(figure, axes, rows, name)
+            _edge_marks(axes, rows, name, reach)
             axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=f"weight of {kind} food")
             for axis in (axes.xaxis, axes.yaxis):
                 axis.set_major_locator(MaxNLocator(5))
@@ -68,7 +74,7 @@ def draw_weights(
             if i == len(names) - 1:
                 side = figure.add_subplot(grid[1, i + 1], sharey=axes)
                 _marginal(side, rows["w_action"].to_numpy(), neutral, reach, upright=True)
-        _legend(figure, rows, bool(len(neutral)))
+        _legend(figure, rows, neutral, reach, beyond)
         if rows.is_empty():
             say_empty(figure.axes[0], "no agents recorded")
     return figure
@@ -97,15 +103,23 @@ def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
             bar.outline.set_visible(False)  # type: ignore[operator]
 
 
+def _edge_marks(axes: Axes, rows: pl.DataFrame, name: str, reach: float) -> None:
+    """Crosses at the edge of the axes for the agents that lie beyond it."""
+    rows = rows.filter(pl.any_horizontal(pl.col(name, "w_action").abs() > reach))
+    x, y = (np.clip(rows[column].to_numpy(), -reach, reach) for column in (name, "w_action"))
+    axes.scatter(x, y, marker="x", s=9, linewidths=0.7, color=MUTED, alpha=0.7, clip_on=False, zorder=3)
+
+
 def _marginal(axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float, *, upright: bool = False) -> None:
     edges = np.linspace(-reach, reach, _BINS + 1)
     orientation = "horizontal" if upright else "vertical"
-    look = {"bins": edges, "density": True, "orientation": orientation, "histtype": "stepfilled"}
+    look = {"bins": edges, "orientation": orientation, "histtype": "stepfilled"}
     if len(values):
-        axes.hist(values, color=_DENSITY_COLOR, linewidth=0, **look)
+        axes.hist(values, weights=np.full(len(values), 1 / len(values)), color=_DENSITY_COLOR, linewidth=0, **look)
     if len(neutral):
         axes.hist(
             neutral,
+            weights=np.full(len(neutral), 1 / len(neutral)),
             **{**look, "histtype": "step"},
             color=NEUTRAL_COLOR,
             linewidth=1.2,
@@ -114,19 +128,29 @@ def _marginal(axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float,
     axes.axis("off")
 
 
-def _legend(figure: Figure, rows: pl.DataFrame, neutral: bool) -> None:
+def _legend(figure: Figure, rows: pl.DataFrame, neutral: np.ndarray, reach: float, beyond: int) -> None:
     handles: list[Artist] = []
     worlds = rows.select("world", "seed").unique().sort("world").rows()
     if 1 < len(worlds) <= _LEGEND_SEEDS:
         dot = {"marker": "o", "linestyle": "", "markersize": 4.5}
         handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
     handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
-    if neutral:
-        handles.append(Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label="neutral marker"))
-    columns = 4 if len(figure.axes) < 5 else len(handles)
-    figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.2, handletextpad=0.5)
+    if len(neutral):
+        outside = float((np.abs(neutral) > reach).mean())
+        label = "neutral marker" if outside < 0.01 else f"neutral marker ({100 * outside:.0f} % beyond)"
+        handles.append(Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label=label))
+    if beyond:
+        cross = {"marker": "x", "linestyle": "", "markersize": 3.5, "color": MUTED}
+        handles.append(Line2D([], [], label=f"{beyond:,} agents beyond", **cross))
+    narrow = 3 if 4 < len(handles) <= 6 else 4
+    columns = narrow if len(figure.axes) < 5 else len(handles)
+    figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.0, handletextpad=0.3)
 
 
-def _largest(rows: pl.DataFrame, names: Sequence[str]) -> float:
-    values = np.abs(rows.select(names).to_numpy())
-    return float(values.max()) if values.size else 0.0
+def _reach(rows: pl.DataFrame, names: Sequence[str]) -> float:
+    """Half the range of the axes: room for nearly all agents, but none for what no agent has."""
+    if rows.is_empty():
+        return _MIN_HALF_RANGE
+    weights = np.abs(rows.select(names).to_numpy())
+    bulk, largest = np.quantile(weights, _SHARE_WITHIN, axis=0).max(), weights.max()
+    return max(_MIN_HALF_RANGE, min(_MARGIN * float(bulk), 1.08 * float(largest)))

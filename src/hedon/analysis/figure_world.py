@@ -18,6 +18,7 @@ _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
 _AGENT_RAY = "#1f63a0"
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
+_LEGEND_COLUMNS = 5  # as many as fit beside each other
 _WIDTH = 7.2  # of the figure [inch]
 _ENERGY_COLORS = LinearSegmentedColormap.from_list("energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"])
 
@@ -167,7 +168,10 @@ def _draw_scale(axes: Axes, low: np.ndarray, width: float) -> None:
 def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_rays: bool) -> None:
     dot = {"marker": "o", "linestyle": "", "markersize": 5}
     handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds]
-    if with_rays:  # rays that see food have its color
-        rays = {"ray that sees an agent": _AGENT_RAY, "a wall": MUTED, "nothing": PALE}
+    if with_rays:
+        rays = {"ray that sees an agent": _AGENT_RAY}
+        rays |= {f"{kind} food": colors[kind] for kind in snapshot.food_kinds}
+        rays |= {"a wall": MUTED, "nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=1.4)
+    columns = len(handles) if len(handles) <= _LEGEND_COLUMNS else -(-len(handles) // 2)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.4)

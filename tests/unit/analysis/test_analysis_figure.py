@@ -90,6 +90,21 @@ def test_weights_have_a_panel_per_kind_and_its_points(tmp_path: Path) -> None:
     assert sorted(points[:, 0]) == pytest.approx(sorted(last["w_normal"]))
 
 
+def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=10, worlds=2))
+    far = pl.int_range(pl.len()) < 3
+    agents = run.agents().with_columns(
+        w_normal=pl.when(far).then(9.5).otherwise(pl.col("w_normal").clip(-0.5, 0.5)).cast(pl.Float32),
+        w_action=pl.col("w_action").clip(-0.5, 0.5),
+    )
+    figure = draw_weights(agents, run.food_kinds, run.neutral_names)
+    axes = figure.axes[0]
+    assert axes.get_xlim() == axes.get_ylim() == (-1, 1)
+    marks = np.asarray(axes.collections[-1].get_offsets())
+    assert marks[:, 0].tolist() == [1, 1, 1]
+    assert "3 agents beyond" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
 def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=3))
     figure = draw_history(run.population(), run.food_kinds, run.neutral_names, food_colors(run.food_kinds))
@@ -132,6 +147,13 @@ def test_world_shows_agents_and_foods_where_they_are(tmp_path: Path) -> None:
     order = np.argsort(snapshot.energy)
     brightness = [_pixel(figure, image, float(back[0][i]), float(back[1][i])).sum() for i in (order[0], order[-1])]
     assert brightness[0] > brightness[1] + 0.5  # the more energy, the darker
+
+
+def test_the_legend_tells_what_rays_see() -> None:
+    kinds = ("normal", "poison")
+    figure = draw_world(synthetic_snapshot(kinds), food_colors(kinds), [0])
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["normal food", "poison food", "ray that sees an agent", *labels[:2], "a wall", "nothing"]
 
 
 def test_rays_end_on_the_walls() -> None:
