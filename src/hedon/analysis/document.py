@@ -13,7 +13,7 @@ from hedon.record.snapshot import Snapshot
 _HEAD = f"""\
 # What a run leaves behind
 
-This page is made from the schema by `python -m hedon.analysis.document > docs/records.md`.
+This page is made from the schema by `uv run python -m hedon.analysis.document > docs/records.md`.
 Format {FORMAT_VERSION}.
 
 ```
@@ -32,9 +32,9 @@ Files appear whole or not at all, so a run can be read while it goes on, and wha
 stays readable. From Python:
 
 ```python
-from hedon.record.reader import open_run
+import hedon
 
-run = open_run("runs/baseline")
+run = hedon.open_run("runs/baseline")
 run.agents()      # polars.DataFrame: the dead, then the living (death_step is null)
 run.population()  # polars.DataFrame, by world and step
 run.frames()      # polars.LazyFrame

@@ -95,7 +95,7 @@ def diff(
 
 @app.command()
 def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
-    """Check a config and print its digest; name everything that is wrong with it.
+    """Check a config: print its digest, or everything that is wrong.
 
     \b
     Example:

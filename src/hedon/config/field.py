@@ -18,13 +18,17 @@ OURS = "ours"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`."""
+    """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`.
+
+    `form` tells the reader how a text must look; `check` looks at it.
+    """
 
     ge: float | None = None
     gt: float | None = None
     le: float | None = None
     lt: float | None = None
     max_items: int | None = None
+    form: str | None = None
 
     def __contains__(self, value: float) -> bool:
         return (
@@ -35,6 +39,8 @@ class Range:
         )
 
     def __str__(self) -> str:
+        if self.form is not None:
+            return f"of the form `{self.form}`"
         if self.max_items is not None:
             return f"with at most {self.max_items} items"
         if self.ge is not None and self.le is not None:

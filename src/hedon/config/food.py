@@ -72,6 +72,6 @@ class FoodConfig:
     ] = 10
     color: Annotated[
         str,
-        Doc("in figures and in the viewer: #rrggbb; the agents do not see it", "", OURS),
+        Doc("in figures; the agents do not see it", "", OURS, Range(form="#rrggbb")),
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)

@@ -12,7 +12,7 @@ from hedon.config.problem import format_value
 _HEAD = """\
 # Settings
 
-This page is written by `python -m hedon.config.reference > docs/config.md`. Do not edit it.
+This page is written by `uv run python -m hedon.config.reference > docs/config.md`. Do not edit it.
 
 A config is a TOML file. It may start with `preset` and `fidelity`; after that it gives what differs:
 

@@ -131,7 +131,7 @@ def test_plain_values() -> None:
 
 def test_the_page_of_the_records_is_current() -> None:
     page = (ROOT / "docs/records.md").read_text(encoding="utf-8")
-    assert page == records_page(), "run: python -m hedon.analysis.document > docs/records.md"
+    assert page == records_page(), "run: uv run python -m hedon.analysis.document > docs/records.md"
 
 
 def _print(summary: dict) -> str:

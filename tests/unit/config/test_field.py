@@ -37,7 +37,7 @@ def test_every_field_is_a_setting_or_a_section() -> None:
         (("sensor", "scaling"), 'one of "raw", "unit"'),
         (("sensor", "ray_count"), "an integer from 1 to 32"),
         (("food", "x", "placement", "centers"), "a list of [number, number] with at most 16 items [u]"),
-        (("food", "x", "color"), "a text"),
+        (("food", "x", "color"), "a text of the form `#rrggbb`"),
     ],
 )
 def test_allowed_in_words(path: tuple[str, ...], text: str) -> None:
