@@ -1,6 +1,6 @@
 """The rules of a world once more, in plain and slow Python: who eats, pays, is rewarded, breeds and dies.
 
-Written from the specification, not from the engine, but with the same counted random numbers, so that the engine's
+Written from docs/model.md, not from the engine, but with the same counted random numbers, so that the engine's
 every decision can be predicted: `advance` takes a world at the start of a step, what its agents did and where physics
 moved them, and says what the world is after the step. Physics, senses and learning have judges of their own.
 """

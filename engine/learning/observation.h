@@ -2,7 +2,7 @@
 ///
 /// A ray reads at most one channel other than -1, and touch is mostly 0. With x' = x + 1 for the rays the -1 folds into
 /// the bias of the first layer (exact algebra), and the layer becomes one row-addition per ray instead of one per
-/// channel. The full observation, in the order of the model's specification, is recovered by `unpack`.
+/// channel. The full observation, in the order of docs/model.md, section 5, is recovered by `unpack`.
 #pragma once
 
 #include <cstdint>

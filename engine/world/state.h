@@ -44,7 +44,7 @@ struct Counters {
   int64_t births_failed_full;   ///< all slots taken
   int64_t births_failed_space;  ///< no free place found
   int64_t agent_steps;
-  int64_t learners;  ///< agent-windows learnt from
+  int64_t learners;  ///< agent-windows learned from
   double energy_initial;
   double energy_eaten;
   double energy_basic;

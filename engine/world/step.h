@@ -1,4 +1,4 @@
-/// One step of a world: the order of the model's specification, as a table of contents.
+/// One step of a world: the order that docs/model.md gives under "The order of a step", as a table of contents.
 #pragma once
 
 #include <cstdint>
