@@ -18,19 +18,27 @@ test: sync
 	$(RUN) pytest
 	$(RUN) python tests/sanitize.py asan
 
-sync: $(UV) compiler
+sync: tools $(UV)
 	$(UV) sync --quiet
 
-.PHONY: compiler
-compiler:
+# What has to be there already, each with the advice that helps where it is not.
+.PHONY: tools
+tools:
 	@command -v "$${CXX:-c++}" >/dev/null 2>&1 || command -v g++ >/dev/null 2>&1 || command -v clang++ >/dev/null 2>&1 || { \
-	  echo "hedon needs a C++20 compiler (g++ 12 or clang 15, or newer) to build its engine, and found none." >&2; \
-	  echo "Debian and Ubuntu: apt-get install g++    Fedora: dnf install gcc-c++    macOS: xcode-select --install" >&2; \
-	  exit 2; }
+	  echo "hedon needs a C++20 compiler (g++ 12, clang 15, or newer) to build its engine, and found none." >&2; \
+	  echo "Debian and Ubuntu: apt-get install g++    Fedora: dnf install gcc-c++" >&2; exit 2; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	  echo "hedon needs Python 3.11 or newer; '$(PYTHON)' is none. Name another: make $(MAKECMDGOALS) PYTHON=python3.12" >&2; exit 2; }
+	@$(PYTHON) -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' || { \
+	  echo "hedon needs Python's headers to build its engine." >&2; \
+	  echo "Debian and Ubuntu: apt-get install python3-dev    Fedora: dnf install python3-devel" >&2; exit 2; }
 
 .uv/bin/uv:
-	@echo "uv is not installed: putting it into .uv"
-	$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-warn-script-location --target .uv uv
+	@$(PYTHON) -m pip --version >/dev/null 2>&1 || { \
+	  echo "hedon installs uv by pip, and '$(PYTHON) -m pip' does not work." >&2; \
+	  echo "Debian and Ubuntu: apt-get install python3-pip    Fedora: dnf install python3-pip    Or install uv yourself." >&2; exit 2; }
+	@echo "uv is not installed: putting it into .uv (for uv commands of your own: export PATH=\"\$$PWD/.uv/bin:\$$PATH\")"
+	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --root-user-action=ignore --target .uv uv
 
 # The engine's type stubs, after a change of its bindings.
 stubs: sync

@@ -32,7 +32,9 @@ class Team {
     if (state_->waiting.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
       state_->waiting.store(0, std::memory_order_relaxed);
       state_->next.store(0, std::memory_order_relaxed);
-      state_->phase.store(phase + 1, std::memory_order_release);
+      // Sequentially consistent, with a full fence: the notification looks whether anyone sleeps, and must not look
+      // before the new phase can be seen, or a member that falls asleep in between is never woken.
+      state_->phase.store(phase + 1, std::memory_order_seq_cst);
       state_->phase.notify_all();
       return;
     }

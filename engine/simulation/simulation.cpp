@@ -55,7 +55,8 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
       walls_(std::move(walls)),
       slot_order_(slot_order),
       worlds_(seeds.size()),
-      seconds_(seeds.size()) {
+      seconds_(seeds.size()),
+      paces_(seeds.size()) {
   for (size_t i = 0; i < worlds_.size(); ++i) {
     World& world = worlds_[i];
     world.config = &config_;
@@ -149,7 +150,11 @@ void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
   // A team's members use scratch next to one another, from its first member's place on.
   float* scratch = reinterpret_cast<float*>(learn_scratch_.data()) + (thread - team.rank()) * learn_stride_;
   Stopwatch lap(team.rank() == 0 ? &seconds_[static_cast<size_t>(world)] : nullptr);
-  advance(team, worlds_[static_cast<size_t>(world)], steps, scratch, learn_stride_, lap);
+  Pace& pace = paces_[static_cast<size_t>(world)];
+  const auto pacer = [&](Team& members, int64_t count, auto&& step_once) {
+    return step_at_pace(members, pace, count, step_once);
+  };
+  advance(team, worlds_[static_cast<size_t>(world)], steps, scratch, learn_stride_, pacer, lap);
 }
 
 void Simulation::run(int64_t steps) {

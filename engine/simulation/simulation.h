@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/team.h"
 #include "simulation/memory.h"
+#include "simulation/pace.h"
 #include "simulation/window.h"
 #include "world/world.h"
 
@@ -66,6 +67,7 @@ class Simulation {
   std::vector<Memory> memory_;
   std::vector<World> worlds_;
   std::vector<PartSeconds> seconds_;
+  std::vector<Pace> paces_;
   Memory learn_scratch_;
   int64_t learn_stride_;
   std::unique_ptr<Pool> pool_;

@@ -54,11 +54,18 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
 }
 
 /// Advances a world by `steps` steps, learning at the end of each window; stops early where the world is over.
-template <class Group, class Lap>
-void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Lap&& lap) {
+/// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with all of the group or a part of
+/// it.
+template <class Group, class Pacer, class Lap>
+void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
   const int64_t window = world.shape->steps;
-  for (int64_t i = 0; i < steps && !world.over(); ++i) {
-    step(group, world, world.clock().step % window, lap);
+  while (steps > 0 && !world.over()) {
+    const int64_t left = window - world.clock().step % window;
+    const int64_t stretch = left < steps ? left : steps;
+    steps -= pacer(group, stretch, [&](auto& members) {
+      step(members, world, world.clock().step % window, lap);
+      return !world.over();
+    });
     if (world.clock().step % window == 0 && !world.over()) {
       learn_window(group, world, scratch, stride);
       lap(Part::learning);

@@ -1,5 +1,8 @@
 """A seed gives the same life, bit for bit, however it is computed."""
 
+import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -76,3 +79,19 @@ def test_a_second_caller_is_refused_while_the_engine_runs():
         simulation.run(1)
     thread.join()
     assert simulation.worlds[0].step == 4000
+
+
+def test_busy_neighbors_neither_stop_a_team_nor_change_anything():
+    # As many busy programs as processors: the team then changes between stepping together and alone.
+    hog = [sys.executable, "-c", "while True: pass"]
+    hogs = [subprocess.Popen(hog) for _ in range(os.cpu_count() or 1)]
+    try:
+        simulation = make_simulation(*LIVELY, seeds=(7,), threads=2)
+        thread = threading.Thread(target=simulation.run, args=(1000,), daemon=True)
+        thread.start()
+        thread.join(timeout=120)
+        assert not thread.is_alive(), "the members of the team wait for one another"
+    finally:
+        for process in hogs:
+            process.kill()
+    assert simulation.worlds[0].digest() == _digests(pieces=(1000,))[7]

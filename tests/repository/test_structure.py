@@ -29,9 +29,7 @@ FORBIDDEN_IN_STEP = re.compile(
 
 
 def sources(*suffixes: str) -> list[Path]:
-    names = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
+    names = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
     return [ROOT / name for name in names.stdout.splitlines() if name.endswith(suffixes) and (ROOT / name).exists()]
 
 
@@ -76,3 +74,9 @@ def test_the_project_speaks_of_itself_alone():
     for path in sources(".py", ".h", ".cpp", ".md", ".toml"):
         if path != Path(__file__):
             assert not words.search(path.read_text(encoding="utf-8")), path.relative_to(ROOT)
+
+
+def test_test_files_have_names_of_their_own():
+    """Pytest imports them by name alone, and stops where two share one."""
+    names = [path.name for path in sources(".py") if path.is_relative_to(ROOT / "tests")]
+    assert len(names) == len(set(names))

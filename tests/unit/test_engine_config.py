@@ -33,7 +33,7 @@ def change(tree: Any, path: str) -> Any:
     """A copy of a nested structure in which the number at a path is larger by 1."""
     head, _, rest = path.partition(".") if not path.startswith("[") else path[1:].partition("]")
     key = int(head) if path.startswith("[") else head
-    copied = dict(tree) if isinstance(tree, dict) else list(tree)
+    copied: Any = dict(tree) if isinstance(tree, dict) else list(tree)
     copied[key] = change(tree[key], rest.removeprefix(".")) if rest else tree[key] + 1
     return copied
 

@@ -37,7 +37,7 @@ def run(
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
 ) -> None:
-    """Run a condition: simulate its worlds, keep records, end with a table and figures.
+    """Run a condition, from worlds to a table and figures.
 
     Ctrl-C ends the run after the current window; all results so far are kept.
 

@@ -85,9 +85,14 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         RecordError: The folder holds a run already or cannot be written.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
+    with _interrupts() as interrupted:
+        return _run(plan, display, interrupted)
+
+
+def _run(plan: RunPlan, display: Display | None, interrupted: "_Interrupts") -> Manifest:
     simulation = Simulation(plan.config, plan.seeds, plan.threads)
     manifest = _first_manifest(plan, simulation)
-    with Writer(plan.out, dump_toml(plan.config), manifest) as writer, _interrupts() as interrupted:
+    with Writer(plan.out, dump_toml(plan.config), manifest) as writer:
         recorder = _Recorder(simulation, writer)
         started = time.perf_counter()
         status = "failed"
@@ -267,9 +272,14 @@ def _interrupts() -> Iterator[_Interrupts]:
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:
     """A folder of its own for a run that names none: runs/NAME-FIDELITY-sSEEDS, with a number where it is taken."""
-    span = f"s{seeds[0]}" if len(seeds) == 1 else f"s{seeds[0]}-{seeds[-1]}"
+    if len(seeds) == 1:
+        span = f"s{seeds[0]}"
+    elif tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
+        span = f"s{seeds[0]}-{seeds[-1]}"
+    else:
+        span = f"{len(seeds)}seeds"
     stem = "-".join((config.name, config.fidelity, span))
     folder, number = Path("runs") / stem, 2
     while folder.exists():
-        folder, number = Path("runs") / f"{stem}-{number}", number + 1
+        folder, number = Path("runs") / f"{stem}-run{number}", number + 1
     return folder

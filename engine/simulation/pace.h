@@ -1,0 +1,70 @@
+/// Decides, stretch by stretch, whether a team steps a world together or lets one member step it alone.
+///
+/// The members of a team meet several times per step. Where other programs want the processors, one that waits its turn
+/// holds up the whole team, and one member alone is faster. Both ways give the same bits, so the choice may follow the
+/// clock: the faster way is taken, and the other is tried now and then.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "base/team.h"
+
+namespace hedon {
+
+class Pace {
+ public:
+  static constexpr int64_t STRETCH = 32;  ///< steps between two decisions, a few milliseconds
+
+  /// Which way the next stretch goes.
+  bool together() const {
+    const bool faster = together_ <= alone_;
+    return count_ % TRIAL == TRIAL - 1 ? !faster : faster;
+  }
+
+  /// Notes how long a stretch took [s per step].
+  void note(bool together, double seconds) {
+    double& known = together ? together_ : alone_;
+    known = known == 0.0 ? seconds : known + WEIGHT * (seconds - known);
+    ++count_;
+  }
+
+ private:
+  static constexpr int64_t TRIAL = 64;    ///< one stretch in so many goes the other way: costs about 1 %
+  static constexpr double WEIGHT = 0.25;  ///< of the newest stretch in the running mean
+
+  double together_ = 0.0;  ///< unknown at first, hence tried first
+  double alone_ = 0.0;
+  int64_t count_ = 0;
+};
+
+/// Steps a world for up to `count` steps, or until `step_once(members)` says that it is over; returns how many were
+/// asked for, at most a stretch. All members of the team call it.
+template <class StepOnce>
+int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once) {
+  const auto go = [&](Team& members) {
+    for (int64_t i = 0; i < count && step_once(members); ++i) continue;
+  };
+  if (team.size() == 1) {
+    go(team);
+    return count;
+  }
+  if (count > Pace::STRETCH) count = Pace::STRETCH;
+  const auto begun = std::chrono::steady_clock::now();
+  const bool together = pace.together();
+  // Whoever steps alone changes what the others have just decided by: not before all of them have.
+  if (together) go(team);
+  else team.barrier();
+  team.once([&] {
+    if (!together) {
+      TeamState one;
+      Team alone(one, 0);
+      go(alone);
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begun;
+    pace.note(together, seconds.count() / static_cast<double>(count));
+  });
+  return count;
+}
+
+}  // namespace hedon
