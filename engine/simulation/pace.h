@@ -53,8 +53,10 @@ int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once
   const auto begun = std::chrono::steady_clock::now();
   const bool together = pace.together();
   // Whoever steps alone changes what the others have just decided by: not before all of them have.
-  if (together) go(team);
-  else team.barrier();
+  if (together)
+    go(team);
+  else
+    team.barrier();
   team.once([&] {
     if (!together) {
       TeamState one;
