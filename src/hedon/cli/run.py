@@ -72,7 +72,7 @@ def run(
         console.print(f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.")
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
     show_report(folder, console)
-    console.print(f"Make them again with: hedon report {folder}")
+    console.print(f"Make them again with: uv run hedon report {folder}")
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
