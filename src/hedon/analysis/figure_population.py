@@ -54,5 +54,4 @@ def _draw(axes: Axes, rows: pl.DataFrame, title: str, shown: Mapping[str, tuple[
 
 
 def _largest(rows: pl.DataFrame, shown: Mapping[str, object]) -> float:
-    values = [rows[column].max() for column in shown]
-    return max((float(value) for value in values if value is not None), default=0.0)  # type: ignore[arg-type]
+    return max((float(rows[column].drop_nulls().to_numpy().max(initial=0.0)) for column in shown), default=0.0)

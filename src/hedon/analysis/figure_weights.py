@@ -99,8 +99,9 @@ def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
         if name == next(column for column in rows.columns if column.startswith("w_")):
             bar = figure.colorbar(points, ax=axes, location="bottom", shrink=0.7, aspect=40, pad=0.02)
             bar.set_label(f"born at [{unit_name}]")
-            bar.solids.set_alpha(1)  # type: ignore[union-attr]
-            bar.outline.set_visible(False)  # type: ignore[operator]
+            if bar.solids is not None:
+                bar.solids.set_alpha(1)
+            bar.outline.set_visible(False)
 
 
 def _edge_marks(axes: Axes, rows: pl.DataFrame, name: str, reach: float) -> None:

@@ -124,7 +124,7 @@ def _draw_agents(figure: Figure, axes: Axes, snapshot: Snapshot, rays_of: Sequen
     over = "max" if snapshot.energy.max() > top else "neither"
     bar = figure.colorbar(discs, ax=axes, location="right", shrink=0.5, aspect=24, pad=0.015, extend=over)
     bar.set_label("energy of the agent")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, str]) -> None:

@@ -24,8 +24,8 @@ def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int 
         None where nobody died. Lives of no step are left out.
     """
     dead = dead_agents(agents, last=last).filter(pl.col("lifetime") > 0)
-    mean = dead.select(_eaten(food_kinds) / pl.col("lifetime")).to_series().mean()
-    return None if mean is None else float(mean)  # type: ignore[arg-type]
+    values = dead.select(_eaten(food_kinds) / pl.col("lifetime")).to_series().to_numpy()
+    return float(values.mean()) if len(values) else None
 
 
 def food_per_agent_step(population: pl.DataFrame, food_kinds: Sequence[str]) -> float | None:

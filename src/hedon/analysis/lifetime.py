@@ -33,5 +33,5 @@ def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run:
         last: only over those who died last.
         born_in_run: without the founders.
     """
-    mean = dead_agents(agents, last=last, born_in_run=born_in_run)["lifetime"].mean()
-    return None if mean is None else float(mean)  # type: ignore[arg-type]
+    values = dead_agents(agents, last=last, born_in_run=born_in_run)["lifetime"].to_numpy()
+    return float(values.mean()) if len(values) else None

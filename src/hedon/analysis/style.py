@@ -74,8 +74,8 @@ def styled() -> Iterator[None]:
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure [inch] that belongs to no window and lays its parts out by itself."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    figure.get_layout_engine().set(wspace=0.05, hspace=0.05)  # type: ignore[union-attr]
+    figure = Figure(figsize=(width, height))
+    figure.set_layout_engine("constrained", wspace=0.05, hspace=0.05)
     FigureCanvasAgg(figure)
     return figure
 

@@ -31,7 +31,7 @@ def draw_traces(
         rows = world.filter(pl.col(column).is_not_null())
         x, y = rows["step"].to_numpy() / unit, rows[column].to_numpy()
         axes.plot(x, y, color=color, linewidth=0.8, alpha=0.35)
-        if len(x) and world["bin"].max() < history["bin"].max():  # type: ignore[operator]
+        if len(x) and world["bin"].to_numpy().max() < history["bin"].to_numpy().max():
             axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
     x, mean, low, high = over_worlds(history, column)
     if len(worlds) >= SHOWN_FROM:

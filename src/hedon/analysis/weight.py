@@ -49,5 +49,7 @@ def world_weights(
 
 
 def _spread(values: pl.Series) -> WeightSpread:
-    values = values.cast(pl.Float64)
-    return WeightSpread(values.mean(), values.std())  # type: ignore[arg-type]
+    known = values.drop_nulls().cast(pl.Float64).to_numpy()
+    return WeightSpread(
+        float(known.mean()) if len(known) else None, float(known.std(ddof=1)) if len(known) > 1 else None
+    )
