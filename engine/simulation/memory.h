@@ -33,18 +33,16 @@ void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
   });
 }
 
-/// Zeroed memory, aligned to cache lines. Pages that nobody touches cost nothing.
+/// Zeroed memory. Pages that nobody touches cost nothing. Large pages are asked for: a step reads weights from all over
+/// a world's block, and with small pages spends more time on finding them than on reading them.
 class Memory {
  public:
-  static constexpr int64_t ALIGNMENT = 64;
+  static constexpr int64_t ALIGNMENT = 64;           ///< of each array: a cache line, and 16 floats
+  static constexpr int64_t PAGE = int64_t{1} << 21;  ///< a large page
 
   Memory() = default;
-  explicit Memory(int64_t bytes) : size_(bytes), block_(calloc(1, static_cast<size_t>(bytes + ALIGNMENT))) {
-    if (block_ == nullptr) abort();
-    const auto address = reinterpret_cast<uintptr_t>(block_);
-    first_ = reinterpret_cast<char*>((address + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
-  }
-  ~Memory() { free(block_); }
+  explicit Memory(int64_t bytes);
+  ~Memory();
   Memory(Memory&& other) noexcept { swap(other); }
   Memory& operator=(Memory&& other) noexcept {
     swap(other);
