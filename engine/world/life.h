@@ -25,7 +25,15 @@ HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
   return config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy));
 }
 
-/// One agent's step as its body feels it: meals and costs, then its reward and its draws for birth and death.
+/// Decides whether an agent dies at the end of this step, by its draw and its age and energy then.
+HEDON_FN void decide_death(const World& world, int32_t slot) {
+  const Life& life = world.state.life[slot];
+  const double age = static_cast<double>(world.clock().step + 1 - life.birth_step);
+  world.scratch.dies[slot] = world.scratch.starved[slot] != 0 ||
+                             world.scratch.death_draw[slot] < hazard(world.config->hazard, age, life.energy);
+}
+
+/// One agent's step as its body feels it: meals and costs, then its reward, and whether it breeds and dies.
 HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const WorldConfig& config = *world.config;
   const WorldState& state = world.state;
@@ -68,8 +76,9 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
                             static_cast<uint32_t>(world.clock().step)};
   const Random4 bits = random.draw(0);
-  scratch.birth_draw[slot] = to_fine_uniform(bits.word[0], bits.word[1]);
+  scratch.breeds[slot] = to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(config.birth, life.energy);
   scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
+  decide_death(world, slot);
 }
 
 /// Adds what the living gained and spent in this step to the ledger, in their order.
@@ -113,7 +122,7 @@ HEDON_FN void breed(World& world) {
   int32_t parents = 0;
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
     const int32_t slot = state.living[i];
-    if (!(scratch.birth_draw[slot] < birth_rate(world.config->birth, state.life[slot].energy))) continue;
+    if (scratch.breeds[slot] == 0) continue;
     const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id),
                               step};
     const uint32_t key = random.draw(0).word[0];
@@ -134,23 +143,19 @@ HEDON_FN void breed(World& world) {
       counters.births_failed_space += 1;
     } else {
       bear(world, parent, place);
+      decide_death(world, parent);  // anew, since she gave of her energy
     }
   }
 }
 
-/// Each agent that lived through this step dies with the probability that its age and energy give.
+/// Takes those who die from the living. Newborns do not face death in the step of their birth.
 HEDON_FN void reap(World& world) {
   const WorldState& state = world.state;
   Clock& clock = world.clock();
   int32_t kept = 0;
   for (int32_t i = 0; i < clock.living_count; ++i) {
     const int32_t slot = state.living[i];
-    const Life& life = state.life[slot];
-    const int64_t age = clock.step + 1 - life.birth_step;
-    const bool dies = age > 0 && (world.scratch.starved[slot] != 0 ||
-                                  world.scratch.death_draw[slot] <
-                                      hazard(world.config->hazard, static_cast<double>(age), life.energy));
-    if (dies) {
+    if (world.scratch.dies[slot] != 0) {
       bury(world, slot);
     } else {
       state.living[kept++] = slot;

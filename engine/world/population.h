@@ -25,6 +25,7 @@ HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int
   state.life[slot] = Life{birth_step, -1, id, -1, 0, 0, energy, energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (int32_t k = 0; k < world.shape->kinds; ++k) state.eaten[int64_t{slot} * world.shape->kinds + k] = 0;
   state.touch[slot] = 0;
+  world.scratch.dies[slot] = 0;
 
   BodyState& body = state.physics.bodies;
   body.x[slot] = place.x;

@@ -30,18 +30,18 @@ struct StepScratch {
   Array<float> force_x, force_y, torque;      ///< the same, on the body
   Array<float> heading_sine, heading_cosine;  ///< at the start of the step
   Array<float> start_angle, start_x, start_y;
-  Array<int32_t> meal;                   ///< (slots, kinds) foods eaten in this step
-  Array<double> birth_draw, death_draw;  ///< uniform in [0, 1)
+  Array<int32_t> meal;       ///< (slots, kinds) foods eaten in this step
+  Array<double> death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
-  Array<uint8_t> starved;
-  Array<int32_t> eater;         ///< (foods) slot of the agent that gets the food, -1 for none
-  Array<float> eater_distance;  ///< (foods) squared
-  Array<int32_t> parent;        ///< (slots)
-  Array<uint32_t> parent_key;   ///< (slots)
+  Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
+  Array<int32_t> eater;                  ///< (foods) slot of the agent that gets the food, -1 for none
+  Array<float> eater_distance;           ///< (foods) squared
+  Array<int32_t> parent;                 ///< (slots)
+  Array<uint32_t> parent_key;            ///< (slots)
 
   HEDON_FIELDS(StepScratch, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine,
-               start_angle, start_x, start_y, meal, birth_draw, death_draw, energy_eaten, energy_basic, energy_action,
-               energy_forgiven, energy_capped, starved, eater, eater_distance, parent, parent_key)
+               start_angle, start_x, start_y, meal, death_draw, energy_eaten, energy_basic, energy_action,
+               energy_forgiven, energy_capped, starved, breeds, dies, eater, eater_distance, parent, parent_key)
 };
 
 struct World {
