@@ -28,7 +28,7 @@ HEDON_FN void join(const Array<int32_t>& parent, int32_t a, int32_t b) {
 
 /// Batches of a list of so many bodies: enough for some threads, large enough to keep each one busy.
 HEDON_FN int32_t batch_count(int32_t bodies) {
-  const int32_t wanted = bodies / 40;
+  const int32_t wanted = bodies / 16;
   return wanted < 1 ? 1 : (wanted > MAX_BATCHES ? MAX_BATCHES : wanted);
 }
 

@@ -222,7 +222,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
     }
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
-    group.for_each_claimed(head.batches, [&](int32_t batch) {
+    group.for_each(head.batches, [&](int32_t batch) {
       try_batch(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
     });
     report = largest_report(scratch, head.batches);
@@ -243,7 +243,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   const float speed = sqrtf(report.squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
   const float free_path = speed * c.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
-  group.for_each_claimed(head.batches, [&](int32_t batch) {
+  group.for_each(head.batches, [&](int32_t batch) {
     commit_batch(state, scratch, batch_range(state.neighbors, batch));
     if (batch == 0) {
       head.stale = stale;
