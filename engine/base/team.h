@@ -54,6 +54,15 @@ class Team {
     barrier();
   }
 
+  /// The same with each member's block from its end to its start.
+  template <class Body>
+  void for_each_backward(int count, Body&& body) {
+    const int first = static_cast<int>(static_cast<int64_t>(count) * rank_ / size_);
+    const int last = static_cast<int>(static_cast<int64_t>(count) * (rank_ + 1) / size_);
+    for (int i = last - 1; i >= first; --i) body(i);
+    barrier();
+  }
+
   /// Calls body(i) for i in [0, count), each claimed when a member is free: for few large or unequal pieces.
   template <class Body>
   void for_each_claimed(int count, Body&& body) {

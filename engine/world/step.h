@@ -52,13 +52,18 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
   const WorldState& state = world.state;
 
   group.once([&] { gather_scene(world); });
-  group.for_each(clock.living_count, [&](int32_t i) {
+  const auto sense_and_act = [&](int32_t i) {
     const int32_t slot = state.living[i];
     PackedObservation& observation = world.observation(slot, t);
     observe(world, i, world.scene.found_by(group.rank()), observation);
     sample_action(world, slot, t, observation);
     drive(world, slot, t);
-  });
+  };
+  if (t % 2 == 0) {
+    group.for_each(clock.living_count, sense_and_act);
+  } else {
+    group.for_each_backward(clock.living_count, sense_and_act);
+  }
   lap(Part::sense_and_act);
 
   TouchVisitor touch{&world};
