@@ -39,32 +39,36 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
   const Aligned<float> x = column_of(circles, 0), y = column_of(circles, 1), radius = column_of(circles, 2);
   const Aligned<float> ax = column_of(segments, 0), ay = column_of(segments, 1);
   const Aligned<float> bx = column_of(segments, 2), by = column_of(segments, 3);
-  const Aligned<float> direction_x(PACKED_RAYS), direction_y(PACKED_RAYS);
+  const Aligned<float> cosine(PACKED_RAYS), sine(PACKED_RAYS);
   for (size_t r = 0; r < PACKED_RAYS; ++r) {
     const size_t from = r < rays ? r : rays - 1;
-    direction_x.get()[r] = direction.data()[2 * from];
-    direction_y.get()[r] = direction.data()[2 * from + 1];
+    cosine.get()[r] = direction.data()[2 * from];
+    sine.get()[r] = direction.data()[2 * from + 1];
   }
-  const Aligned<int32_t> type(circle_type.data(), circle_type.size());
+  const size_t count = circles.shape(0);
+  Aligned<float> type((count + 15) / 16 * 16);
+  Aligned<int32_t> all(count + 16);
+  for (size_t i = 0; i < count; ++i) {
+    type.get()[i] = static_cast<float>(circle_type.data()[i]);
+    all.get()[i] = static_cast<int32_t>(i);
+  }
   const RayScene scene = {x.get(),
                           y.get(),
                           radius.get(),
                           type.get(),
-                          static_cast<int32_t>(circles.shape(0)),
                           ax.get(),
                           ay.get(),
                           bx.get(),
                           by.get(),
                           static_cast<int32_t>(segments.shape(0)),
-                          wall_type,
-                          direction_x.get(),
-                          direction_y.get(),
-                          static_cast<int32_t>(rays),
-                          start,
-                          length};
-  float reading[PACKED_RAYS];
+                          static_cast<float>(wall_type)};
+  // An eye at the origin that looks along x sees by the cosines and sines of its rays. Its arcs have no edges.
+  const Eye eye = {0.0f, 0.0f, 1.0f, 0.0f, cosine.get(), sine.get(), static_cast<int32_t>(rays), start, length, -1, {}};
+  const int32_t sighted_circles = static_cast<int32_t>(count);
+  const Sighted sighted = {{all.get(), all.get()}, {sighted_circles, sighted_circles}};
+  alignas(64) float reading[PACKED_RAYS];
   uint8_t hit[PACKED_RAYS];
-  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(scene, reading, hit);
+  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(scene, eye, sighted, reading, hit);
   return nb::make_tuple(to_numpy(reading, {rays}), to_numpy(hit, {rays}));
 }
 

@@ -117,9 +117,9 @@ class PythonSimulation {
     std::vector<float> full(count * size);
     gather_scene(from);
     for (size_t i = 0; i < count; ++i) {
-      PackedObservation packed{};
-      observe(from, static_cast<int32_t>(i), from.scene.found_by(0), packed);
-      unpack(shape, packed, &full[i * size]);
+      const int32_t self = static_cast<int32_t>(i);
+      note_start(from, from.state.living[self]);
+      unpack(shape, observe(from, self, 0), &full[i * size]);
     }
     return copy_array(std::move(full), {count, size});
   }

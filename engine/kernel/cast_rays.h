@@ -1,4 +1,4 @@
-/// Nearest hit of a fan of rays among circles and segments. Lanes are rays.
+/// Nearest hit of an agent's rays among circles and segments. Lanes are the rays of one arc.
 #pragma once
 
 #include "kernel/kernel.h"
@@ -7,84 +7,101 @@
 namespace hedon {
 namespace {
 
-inline constexpr int RAY_LANES = PACKED_RAYS / 16;
 inline constexpr float NOTHING = 3.0e38f;  ///< the distance [u] of what was not hit
 
-/// What 16 rays have found so far.
-struct NearestHit {
+/// Directions of the 16 rays of an arc, and what they have found so far.
+struct RayLanes {
+  Lanes direction_x, direction_y;
   Lanes distance;  ///< from the rays' start [u]; larger than any ray where nothing is hit
   Lanes type;
 };
 
 /// Rays start on the body's surface, so what lies between there and the center is at distance 0.
-HEDON_INLINE void take_hit(NearestHit& nearest, LaneMask hit, Lanes from_center, Lanes start, Lanes length,
-                           Lanes type) {
+HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lanes start, Lanes length, Lanes type) {
   const Lanes distance = larger(broadcast(0.0f), from_center - start);
   const Lanes candidate = select(both(hit, distance <= length), distance, broadcast(NOTHING));
-  nearest.type = select(candidate < nearest.distance, type, nearest.type);
-  nearest.distance = smaller(candidate, nearest.distance);
+  rays.type = select(candidate < rays.distance, type, rays.type);
+  rays.distance = smaller(candidate, rays.distance);
 }
 
-/// See `Kernel::cast_rays`. A ray misses a circle whose far side lies before the ray's start. Ties go to the first,
-/// circles before segments. Segments count as longer by a millionth, so that no ray slips through where two meet.
-void cast_rays(const RayScene& scene, float* reading, uint8_t* type) {
-  const Lanes start = broadcast(scene.start);
-  const Lanes length = broadcast(scene.length);
-  const Lanes zero = broadcast(0.0f);
-  Lanes direction_x[RAY_LANES];
-  Lanes direction_y[RAY_LANES];
-  NearestHit nearest[RAY_LANES];
-  unroll<RAY_LANES>([&](auto h) HEDON_INLINED {
-    direction_x[h] = load(scene.direction_x + h * 16);
-    direction_y[h] = load(scene.direction_y + h * 16);
-    nearest[h] = {broadcast(NOTHING), zero};
-  });
-
-  for (int32_t i = 0; i < scene.circles; ++i) {
-    const Lanes x = broadcast(scene.circle_x[i]);
-    const Lanes y = broadcast(scene.circle_y[i]);
-    const Lanes radius_squared = broadcast(scene.circle_radius[i] * scene.circle_radius[i]);
-    const Lanes kind = broadcast(static_cast<float>(scene.circle_type[i]));
-    unroll<RAY_LANES>([&](auto h) HEDON_INLINED {
-      const Lanes aside = direction_x[h] * y - direction_y[h] * x;
-      const Lanes squared = radius_squared - aside * aside;
-      const LaneMask crossed = zero <= squared;
-      if (any(crossed)) {
-        const Lanes along = multiply_add(direction_x[h], x, direction_y[h] * y);
-        const Lanes reach = square_root(larger(zero, squared));
-        take_hit(nearest[h], both(crossed, start <= along + reach), along - reach, start, length, kind);
-      }
-    });
+/// A ray misses a circle whose far side lies before the ray's start. There is no branch, since which circle crosses any
+/// of 16 rays is hard to guess.
+HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const int32_t* circle, int32_t circles,
+                                  RayLanes& rays) {
+  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
+  const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y);
+  for (int32_t i = 0; i < circles; ++i) {
+    const int32_t at = circle[i];
+    const Lanes x = broadcast(scene.circle_x[at]) - eye_x;
+    const Lanes y = broadcast(scene.circle_y[at]) - eye_y;
+    const Lanes radius = broadcast(scene.circle_radius[at]);
+    const Lanes aside = rays.direction_x * y - rays.direction_y * x;
+    const Lanes squared = radius * radius - aside * aside;
+    const Lanes along = multiply_add(rays.direction_x, x, rays.direction_y * y);
+    const Lanes half_chord = square_root(larger(zero, squared));
+    const LaneMask hit = both(zero <= squared, start <= along + half_chord);
+    take_hit(rays, hit, along - half_chord, start, length, broadcast(scene.circle_type[at]));
   }
+}
 
-  const Lanes wall = broadcast(static_cast<float>(scene.wall_type));
-  for (int32_t i = 0; i < scene.segments; ++i) {
-    const float ax = scene.segment_ax[i];
-    const float ay = scene.segment_ay[i];
-    const float ex = scene.segment_bx[i] - ax;
-    const float ey = scene.segment_by[i] - ay;
-    unroll<RAY_LANES>([&](auto h) HEDON_INLINED {
-      const Lanes across = direction_x[h] * broadcast(ey) - direction_y[h] * broadcast(ex);
+/// Those of the 16 segments from `first` on, as bits, that an arc does not surely miss: it does where a segment lies
+/// behind an edge, or even its whole line is out of reach.
+HEDON_INLINE uint32_t segments_ahead(const RayScene& scene, const Eye& eye, const Arc& arc, int32_t first) {
+  const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y), zero = broadcast(0.0f);
+  const Lanes reach = broadcast(eye.start + eye.length);
+  const Lanes ax = load(scene.segment_ax + first) - eye_x, ay = load(scene.segment_ay + first) - eye_y;
+  const Lanes bx = load(scene.segment_bx + first) - eye_x, by = load(scene.segment_by + first) - eye_y;
+  const Lanes right_x = broadcast(arc.right_x), right_y = broadcast(arc.right_y);
+  const Lanes left_x = broadcast(arc.left_x), left_y = broadcast(arc.left_y);
+  const LaneMask right_of_it = both(right_x * ay - right_y * ax < zero, right_x * by - right_y * bx < zero);
+  const LaneMask left_of_it = both(ax * left_y - ay * left_x < zero, bx * left_y - by * left_x < zero);
+  const Lanes area = ax * by - ay * bx, length_x = bx - ax, length_y = by - ay;
+  const LaneMask beyond = reach * reach * multiply_add(length_x, length_x, length_y * length_y) < area * area;
+  const int32_t count = scene.segments - first;
+  const uint32_t asked = count < 16 ? (1u << count) - 1u : 0xFFFFu;
+  return asked & ~(to_bits(right_of_it) | to_bits(left_of_it) | to_bits(beyond));
+}
+
+/// Segments count as longer by a millionth, so that no ray slips through where two meet.
+HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const Arc& arc, RayLanes& rays) {
+  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
+  const Lanes type = broadcast(scene.segment_type);
+  for (int32_t first = 0; first < scene.segments; first += 16) {
+    for (uint32_t bits = segments_ahead(scene, eye, arc, first); bits != 0; bits &= bits - 1) {
+      const int32_t at = first + __builtin_ctz(bits);
+      const float ax = scene.segment_ax[at] - eye.x, ay = scene.segment_ay[at] - eye.y;
+      const float ex = scene.segment_bx[at] - eye.x - ax, ey = scene.segment_by[at] - eye.y - ay;
+      const Lanes across = rays.direction_x * broadcast(ey) - rays.direction_y * broadcast(ex);
       const Lanes inverse = broadcast(1.0f) / across;
-      const Lanes part = (broadcast(ax) * direction_y[h] - broadcast(ay) * direction_x[h]) * inverse;
+      const Lanes part = (broadcast(ax) * rays.direction_y - broadcast(ay) * rays.direction_x) * inverse;
       const Lanes distance = broadcast(ax * ey - ay * ex) * inverse;
       const LaneMask within = both(broadcast(-1.0e-6f) <= part, part <= broadcast(1.000001f));
-      take_hit(nearest[h], both(within, zero <= distance), distance, start, length, wall);
-    });
-  }
-
-  unroll<RAY_LANES>([&](auto h) HEDON_INLINED {
-    const LaneMask found = nearest[h].distance <= length;
-    alignas(64) float types[16];
-    alignas(64) float readings[16];
-    store(types, select(found, nearest[h].type, zero));
-    store(readings, select(found, broadcast(2.0f) - nearest[h].distance / length, zero));
-    for (int r = 0; r < 16; ++r) {
-      const bool used = h * 16 + r < scene.rays;
-      reading[h * 16 + r] = used ? readings[r] : 0.0f;
-      type[h * 16 + r] = used ? static_cast<uint8_t>(types[r]) : uint8_t{0};
+      take_hit(rays, both(within, zero <= distance), distance, start, length, type);
     }
-  });
+  }
+}
+
+/// See `Kernel::cast_rays`.
+void cast_rays(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type) {
+  const Lanes forward_x = broadcast(eye.forward_x), forward_y = broadcast(eye.forward_y);
+  const Lanes zero = broadcast(0.0f), length = broadcast(eye.length);
+  for (int32_t a = 0; a < RAY_ARCS; ++a) {
+    Lanes readings = zero, types = zero;
+    if (a < eye.arcs()) {
+      const Lanes cosine = load(eye.ray_cosine + a * 16), sine = load(eye.ray_sine + a * 16);
+      RayLanes rays{cosine * forward_x - sine * forward_y, cosine * forward_y + sine * forward_x, broadcast(NOTHING),
+                    zero};
+      cast_at_circles(scene, eye, sighted.circle[a], sighted.circles[a], rays);
+      cast_at_segments(scene, eye, eye.arc[a], rays);
+      const LaneMask found = both(rays.distance <= length, first_lanes(eye.rays - a * 16));
+      readings = select(found, broadcast(2.0f) - rays.distance / length, zero);
+      types = select(found, rays.type, zero);
+    }
+    store(reading + a * 16, readings);
+    alignas(64) float each[16];
+    store(each, types);
+    for (int r = 0; r < 16; ++r) type[a * 16 + r] = static_cast<uint8_t>(each[r]);
+  }
 }
 
 }  // namespace

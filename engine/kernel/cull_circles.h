@@ -1,4 +1,4 @@
-/// Which circles a fan of rays may touch. Lanes are circles.
+/// Which circles the rays of an agent may hit. Lanes are circles.
 #pragma once
 
 #include "kernel/kernel.h"
@@ -7,29 +7,30 @@
 namespace hedon {
 namespace {
 
-/// See `Kernel::cull_circles`. A circle is left out where it lies beyond the rays' reach or wholly behind one of the
-/// fan's edges; what is kept may still be missed by every ray.
-int32_t cull_circles(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count,
-                     int32_t* found) {
-  const Lanes center_x = broadcast(fan.x), center_y = broadcast(fan.y), reach = broadcast(fan.reach);
-  const Lanes right_x = broadcast(fan.right_x), right_y = broadcast(fan.right_y);
-  const Lanes left_x = broadcast(fan.left_x), left_y = broadcast(fan.left_y);
+/// See `Kernel::cull_circles`. A circle is left out of an arc where it lies beyond the rays' reach or wholly behind one
+/// of the arc's edges; what is kept may still be missed by every ray.
+void cull_circles(const RayScene& scene, const Eye& eye, int32_t first, int32_t last, Sighted& sighted) {
+  const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y), reach = broadcast(eye.start + eye.length);
   const Lanes zero = broadcast(0.0f);
-  int32_t n = 0;
-  for (int32_t first = 0; first < count; first += 16) {
-    const Lanes to_x = load(x + first) - center_x;
-    const Lanes to_y = load(y + first) - center_y;
-    const Lanes r = load(radius + first);
-    const Lanes far = reach + r;
-    const Lanes from_right = right_x * to_y - right_y * to_x;
-    const Lanes from_left = to_x * left_y - to_y * left_x;
-    const LaneMask near = multiply_add(to_x, to_x, to_y * to_y) <= far * far;
-    const LaneMask ahead = both(zero <= from_right + r, zero <= from_left + r);
-    uint32_t bits = to_bits(both(near, ahead));
-    if (count - first < 16) bits &= (1u << (count - first)) - 1u;
-    for (; bits != 0; bits &= bits - 1) found[n++] = first + __builtin_ctz(bits);
+  const int32_t arcs = eye.arcs();
+  for (int32_t block = first / 16 * 16; block < last; block += 16) {
+    const Lanes to_x = load(scene.circle_x + block) - eye_x;
+    const Lanes to_y = load(scene.circle_y + block) - eye_y;
+    const Lanes radius = load(scene.circle_radius + block);
+    const Lanes far = reach + radius;
+    uint32_t asked = to_bits(multiply_add(to_x, to_x, to_y * to_y) <= far * far);
+    if (block < first) asked &= ~0u << (first - block);
+    if (last - block < 16) asked &= (1u << (last - block)) - 1u;
+    const uint32_t self = static_cast<uint32_t>(eye.self - block);
+    if (self < 16) asked &= ~(1u << self);
+    for (int32_t a = 0; a < arcs; ++a) {
+      const Arc& arc = eye.arc[a];
+      const Lanes from_right = broadcast(arc.right_x) * to_y - broadcast(arc.right_y) * to_x;
+      const Lanes from_left = to_x * broadcast(arc.left_y) - to_y * broadcast(arc.left_x);
+      const uint32_t ahead = to_bits(both(zero <= from_right + radius, zero <= from_left + radius));
+      sighted.circles[a] += write_indices(sighted.circle[a] + sighted.circles[a], block, asked & ahead);
+    }
   }
-  return n;
 }
 
 }  // namespace

@@ -36,32 +36,46 @@ struct PpoLoss {
   float policy, value, entropy;
 };
 
-/// Circles and segments that one agent may see, and the rays that look for them.
+/// Circles and segments that rays may hit. Arrays are aligned to 64 bytes and readable to the next multiple of 16.
 struct RayScene {
-  const float* circle_x;  ///< relative to the agent's center [u]; (circles), readable to a multiple of 16
+  const float* circle_x;  ///< [u]
   const float* circle_y;
   const float* circle_radius;
-  const int32_t* circle_type;
-  int32_t circles;
-  const float* segment_ax;  ///< ends relative to the agent's center [u]; (segments)
+  const float* circle_type;  ///< small integers, as floats
+  const float* segment_ax;   ///< ends [u]
   const float* segment_ay;
   const float* segment_bx;
   const float* segment_by;
   int32_t segments;
-  int32_t wall_type;
-  const float* direction_x;  ///< (32), unit vectors; what lies past `rays` repeats the last
-  const float* direction_y;
+  float segment_type;
+};
+
+inline constexpr int RAY_ARCS = PACKED_RAYS / 16;
+
+/// The sector of the plane that 16 neighboring rays can reach: directions of its edges, 0 where it is not convex.
+struct Arc {
+  float right_x, right_y, left_x, left_y;
+};
+
+/// The rays of one agent, from the right to the left.
+struct Eye {
+  float x, y;                  ///< the agent's center [u]
+  float forward_x, forward_y;  ///< its heading, a unit vector
+  const float* ray_cosine;     ///< of each ray's angle to the heading; (32), what lies past `rays` repeats the last
+  const float* ray_sine;
   int32_t rays;
   float start;   ///< distance from the center at which rays start: the body's radius [u]
   float length;  ///< of a ray, from its start [u]
+  int32_t self;  ///< index of the agent's own circle, which hides nothing from it; -1 where it has none
+  Arc arc[RAY_ARCS];
+
+  HEDON_INLINE int32_t arcs() const { return (rays + 15) / 16; }
 };
 
-/// The sector of the plane that one agent's rays can reach.
-struct Fan {
-  float x, y;              ///< the agent's center [u]
-  float reach;             ///< of the rays, from the center [u]
-  float right_x, right_y;  ///< direction of the right-most ray; 0 where the fan is not convex
-  float left_x, left_y;    ///< direction of the left-most ray; 0 where the fan is not convex
+/// Indices of the circles that the rays of each arc may hit. Each list has room for all circles and 16 more.
+struct Sighted {
+  int32_t* circle[RAY_ARCS];
+  int32_t circles[RAY_ARCS];
 };
 
 struct Kernel {
@@ -85,14 +99,13 @@ struct Kernel {
   PpoLoss (*update)(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
                     const Learner& learner);
 
-  /// Indices of the circles that a fan may touch, in order; returns how many. The arrays, `found` too, have room up to
-  /// the next multiple of 16.
-  int32_t (*cull_circles)(const Fan& fan, const float* x, const float* y, const float* radius, int32_t count,
-                          int32_t* found);
+  /// Appends those of the circles [first, last) that each arc may touch, in order. What it leaves out no ray can hit.
+  void (*cull_circles)(const RayScene& scene, const Eye& eye, int32_t first, int32_t last, Sighted& sighted);
 
-  /// Nearest hit of each ray: `reading` = 2 - d / length (that is reading + 1), 0 where nothing is hit; `type`
-  /// likewise. Both have PACKED_RAYS entries, 0 past the scene's rays.
-  void (*cast_rays)(const RayScene& scene, float* reading, uint8_t* type);
+  /// Nearest hit of each ray among the sighted circles and all segments: `reading` = 2 - d / length (that is reading +
+  /// 1), 0 where nothing is hit; `type` likewise. Both have PACKED_RAYS entries, 0 past the eye's rays; `reading` is
+  /// aligned to 64 bytes. Ties go to the first, circles before segments.
+  void (*cast_rays)(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type);
 
   /// Multiply-adds in registers, to measure this processor's ceiling. Reads a factor (below 1) from `result` and
   /// leaves there a number that depends on all of them. Returns how many floating-point operations that were.

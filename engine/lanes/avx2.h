@@ -59,6 +59,18 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   return {scale_exponent_of_8(a.low, shifted.low), scale_exponent_of_8(a.high, shifted.high)};
 }
 
+HEDON_INLINE LaneMask first_lanes(int32_t count) {
+  const __m256 lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256 end = _mm256_set1_ps(static_cast<float>(count));
+  return {_mm256_cmp_ps(lane, end, _CMP_LT_OQ), _mm256_cmp_ps(_mm256_add_ps(lane, _mm256_set1_ps(8)), end, _CMP_LT_OQ)};
+}
+
+HEDON_INLINE int32_t write_indices(int32_t* to, int32_t first, uint32_t bits) {
+  int32_t count = 0;
+  for (; bits != 0; bits &= bits - 1) to[count++] = first + __builtin_ctz(bits);
+  return count;
+}
+
 HEDON_INLINE float sum(Lanes a) {
   const __m256 eight = _mm256_add_ps(a.low, a.high);
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));

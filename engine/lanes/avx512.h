@@ -46,6 +46,19 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   return {_mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(a.v), n))};
 }
 
+/// The lanes before `count`.
+HEDON_INLINE LaneMask first_lanes(int32_t count) {
+  return count >= 16 ? LaneMask{0xFFFF} : static_cast<LaneMask>((1u << count) - 1u);
+}
+
+/// Writes first + i for each bit i that is set, in order; returns how many. May write up to 16 numbers.
+HEDON_INLINE int32_t write_indices(int32_t* to, int32_t first, uint32_t bits) {
+  const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __m512i index = _mm512_add_epi32(_mm512_set1_epi32(first), lane);
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), index));
+  return __builtin_popcount(bits);
+}
+
 HEDON_INLINE float sum(Lanes a) {
   const __m256 eight = _mm256_add_ps(_mm512_castps512_ps256(a.v), _mm512_extractf32x8_ps(a.v, 1));
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));

@@ -93,6 +93,18 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   });
 }
 
+HEDON_INLINE LaneMask first_lanes(int32_t count) {
+  LaneMask mask;
+  for (int i = 0; i < 16; ++i) mask.part[i / 4][i % 4] = i < count ? -1 : 0;
+  return mask;
+}
+
+HEDON_INLINE int32_t write_indices(int32_t* to, int32_t first, uint32_t bits) {
+  int32_t count = 0;
+  for (; bits != 0; bits &= bits - 1) to[count++] = first + __builtin_ctz(bits);
+  return count;
+}
+
 HEDON_INLINE float sum(Lanes a) {
   const Float4 four = (a.part[0] + a.part[2]) + (a.part[1] + a.part[3]);
   return (four[0] + four[2]) + (four[1] + four[3]);

@@ -58,8 +58,13 @@ void set_counts(World& world, int members) {
   world.scratch.meal.count = slots * kinds;
   world.scratch.eater.count = world.scratch.eater_distance.count = shape.foods;
 
-  world.scene.found.count = members * (slots + shape.foods + 16);
-  world.scene.x.count = world.scene.y.count = world.scene.radius.count = world.scene.type.count = slots + shape.foods;
+  Scene& scene = world.scene;
+  const int64_t circles = slots + shape.foods;
+  scene.x.count = scene.y.count = scene.radius.count = scene.type.count = scene.cell.count = circles;
+  scene.start.count = int64_t{shape.scene.columns} * shape.scene.rows + 1;
+  scene.own.count = slots;
+  scene.wall_ax.count = scene.wall_ay.count = scene.wall_bx.count = scene.wall_by.count = shape.walls;
+  scene.sighted.count = members * RAY_ARCS * (circles + 16);
 }
 
 }  // namespace hedon

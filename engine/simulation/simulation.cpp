@@ -96,7 +96,13 @@ void Simulation::begin(World& world) {
   }
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
-  for (size_t w = 0; w < walls_.size(); ++w) world.state.physics.walls[static_cast<int64_t>(w)] = walls_[w];
+  for (int32_t w = 0; w < shape_.walls; ++w) {
+    const Segment& wall = world.state.physics.walls[w] = walls_[static_cast<size_t>(w)];
+    world.scene.wall_ax[w] = wall.a.x;
+    world.scene.wall_ay[w] = wall.a.y;
+    world.scene.wall_bx[w] = wall.b.x;
+    world.scene.wall_by[w] = wall.b.y;
+  }
 }
 
 bool Simulation::set_scene(int index, const SceneInput& scene) {

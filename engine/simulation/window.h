@@ -16,7 +16,6 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
   const WorldShape& shape = *world.shape;
   Clock& clock = world.clock();
   const int64_t window_start = clock.step - shape.steps;
-  group.once([&] { gather_scene(world); });
 
   int32_t learners = 0;
   for (int32_t i = 0; i < clock.living_count; ++i) {
@@ -25,8 +24,8 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
   // The living stand in the order of birth, so those that lived through the window come first.
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
-    PackedObservation& next = world.observation(slot, shape.steps);
-    observe(world, i, world.scene.found_by(group.rank()), next);
+    note_start(world, slot);
+    const PackedObservation& next = world.observation(slot, shape.steps) = observe(world, i, group.rank());
     float output[16];
     world.kernel->forward(shape.network, world.params(slot), world.folded_bias(slot), next, output);
 
@@ -59,6 +58,7 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
 template <class Group, class Pacer, class Lap>
 void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
   const int64_t window = world.shape->steps;
+  group.once([&] { gather_scene(world); });
   while (steps > 0 && !world.over()) {
     const int64_t left = window - world.clock().step % window;
     const int64_t stretch = left < steps ? left : steps;

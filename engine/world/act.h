@@ -36,19 +36,12 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
 /// Turns the action into the forces of the two motors and what they do to the body.
 HEDON_FN void drive(World& world, int32_t slot, int64_t t) {
   const MotorConfig& motor = world.config->motor;
-  const BodyState& body = world.state.physics.bodies;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->steps} + t) * ACTIONS];
   const float range = motor.max_force - motor.min_force;
   const float left = motor.min_force + range * sigmoid(action[0]);
   const float right = motor.min_force + range * sigmoid(action[1]);
-  float sine, cosine;
-  sincos_float(body.angle[slot], &sine, &cosine);
-  scratch.start_angle[slot] = body.angle[slot];
-  scratch.heading_sine[slot] = sine;
-  scratch.heading_cosine[slot] = cosine;
-  scratch.start_x[slot] = body.x[slot];
-  scratch.start_y[slot] = body.y[slot];
+  const float sine = scratch.heading_sine[slot], cosine = scratch.heading_cosine[slot];
   scratch.force_left[slot] = left;
   scratch.force_right[slot] = right;
   scratch.force_x[slot] = -sine * (left + right);

@@ -17,6 +17,24 @@ namespace hedon {
 /// Types that senses tell apart: agents, each food kind, walls.
 inline constexpr int AGENT_TYPE = 0;
 
+/// The grid by whose cells the circles are sorted that rays may hit.
+struct SceneGrid {
+  float inverse_cell;  ///< cells per length [1/u]
+  int32_t columns;
+  int32_t rows;
+};
+
+/// Cells a third as wide as rays reach, so that the cells around a fan are few and hold little else; wider where an
+/// arena is so empty that there would be more cells than circles.
+HEDON_FN SceneGrid make_scene_grid(const WorldConfig& config, int32_t circles) {
+  const float width = config.arena.width, height = config.arena.height;
+  const float reach = (config.body.radius + config.sensor.ray_length) / 3.0f;
+  const float even = sqrtf(width * height / static_cast<float>(circles));
+  const float inverse_cell = 1.0f / (reach > even ? reach : even);
+  return {inverse_cell, static_cast<int32_t>(width * inverse_cell) + 1,
+          static_cast<int32_t>(height * inverse_cell) + 1};
+}
+
 struct WorldShape {
   int32_t slots;  ///< most agents alive at a time
   int32_t kinds;  ///< food kinds
@@ -28,6 +46,7 @@ struct WorldShape {
   GenomeShape genome;
   NetworkShape network;
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
+  SceneGrid scene;
 
   HEDON_FN int32_t wall_type() const { return 1 + kinds; }
   HEDON_FN int32_t types() const { return kinds + 2; }
@@ -47,6 +66,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   shape.steps = config.learning.rollout_steps;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
+  shape.scene = make_scene_grid(config, shape.slots + shape.foods);
   shape.genome = {shape.kinds, config.genome.neutral_count};
   const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
   shape.network = {{config.sensor.ray_count, shape.types(), shape.types() * config.sensor.touch_sectors, dense}};
@@ -56,12 +76,13 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
 /// Numbers that every step needs, worked out once.
 struct WorldConstants {
   BodyShape body;
-  float motor_arm;           ///< lever of each motor about the center [u]
-  float max_force;           ///< largest norm of the two forces: the norm of (f_max, f_max)
-  float mouth_cosine;        ///< cosine of the mouth's half angle
-  float ray_sine[MAX_RAYS];  ///< of each ray's angle to the heading; past the last ray the last repeats
-  float ray_cosine[MAX_RAYS];
-  bool fan_convex;        ///< the fan spans less than half a turn, so that its edges can cull
+  float motor_arm;                       ///< lever of each motor about the center [u]
+  float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
+  float mouth_cosine;                    ///< cosine of the mouth's half angle
+  alignas(64) float ray_sine[MAX_RAYS];  ///< of each ray's angle to the heading; past the last ray the last repeats
+  alignas(64) float ray_cosine[MAX_RAYS];
+  bool fan_convex;        ///< the fan spans less than half a turn
+  bool arc_convex;        ///< 16 neighboring rays do
   float sector_sine[65];  ///< of each touch sector's first edge, counter-clockwise of the heading
   float sector_cosine[65];
 };
@@ -87,6 +108,7 @@ HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
     c.ray_cosine[r] = static_cast<float>(cosine);
   }
   c.fan_convex = config.sensor.ray_spread < 90.0f;
+  c.arc_convex = c.fan_convex || (rays > 16 && config.sensor.ray_spread * 15.0f < 90.0f * static_cast<float>(rays - 1));
   for (int32_t s = 0; s <= config.sensor.touch_sectors; ++s) {
     sincos_double(2.0 * PI * s / config.sensor.touch_sectors, &sine, &cosine);
     c.sector_sine[s] = static_cast<float>(sine);
@@ -100,6 +122,11 @@ HEDON_FN Vec2 heading(float angle) {
   float sine, cosine;
   sincos_float(angle, &sine, &cosine);
   return {-sine, cosine};
+}
+
+/// Direction of ray `r` of an agent that looks along `forward`; past the last ray the last repeats.
+HEDON_FN Vec2 ray_direction(const WorldConstants& constants, int32_t r, Vec2 forward) {
+  return constants.ray_cosine[r] * forward + constants.ray_sine[r] * Vec2{-forward.y, forward.x};
 }
 
 }  // namespace hedon

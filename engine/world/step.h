@@ -44,18 +44,18 @@ HEDON_FN void check_inside(World& world) {
   }
 }
 
-/// Advances a world by one step. All members of the group call it; `t` is the step within the window.
-/// `lap(part)` is told when each part ends.
+/// Advances a world by one step, whose scene has been gathered. All members of the group call it; `t` is the step
+/// within the window. `lap(part)` is told when each part ends.
 template <class Group, class Lap>
 void step(Group& group, World& world, int64_t t, Lap&& lap) {
   Clock& clock = world.clock();
   const WorldState& state = world.state;
 
-  group.once([&] { gather_scene(world); });
   const auto sense_and_act = [&](int32_t i) {
     const int32_t slot = state.living[i];
-    PackedObservation& observation = world.observation(slot, t);
-    observe(world, i, world.scene.found_by(group.rank()), observation);
+    note_start(world, slot);
+    const PackedObservation observation = observe(world, i, group.rank());
+    world.observation(slot, t) = observation;
     sample_action(world, slot, t, observation);
     drive(world, slot, t);
   };
@@ -89,6 +89,7 @@ void step(Group& group, World& world, int64_t t, Lap&& lap) {
     reap(world);
     grow(world);
     clock.step += 1;
+    gather_scene(world);
     if (clock.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(clock.step));
   });
   lap(Part::life);

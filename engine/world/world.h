@@ -12,16 +12,17 @@
 
 namespace hedon {
 
-/// Circles that rays may hit, gathered once per step: the living in order, then the foods present.
+/// What rays may hit: the circles of the living and of the foods present, sorted by the cells of a grid, and the walls.
+/// Derived from the state, by `gather_scene`.
 struct Scene {
-  Array<float> x, y, radius;  // (slots + foods)
-  Array<int32_t> type;
-  Array<int32_t> found;  // (members, slots + foods) for each member of the team: what one agent may see
-  int64_t count;
+  Array<float> x, y, radius, type;  ///< (slots + foods) of the circles: cell by cell, row by row of cells
+  Array<int32_t> start;             ///< (cells + 1) first circle of each cell
+  Array<int32_t> own;               ///< (slots) index of the circle of the agent at each position of the living order
+  Array<int32_t> cell;              ///< (slots + foods) of each circle, before sorting
+  Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< (walls)
+  Array<int32_t> sighted;  ///< (members, RAY_ARCS, slots + foods + 16) for each member of the team: see `Sighted`
 
-  HEDON_FN int32_t* found_by(int rank) const { return found.data + rank * (x.count + 16); }
-
-  HEDON_FIELDS(Scene, x, y, radius, type, found, count)
+  HEDON_FIELDS(Scene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, sighted)
 };
 
 /// What an agent does and meets within one step, by slot. Means nothing between steps.

@@ -1,0 +1,115 @@
+/// The scene: what rays may hit, sorted so that an agent looks only at what lies around it.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "physics/grid.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Gathers the circles that rays may hit and sorts them by cell; within a cell the living come in their order, then the
+/// foods. (A counting sort: its time is in proportion to the circles and cells.)
+HEDON_FN void gather_scene(World& world) {
+  Scene& scene = world.scene;
+  const WorldState& state = world.state;
+  const SceneGrid& grid = world.shape->scene;
+  const int32_t cells = grid.columns * grid.rows;
+  for (int32_t cell = 0; cell <= cells; ++cell) scene.start[cell] = 0;
+  const auto find_cell = [&](int32_t circle, float x, float y) {
+    const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
+    const int32_t cell = cell_along(y, grid.inverse_cell, grid.rows) * grid.columns + column;
+    scene.cell[circle] = cell;
+    ++scene.start[cell];
+  };
+  const int32_t living = world.clock().living_count, slots = world.shape->slots;
+  const BodyState& body = state.physics.bodies;
+  const StaticCircles& food = state.physics.circles;
+  for (int32_t i = 0; i < living; ++i) find_cell(i, body.x[state.living[i]], body.y[state.living[i]]);
+  for (int32_t f = 0; f < world.shape->foods; ++f) {
+    if (food.present[f]) find_cell(slots + f, food.x[f], food.y[f]);
+  }
+
+  int32_t sum = 0;
+  for (int32_t cell = 0; cell < cells; ++cell) {
+    sum += scene.start[cell];
+    scene.start[cell] = sum;  // its end, which putting its circles in, last first, makes its start
+  }
+  scene.start[cells] = sum;
+  const auto put = [&](int32_t circle, float x, float y, float radius, int32_t type) {
+    const int32_t at = --scene.start[scene.cell[circle]];
+    scene.x[at] = x;
+    scene.y[at] = y;
+    scene.radius[at] = radius;
+    scene.type[at] = static_cast<float>(type);
+    return at;
+  };
+  for (int32_t k = world.shape->kinds - 1; k >= 0; --k) {
+    for (int32_t f = world.shape->food_offset[k + 1] - 1; f >= world.shape->food_offset[k]; --f) {
+      if (food.present[f]) put(slots + f, food.x[f], food.y[f], world.config->body.food_radius, 1 + k);
+    }
+  }
+  for (int32_t i = living - 1; i >= 0; --i) {
+    const int32_t slot = state.living[i];
+    scene.own[i] = put(i, body.x[slot], body.y[slot], world.config->body.radius, AGENT_TYPE);
+  }
+}
+
+/// The scene as the kernels see it.
+HEDON_FN RayScene ray_scene(const World& world) {
+  const Scene& scene = world.scene;
+  return {scene.x.data,       scene.y.data,
+          scene.radius.data,  scene.type.data,
+          scene.wall_ax.data, scene.wall_ay.data,
+          scene.wall_bx.data, scene.wall_by.data,
+          world.shape->walls, static_cast<float>(world.shape->wall_type())};
+}
+
+/// Empty lists of sighted circles in the memory of one member of the team.
+HEDON_FN Sighted no_circles(const World& world, int rank) {
+  const int64_t room = int64_t{world.shape->slots} + world.shape->foods + 16;
+  Sighted sighted{};
+  for (int32_t a = 0; a < RAY_ARCS; ++a) sighted.circle[a] = world.scene.sighted.data + (rank * RAY_ARCS + a) * room;
+  return sighted;
+}
+
+/// A rectangle around the agent, in its own frame [u].
+struct Box {
+  float low_x, low_y, high_x, high_y;
+};
+
+/// The rectangle that holds the fan between two directions, less than half a turn apart, up to `reach`; or the whole
+/// circle where the fan is not convex.
+HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
+  if (!convex) return {-reach, -reach, reach, reach};
+  const auto least = [](float a, float b) { return a < b ? a : b; };
+  const auto most = [](float a, float b) { return a > b ? a : b; };
+  // The corners of the fan; an axis that points into the fan reaches further.
+  Box box{least(0.0f, least(right.x, left.x)), least(0.0f, least(right.y, left.y)), most(0.0f, most(right.x, left.x)),
+          most(0.0f, most(right.y, left.y))};
+  const auto inside = [&](Vec2 axis) { return cross(right, axis) >= 0.0f && cross(axis, left) >= 0.0f; };
+  if (inside({-1.0f, 0.0f})) box.low_x = -1.0f;
+  if (inside({0.0f, -1.0f})) box.low_y = -1.0f;
+  if (inside({1.0f, 0.0f})) box.high_x = 1.0f;
+  if (inside({0.0f, 1.0f})) box.high_y = 1.0f;
+  return {box.low_x * reach, box.low_y * reach, box.high_x * reach, box.high_y * reach};
+}
+
+/// Finds the circles in the cells that a rectangle around the eye touches, grown by the radius of the largest circle.
+HEDON_FN void find_circles(const World& world, const RayScene& scene, const Eye& eye, const Box& box,
+                           Sighted& sighted) {
+  const SceneGrid& grid = world.shape->scene;
+  const BodyConfig& body = world.config->body;
+  const float margin = body.radius > body.food_radius ? body.radius : body.food_radius;
+  const int32_t first_column = cell_along(eye.x + box.low_x - margin, grid.inverse_cell, grid.columns);
+  const int32_t last_column = cell_along(eye.x + box.high_x + margin, grid.inverse_cell, grid.columns);
+  const int32_t first_row = cell_along(eye.y + box.low_y - margin, grid.inverse_cell, grid.rows);
+  const int32_t last_row = cell_along(eye.y + box.high_y + margin, grid.inverse_cell, grid.rows);
+  for (int32_t row = first_row; row <= last_row; ++row) {
+    const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
+    world.kernel->cull_circles(scene, eye, start[first_column], start[last_column + 1], sighted);
+  }
+}
+
+}  // namespace hedon
