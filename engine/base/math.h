@@ -28,24 +28,24 @@ HEDON_FN uint64_t double_to_bits(double value) {
   return bits;
 }
 
-/// e^x for any x; below -700 it is 0, above 700 it stays at e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2.
+/// The integer nearest to x, |x| < 2^51: adding 1.5 · 2^52 leaves no room for a fraction.
+HEDON_FN double round_double(double x) {
+  constexpr double SHIFT = 6755399441055744.0;
+  return (x + SHIFT) - SHIFT;
+}
+
+/// e^x for any x; below -700 it is 0, above 700 it stays at e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2, its
+/// terms in pairs of pairs, so that they need not wait for one another.
 HEDON_FN double exp_double(double x) {
   if (x < -700.0) return 0.0;
   if (x > 700.0) x = 700.0;
-  const double n = floor(x * 1.4426950408889634074 + 0.5);
+  const double n = round_double(x * 1.4426950408889634074);
   const double r = (x - n * 0.69314718036912381649) - n * 1.9082149292705877e-10;
-  double p = 1.0 / 39916800.0;
-  p = p * r + 1.0 / 3628800.0;
-  p = p * r + 1.0 / 362880.0;
-  p = p * r + 1.0 / 40320.0;
-  p = p * r + 1.0 / 5040.0;
-  p = p * r + 1.0 / 720.0;
-  p = p * r + 1.0 / 120.0;
-  p = p * r + 1.0 / 24.0;
-  p = p * r + 1.0 / 6.0;
-  p = p * r + 0.5;
-  p = p * r + 1.0;
-  p = p * r + 1.0;
+  const double r2 = r * r, r4 = r2 * r2;
+  const double p0 = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
+  const double p4 = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
+  const double p8 = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
+  const double p = p0 + r4 * (p4 + r4 * p8);
   return p * bits_to_double(static_cast<uint64_t>(static_cast<int64_t>(n) + 1023) << 52);
 }
 
@@ -73,7 +73,7 @@ HEDON_FN double log_double(double x) {
 
 /// Sine and cosine of x [rad], |x| < 1e6.
 HEDON_FN void sincos_double(double x, double* sine, double* cosine) {
-  const double n = floor(x * (2.0 / PI) + 0.5);
+  const double n = round_double(x * (2.0 / PI));
   const double r = (x - n * 1.57079632673412561417) - n * 6.07710050650619224932e-11;
   const double z = r * r;
   double s = 1.0 / 6227020800.0;
