@@ -14,7 +14,12 @@ namespace hedon {
 
 class Pace {
  public:
-  static constexpr int64_t STRETCH = 32;  ///< steps between two decisions, a few milliseconds
+  /// Steps until the next decision: a few milliseconds, in a large world a single step.
+  int64_t stretch() const {
+    const double seconds = together_ > alone_ ? together_ : alone_;
+    const double steps = seconds > 0.0 ? SECONDS / seconds : 1.0;
+    return steps < 1.0 ? 1 : (steps > LONGEST ? LONGEST : static_cast<int64_t>(steps));
+  }
 
   /// Which way the next stretch goes.
   bool together() const {
@@ -30,8 +35,10 @@ class Pace {
   }
 
  private:
-  static constexpr int64_t TRIAL = 64;    ///< one stretch in so many goes the other way: costs about 1 %
-  static constexpr double WEIGHT = 0.25;  ///< of the newest stretch in the running mean
+  static constexpr double SECONDS = 0.008;  ///< of a stretch
+  static constexpr int64_t LONGEST = 32;    ///< steps of a stretch
+  static constexpr int64_t TRIAL = 64;      ///< one stretch in so many goes the other way: costs about 1 %
+  static constexpr double WEIGHT = 0.25;    ///< of the newest stretch in the running mean
 
   double together_ = 0.0;  ///< unknown at first, hence tried first
   double alone_ = 0.0;
@@ -49,10 +56,11 @@ int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once
     go(team);
     return count;
   }
-  if (count > Pace::STRETCH) count = Pace::STRETCH;
+  const int64_t stretch = pace.stretch();
+  if (count > stretch) count = stretch;
+  // What each member has decided by changes when the stretch is noted: the barriers below keep that until all have.
   const auto begun = std::chrono::steady_clock::now();
   const bool together = pace.together();
-  // Whoever steps alone changes what the others have just decided by: not before all of them have.
   if (together)
     go(team);
   else
