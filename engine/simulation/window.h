@@ -11,7 +11,7 @@ namespace hedon {
 /// Every agent that lived through the whole window learns from its rollout; all others wait for the next.
 /// `scratch` holds `stride` floats for each member of the group.
 template <class Group>
-void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
+HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
   const WorldState& state = world.state;
   const WorldShape& shape = *world.shape;
   Clock& clock = world.clock();
@@ -56,7 +56,7 @@ void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
 /// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with all of the group or a part of
 /// it.
 template <class Group, class Pacer, class Lap>
-void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
+HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
   const int64_t window = world.shape->steps;
   group.once([&] { gather_scene(world); });
   while (steps > 0 && !world.over()) {

@@ -47,7 +47,7 @@ HEDON_FN void check_inside(World& world) {
 /// Advances a world by one step, whose scene has been gathered. All members of the group call it; `t` is the step
 /// within the window. `lap(part)` is told when each part ends.
 template <class Group, class Lap>
-void step(Group& group, World& world, int64_t t, Lap&& lap) {
+HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   Clock& clock = world.clock();
   const WorldState& state = world.state;
 
