@@ -59,7 +59,17 @@ void fold_bias(const NetworkShape& shape, const float* params, float* folded) {
   unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded + c * LANES, bias[c]); });
 }
 
-/// The first hidden layer of S observations at once: one row-addition per ray, per touch and per dense entry.
+/// Whether ray r hit the same type in all of S observations. Neighbors in time mostly agree, so the branch is cheap.
+template <int S>
+HEDON_INLINE bool same_type(const PackedObservation* const* observation, int32_t r) {
+  const int type = observation[0]->ray_type[r];
+  int difference = 0;
+  unroll<S - 1>([&](auto s) HEDON_INLINED { difference |= observation[s + 1]->ray_type[r] ^ type; });
+  return difference == 0;
+}
+
+/// The first hidden layer of S observations at once: one row-addition per ray, per touch and per dense entry. A row
+/// that all of them read is loaded once.
 /// hidden   (S, 64), after the tanh
 template <int S>
 HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, const float* folded,
@@ -71,12 +81,23 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
   });
   const float* group = params + shape.w1();
   const int32_t group_size = sizes.types * HIDDEN;
+  const auto add_row = [&](auto s, float x, const Lanes* row) HEDON_INLINED {
+    unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(broadcast(x), row[c], total[s][c]); });
+  };
+  const auto load_row = [&](const float* at, Lanes* row) HEDON_INLINED {
+    unroll<WIDTH>([&](auto c) HEDON_INLINED { row[c] = load(at + c * LANES); });
+  };
+  Lanes row[WIDTH];
   for (int32_t r = 0; r < sizes.rays; ++r, group += group_size) {
-    unroll<S>([&](auto s) HEDON_INLINED {
-      const float* row = group + observation[s]->ray_type[r] * HIDDEN;
-      const Lanes x = broadcast(observation[s]->ray[r]);
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(x, load(row + c * LANES), total[s][c]); });
-    });
+    if (same_type<S>(observation, r)) {
+      load_row(group + observation[0]->ray_type[r] * HIDDEN, row);
+      unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->ray[r], row); });
+    } else {
+      unroll<S>([&](auto s) HEDON_INLINED {
+        load_row(group + observation[s]->ray_type[r] * HIDDEN, row);
+        add_row(s, observation[s]->ray[r], row);
+      });
+    }
   }
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
@@ -86,10 +107,8 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
   });
   group += sizes.touches * HIDDEN;
   for (int32_t d = 0; d < sizes.dense; ++d, group += HIDDEN) {
-    unroll<S>([&](auto s) HEDON_INLINED {
-      const Lanes x = broadcast(observation[s]->dense[d]);
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(x, load(group + c * LANES), total[s][c]); });
-    });
+    load_row(group, row);
+    unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->dense[d], row); });
   }
   unroll<S>([&](auto s) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { store(hidden + s * HIDDEN + c * LANES, tanh_lanes(total[s][c])); });

@@ -11,6 +11,8 @@ struct PortableShape {
   static constexpr int lanes = 1;          ///< of 16 columns in a tile
   static constexpr int forward_lanes = 2;  ///< the same for a single row
   static constexpr int samples = 1;        ///< that go through the first layer together
+  static constexpr int row_samples = 2;    ///< that go back through it together
+  static constexpr int row_lanes = 1;      ///< of 16 columns in that
   static constexpr int chains = 2;         ///< for the measure of the processor's ceiling
 };
 

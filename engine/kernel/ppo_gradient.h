@@ -9,8 +9,6 @@
 namespace hedon {
 namespace {
 
-inline constexpr int DENSE_STRIDE = 8;
-
 /// The samples `order[0 .. count)` of a block: pointers to their observations, and what the loss needs, filled up to a
 /// multiple of 16 by repeating the last with no share.
 HEDON_INLINE void gather(const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
@@ -59,41 +57,72 @@ HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params,
   }
 }
 
-/// Backward through the first layer: adds each sample's derivative to the rows of its rays, touches and dense entries.
+/// Backward through C lanes of the first layer, for S samples: adds the derivative of each to the rows that it read. A
+/// row that all of them read is loaded and stored once; sums run in the order of the samples either way.
+template <int S, int C>
+HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation* const* observation,
+                              const float* by_sum, float* gradient) {
+  const ObservationShape& sizes = shape.observation;
+  Lanes by[S][C];
+  Lanes total[C];
+  const auto load_row = [&](const float* row) HEDON_INLINED {
+    unroll<C>([&](auto c) HEDON_INLINED { total[c] = load(row + c * LANES); });
+  };
+  const auto add = [&](auto s, float x) HEDON_INLINED {
+    unroll<C>([&](auto c) HEDON_INLINED { total[c] = multiply_add(broadcast(x), by[s][c], total[c]); });
+  };
+  const auto store_row = [&](float* row) HEDON_INLINED {
+    unroll<C>([&](auto c) HEDON_INLINED { store(row + c * LANES, total[c]); });
+  };
+  const auto add_one = [&](float* row, auto s, float x) HEDON_INLINED {
+    load_row(row);
+    add(s, x);
+    store_row(row);
+  };
+  const auto add_all = [&](float* row, const auto& entry) HEDON_INLINED {
+    load_row(row);
+    unroll<S>([&](auto s) HEDON_INLINED { add(s, entry(*observation[s])); });
+    store_row(row);
+  };
+
+  unroll<S>([&](auto s) HEDON_INLINED {
+    unroll<C>([&](auto c) HEDON_INLINED { by[s][c] = load(by_sum + s * HIDDEN + c * LANES); });
+  });
+  float* row = gradient + shape.w1();
+  for (int32_t r = 0; r < sizes.rays; ++r, row += sizes.types * HIDDEN) {
+    if (same_type<S>(observation, r)) {
+      add_all(row + observation[0]->ray_type[r] * HIDDEN,
+              [&](const PackedObservation& seen) HEDON_INLINED { return seen.ray[r]; });
+    } else {
+      unroll<S>([&](auto s)
+                    HEDON_INLINED { add_one(row + observation[s]->ray_type[r] * HIDDEN, s, observation[s]->ray[r]); });
+    }
+  }
+  unroll<S>([&](auto s) HEDON_INLINED {
+    for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
+      add_one(row + __builtin_ctzll(bits) * HIDDEN, s, 1.0f);
+    }
+  });
+  row += sizes.touches * HIDDEN;
+  for (int32_t d = 0; d < sizes.dense; ++d, row += HIDDEN) {
+    add_all(row, [&](const PackedObservation& seen) HEDON_INLINED { return seen.dense[d]; });
+  }
+  add_all(gradient + shape.b1(), [](const PackedObservation&) HEDON_INLINED { return 1.0f; });
+}
+
+/// Backward through the first layer for a block.
 template <class Shape>
 HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedObservation* const* observation,
                                        int count, const float* by_sum, float* gradient) {
-  const ObservationShape& sizes = shape.observation;
-  float* const touch_rows = gradient + shape.w1() + sizes.rays * sizes.types * HIDDEN;
-  float* const dense_rows = touch_rows + sizes.touches * HIDDEN;
-  alignas(64) float dense[BLOCK * DENSE_STRIDE];
-  Lanes bias[WIDTH];
-  unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(gradient + shape.b1() + c * LANES); });
-  for (int s = 0; s < count; ++s) {
-    const PackedObservation& seen = *observation[s];
-    Lanes by[WIDTH];
-    unroll<WIDTH>([&](auto c) HEDON_INLINED {
-      by[c] = load(by_sum + s * HIDDEN + c * LANES);
-      bias[c] = bias[c] + by[c];
-    });
-    float* group = gradient + shape.w1();
-    for (int32_t r = 0; r < sizes.rays; ++r, group += sizes.types * HIDDEN) {
-      float* row = group + seen.ray_type[r] * HIDDEN;
-      const Lanes x = broadcast(seen.ray[r]);
-      unroll<WIDTH>([&](auto c)
-                        HEDON_INLINED { store(row + c * LANES, multiply_add(x, by[c], load(row + c * LANES))); });
+  constexpr int S = Shape::row_samples;
+  constexpr int C = Shape::row_lanes;
+  int s = 0;
+  for (; s + S <= count; s += S) {
+    for (int column = 0; column < HIDDEN; column += C * LANES) {
+      add_to_rows<S, C>(shape, observation + s, by_sum + s * HIDDEN + column, gradient + column);
     }
-    for (uint64_t bits = seen.touch; bits != 0; bits &= bits - 1) {
-      float* row = touch_rows + __builtin_ctzll(bits) * HIDDEN;
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { store(row + c * LANES, load(row + c * LANES) + by[c]); });
-    }
-    for (int d = 0; d < MAX_DENSE; ++d) dense[s * DENSE_STRIDE + d] = seen.dense[d];
   }
-  unroll<WIDTH>([&](auto c) HEDON_INLINED { store(gradient + shape.b1() + c * LANES, bias[c]); });
-  multiply<Shape::rows, Shape::lanes, 1, DENSE_STRIDE>(
-      dense, by_sum, sizes.dense, count,
-      [&](int row, int column) HEDON_INLINED { return load(dense_rows + row * HIDDEN + column); },
-      [&](int row, int column, Lanes total) HEDON_INLINED { store(dense_rows + row * HIDDEN + column, total); });
+  for (; s < count; ++s) add_to_rows<1, WIDTH>(shape, observation + s, by_sum + s * HIDDEN, gradient);
 }
 
 /// Forward, loss and backward of one block of at most BLOCK samples.

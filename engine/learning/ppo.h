@@ -37,9 +37,20 @@ HEDON_FN void permute(const RandomStream& stream, int32_t count, uint32_t& index
   }
 }
 
+/// Puts the steps of each minibatch of a permutation in the order of time. What minibatch a step falls into stays
+/// random; but an agent sees nearly the same from one step to the next, which the kernels make use of.
+/// owner, end   (count) scratch
+HEDON_FN void sort_minibatches(int32_t count, int32_t minibatch_size, int32_t* owner, int32_t* end, int32_t* order) {
+  for (int32_t first = 0, batch = 0; first < count; first += minibatch_size, ++batch) {
+    for (int32_t i = first; i < first + minibatch_size; ++i) owner[order[i]] = batch;
+    end[batch] = first;
+  }
+  for (int32_t step = 0; step < count; ++step) order[end[owner[step]]++] = step;
+}
+
 /// Floats of scratch that `learn` needs, aligned to 64 bytes.
 inline int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfig& config) {
-  return ppo_scratch_size(shape) + static_cast<int64_t>(config.rollout_steps) * (2 + config.update_epochs);
+  return ppo_scratch_size(shape) + static_cast<int64_t>(config.rollout_steps) * (4 + config.update_epochs);
 }
 
 /// One learner's whole update from one rollout of at most `rollout_steps` steps. The order of its minibatches comes
@@ -48,12 +59,16 @@ inline PpoLoss learn(const Kernel& kernel, const NetworkShape& shape, const Lear
                      const Rollout& rollout, const RandomStream& stream, float* scratch, const Learner& learner) {
   float* const advantage = scratch + ppo_scratch_size(shape);
   float* const target = advantage + rollout.count;
-  int32_t* const order = reinterpret_cast<int32_t*>(target + rollout.count);
+  int32_t* const owner = reinterpret_cast<int32_t*>(target + rollout.count);
+  int32_t* const end = owner + rollout.count;
+  int32_t* const order = end + rollout.count;
   estimate_advantage(rollout.reward, rollout.value, rollout.bootstrap, rollout.count, config.gamma, config.gae_lambda,
                      advantage, target);
   uint32_t index = 0;
   for (int32_t epoch = 0; epoch < config.update_epochs; ++epoch) {
-    permute(stream, rollout.count, index, order + static_cast<int64_t>(epoch) * rollout.count);
+    int32_t* const of_epoch = order + static_cast<int64_t>(epoch) * rollout.count;
+    permute(stream, rollout.count, index, of_epoch);
+    sort_minibatches(rollout.count, config.minibatch_size, owner, end, of_epoch);
   }
   const PpoBatch batch = {rollout.observation, rollout.action, rollout.log_prob, advantage, target, order,
                           rollout.count};

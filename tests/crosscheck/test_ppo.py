@@ -123,7 +123,7 @@ def test_forward_of_saturated_units(kernel: str):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_learn_is_gae_then_update_in_the_stream_s_order(kernel: str):
+def test_learn_is_gae_then_update_by_the_stream_s_minibatches_in_order_of_time(kernel: str):
     case = random_case(12, SMALL, 64)
     settings = config(rollout_steps=64, minibatch_size=16)
     value, reward = case.target, case.advantage
@@ -133,7 +133,7 @@ def test_learn_is_gae_then_update_in_the_stream_s_order(kernel: str):
         value, reward, 0.3, 42, 7, 1024,
     )  # fmt: skip
     advantage, target = learning.gae(reward, value, 0.3, settings["gamma"], settings["gae_lambda"])
-    order = learning.permutation(42, 7, 1024, 64, 10)
+    order = np.sort(learning.permutation(42, 7, 1024, 64, 10).reshape(10, 4, 16)).reshape(10, 64)
     expected = learning.update(
         kernel, SMALL, settings, case.params, zero, zero, 5, case.observation, case.action, case.log_prob,
         advantage, target, order,
