@@ -23,6 +23,8 @@ EPOCHS = 10
 FLOP_PER_SAMPLE = 33e3
 """Multiplications and additions that one sample needs, forward and backward, with the sparse first layer."""
 RAY_REPEATS = 2000
+TYPE_CHANGES = 0.006
+"""Chance per step that a ray hits another type than before, as in worlds of the baseline."""
 
 
 def best_time(body: Callable[[], object], repeats: int) -> float:
@@ -35,11 +37,25 @@ def best_time(body: Callable[[], object], repeats: int) -> float:
     return min(times)
 
 
+def slow_types(rng: np.random.Generator, steps: int) -> np.ndarray:
+    """Packed observations of rays that all hit something, and the same type for long."""
+    rays, types, touches, dense = ONE_KIND_RAW
+    stretch = (rng.random((steps, rays)) < TYPE_CHANGES).cumsum(0)
+    ray_type = np.take_along_axis(rng.integers(0, types, (steps + 1, rays)), stretch, 0).astype(np.uint8)
+    ray = rng.uniform(1, 2, (steps, rays)).astype(np.float32)
+    touch = rng.integers(0, 2**touches, steps, dtype=np.uint64) & rng.integers(0, 2**touches, steps, dtype=np.uint64)
+    touch &= rng.integers(0, 2**touches, steps, dtype=np.uint64)
+    return _engine.learning.pack(ray, ray_type, touch, rng.normal(size=(steps, dense)).astype(np.float32))
+
+
 def time_update(kernel: str) -> float:
-    """One learner's whole update [s]."""
+    """One learner's whole update, its minibatches in the order of time [s]."""
     case = random_case(0, ONE_KIND_RAW, STEPS)
     rng = np.random.default_rng(1)
+    case.observation = slow_types(rng, STEPS)
+    minibatches = (EPOCHS, STEPS // config()["minibatch_size"], -1)
     order = np.stack([rng.permutation(STEPS) for _ in range(EPOCHS)]).astype(np.int32)
+    order = np.sort(order.reshape(minibatches), axis=2).reshape(EPOCHS, STEPS)
     zero = np.zeros_like(case.params)
 
     def body() -> tuple:
