@@ -78,7 +78,7 @@ def test_a_ray_reaches_exactly_its_length():
     assert simulation.worlds[0].rays()[0, 0, FOOD] == -1.0
 
 
-def test_more_neighbors_than_the_buffer_holds_are_all_seen():
+def test_a_dense_crowd_is_all_seen():
     crowd = ("population.capacity=2000", "population.initial_count=1", "food.normal.capacity=2000")
     simulation = make_simulation(*crowd, "sensor.ray_count=32")
     angles = np.linspace(-1.0, 1.0, 60)
