@@ -9,7 +9,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from hedon.experiment.run import Moment
+from hedon.experiment.plan import Moment
 from hedon.record.schema import weight_names
 
 FIRST_LINE_SECONDS = 1.0

@@ -1,15 +1,19 @@
 """Writes a run's folder while the engine computes on: rows go through a bounded queue to a thread."""
 
 import queue
+import shlex
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import polars as pl
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hedon.record.atomic import write_atomically
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, holds_run
 from hedon.record.manifest import Manifest, save_manifest
@@ -31,13 +35,14 @@ class Writer:
     no row is ever dropped.
 
     Args:
-        folder: made where it does not exist; must not hold a run already.
+        folder: made where it does not exist; must not hold a run already, unless `parts` says that one goes on.
         config_text: the complete config, as TOML.
         manifest: its food kinds and its number of neutral markers fix the columns.
         part_rows: rows after which a part is written at once.
         flush_seconds: rows are on disk after this time at the latest [s]; after 200 times it, the wait
             grows with the age of the run (0.5 %), so that a long run does not leave thousands of small parts.
         queue_size: calls that may wait for the thread.
+        parts: for a run that goes on: the SHA-256 of each part that it has, in order, by table.
 
     Raises:
         RecordError: the folder holds a run already, or cannot be written.
@@ -52,11 +57,15 @@ class Writer:
         part_rows: int = 20_000,
         flush_seconds: float = 30.0,
         queue_size: int = 64,
+        parts: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
         self.folder = Path(folder)
         self.tables = run_tables(manifest.food_kinds, manifest.neutral_count)
-        self._prepare(config_text, manifest)
-        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds)
+        if parts is None:
+            self._prepare(config_text, manifest)
+        else:
+            save_manifest(self.folder, manifest)
+        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds, parts)
         self._queue: queue.Queue = queue.Queue(queue_size)
         self._fault: Exception | None = None
         self._closed = False
@@ -90,6 +99,14 @@ class Writer:
         table = self.tables["agents"]
         frames = [rows_to_frame(table, each) for each in rows]
         self._put(("living", pl.concat([pl.DataFrame(schema=table.polars_schema), *frames])))
+
+    def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Keeps a checkpoint, once all rows given so far are on disk; its head is completed by their parts.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        self._put(Checkpoint(head, dict(arrays)))
 
     def save_manifest(self, manifest: Manifest) -> None:
         """Replaces the manifest, at once.
@@ -137,10 +154,13 @@ class Writer:
 
     def _prepare(self, config_text: str, manifest: Manifest) -> None:
         if holds_run(self.folder):
-            raise RecordError(f"{self.folder} holds a run already: choose another folder, or remove it first")
+            raise RecordError(
+                f"{self.folder} holds a run already: go on with it by `hedon resume {shlex.quote(str(self.folder))}`, "
+                "choose another folder, or remove it first"
+            )
         try:
             for table in self.tables:
-                (self.folder / table).mkdir(parents=True)
+                (self.folder / table).mkdir(parents=True, exist_ok=True)
             write_atomically(self.folder / CONFIG, lambda file: file.write(config_text.encode()))
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {self.folder}: {error}") from error
@@ -181,6 +201,10 @@ class Writer:
                 self._parts.replace_living(rows)
             else:
                 self._parts.append(table, rows)
+        if isinstance(item, Checkpoint):
+            self._parts.flush()
+            parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
+            save_checkpoint(self.folder, Checkpoint(replace(item.head, parts=parts), item.arrays))
         urgent = item is _CLOSE or isinstance(item, threading.Event)
         if urgent or self._parts.seconds_to_flush() <= 0:
             self._parts.flush()
