@@ -74,7 +74,7 @@ def drive(
                 recorder.interval()
             if plan.frames and step % plan.frames == 0:
                 recorder.frame()
-            if due.now(interrupted):
+            if not writer.saving and due.now(interrupted):
                 recorder.checkpoint(step, seconds)
             if display is not None:
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))

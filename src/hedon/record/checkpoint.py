@@ -88,7 +88,7 @@ def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
     head = np.frombuffer(json.dumps(asdict(checkpoint.head)).encode(), np.uint8)
     members = {_HEAD: head, **checkpoint.arrays}
     members[_DIGEST] = np.frombuffer(_digest(members).encode(), np.uint8)
-    write_atomically(path, lambda file: np.savez(file, allow_pickle=False, **members))
+    write_atomically(path, lambda file: np.savez(file, **members))
     for old in checkpoint_paths(folder)[:-KEPT]:
         old.unlink(missing_ok=True)
 

@@ -11,6 +11,9 @@ from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, part_paths
 from hedon.record.schema import run_tables
 
+PARTS_AT_ONCE = 64
+"""Parts that are held in memory together: some 100 MB at most."""
+
 
 def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int) -> str:
     """The digest of all tables of a run: SHA-256, 64 hexadecimal digits.
@@ -33,24 +36,32 @@ def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int
 
 def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
     digests = {}
-    for path in paths:
-        try:
-            rows = pl.read_parquet(path, columns=[column.name for column in table.columns])
-        except (pl.exceptions.PolarsError, OSError) as error:
-            raise RecordError(f"damaged part {path} ({error})") from error
-        for (world,), mine in rows.partition_by("world", as_dict=True, maintain_order=True).items():
-            digests.setdefault(world, hashlib.sha256()).update(_row_bytes(mine))
+    for first in range(0, len(paths), PARTS_AT_ONCE):
+        rows = pl.concat([_read(path, table) for path in paths[first : first + PARTS_AT_ONCE]])
+        data, worlds = _row_bytes(rows, table), rows["world"].to_numpy()
+        for world in np.unique(worlds).tolist():
+            digests.setdefault(world, hashlib.sha256()).update(np.ascontiguousarray(data[worlds == world]))
     return {world: digest.hexdigest() for world, digest in digests.items()}
 
 
-def _row_bytes(rows: pl.DataFrame) -> np.ndarray:
-    """Each row as bytes, (rows, bytes): every value, after a byte that says whether it is there."""
+def _read(path: Path, table: Table) -> pl.DataFrame:
+    try:
+        return pl.read_parquet(path, columns=[column.name for column in table.columns])
+    except (pl.exceptions.PolarsError, OSError) as error:
+        raise RecordError(f"damaged part {path} ({error})") from error
+
+
+def _row_bytes(rows: pl.DataFrame, table: Table) -> np.ndarray:
+    """Each row as bytes, (rows, bytes): the value of each column, after whether it is missing where it may be."""
     columns = []
-    for series in rows:
-        columns.append(series.is_not_null().to_numpy().astype(np.uint8)[:, None])
-        if series.dtype == pl.String:
+    for column in table.columns:
+        series = rows[column.name]
+        if column.nullable:
+            columns.append(series.is_null().to_numpy().astype(np.uint8)[:, None])
+            series = series.fill_null(0)
+        if column.dtype == "string":
             codes = {text: int.from_bytes(hashlib.sha256(text.encode()).digest()[:8]) for text in series.unique()}
             series = series.replace_strict(codes, return_dtype=pl.UInt64)
-        values = np.ascontiguousarray(series.fill_null(0).to_numpy())
-        columns.append(values.view(np.uint8).reshape(len(values), -1))
-    return np.ascontiguousarray(np.concatenate(columns, axis=1))
+        values = np.ascontiguousarray(series.to_numpy())
+        columns.append(values.view(np.uint8).reshape(len(values), values.itemsize))
+    return np.concatenate(columns, axis=1)

@@ -68,6 +68,7 @@ class Writer:
         self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds, parts)
         self._queue: queue.Queue = queue.Queue(queue_size)
         self._fault: Exception | None = None
+        self._saving = threading.Event()
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="hedon-record", daemon=True)
         self._thread.start()
@@ -106,7 +107,13 @@ class Writer:
         Raises:
             RecordError: as `append`.
         """
+        self._saving.set()
         self._put(Checkpoint(head, dict(arrays)))
+
+    @property
+    def saving(self) -> bool:
+        """Whether a checkpoint still waits to be on disk. One holds as much memory as its worlds' networks."""
+        return self._saving.is_set()
 
     def save_manifest(self, manifest: Manifest) -> None:
         """Replaces the manifest, at once.
@@ -175,7 +182,8 @@ class Writer:
     def _raise_fault(self) -> None:
         if self._fault is not None:
             raise RecordError(
-                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable"
+                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable, and "
+                f"when the cause is gone, the run goes on by: hedon resume {shlex.quote(str(self.folder))}"
             ) from self._fault
 
     def _work(self) -> None:
@@ -205,6 +213,7 @@ class Writer:
             self._parts.flush()
             parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
             save_checkpoint(self.folder, Checkpoint(replace(item.head, parts=parts), item.arrays))
+            self._saving.clear()
         urgent = item is _CLOSE or isinstance(item, threading.Event)
         if urgent or self._parts.seconds_to_flush() <= 0:
             self._parts.flush()
