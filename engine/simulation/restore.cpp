@@ -103,6 +103,7 @@ bool read_extent(Inspector& in, Extent& extent) {
   extent.filled = step % shape.steps;
   const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
   if (!rises(births, false)) return in.refuse("life.birth_step is out of order");
+  if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
   for (const int64_t birth : births) extent.learners += birth <= step - extent.filled;
   extent.slots.resize(births.size());
   return true;
@@ -144,18 +145,18 @@ bool check_life(Inspector& in) {
   const std::vector<int32_t> parents = in.numbers<int32_t>("life.parent_id");
   const std::vector<int32_t> generations = in.numbers<int32_t>("life.generation");
   for (size_t i = 0; i < ids.size(); ++i) {
-    if (parents[i] >= ids[i] || generations[i] > ids[i]) return in.refuse("an agent is older than its parent");
+    if (parents[i] >= ids[i]) return in.refuse("life.parent_id names an agent that is younger than its child");
+    if (generations[i] > ids[i]) return in.refuse("life.generation counts more ancestors than there were agents");
   }
   return in.within<int64_t>("clock.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
          in.within<int32_t>("clock.next_agent_id", last_id + 1.0 - nobody, MOST) &&
          in.within<int32_t>("clock.births_in_window", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
          in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
-         in.within<int64_t>("life.birth_step", 0, step) && in.within<int64_t>("life.death_step", -1, -1) &&
-         in.within<double>("life.energy", 0, LARGEST) && in.within<int64_t>("updates", 0, 0x1p62) &&
-         in.within<float>("second_moment", 0, LARGEST) && in.within<uint64_t>("touch", 0, most_touch) &&
-         in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
-         in.within<float>("body.angle", -turn, turn);
+         in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
+         in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
+         in.within<uint64_t>("touch", 0, most_touch) && in.within<float>("body.x", 0, config.arena.width) &&
+         in.within<float>("body.y", 0, config.arena.height) && in.within<float>("body.angle", -turn, turn);
 }
 
 bool check_food(Inspector& in, const Extent& extent) {

@@ -105,6 +105,7 @@ def test_a_disk_that_cannot_be_written_is_still_read(disk):
 def test_a_folder_in_use_names_its_user_and_a_killed_one_is_free(tmp_path):
     folder = tmp_path / "run"
     process = killed_run.start(folder)
+    assert process.pid is not None
     end = time.monotonic() + 30
     while not checkpoint_paths(folder):
         assert time.monotonic() < end

@@ -1,5 +1,6 @@
 """A run that was stopped and resumed has the records of one that was left alone, bit for bit."""
 
+import json
 import os
 import subprocess
 import sys
@@ -278,7 +279,12 @@ def test_the_command_says_what_it_does(half, whole):
     assert_same_run(half, whole)
     branched = hedon("branch", half, "--steps", "600", "--set", "energy.basic_cost=0.01")
     assert branched.returncode == 0, branched.stderr
-    assert load_manifest(half.with_name("run-branch500")).steps_done == (600, 600)
+    assert "600 steps from step 500, into" in branched.stdout
+    found = load_manifest(half.with_name("run-branch500"))
+    assert found.steps_done == (600, 600)
+    world = json.loads((half.with_name("run-branch500") / "summary.json").read_text())["worlds"][0]
+    assert world["ledger"]["residual"] < 1e-6, "the ledger of a branch begins at the checkpoint"
+    assert world["steps_per_second"] * found.run_seconds == pytest.approx(100)
     for arguments, words in (
         (("resume", half), "say by --steps"),
         (("resume", half.with_name("rnu")), "did you mean"),
