@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,7 +15,7 @@ from hedon.experiment.branch import branch
 from hedon.experiment.resume import hold, resume
 from hedon.record.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import checkpoint_paths, part_paths
+from hedon.record.folder import TABLE_FOLDERS, checkpoint_paths, part_path, part_paths
 from hedon.record.manifest import Parent, load_manifest
 from hedon.record.reader import open_run
 
@@ -81,8 +82,10 @@ def test_worlds_die_out_alone(tmp_path):
 
 def test_rows_after_the_checkpoint_are_taken_back(half, whole):
     first = checkpoint_paths(half)[0]
+    checkpoint_paths(half)[1].unlink()  # as if the run had been killed after these rows, before their checkpoint,
+    for table in TABLE_FOLDERS:  # and had written them in many more parts
+        shutil.copy(part_paths(half, table)[-1], part_path(half, table, 57))
     rows = open_run(half).population().height
-    checkpoint_paths(half)[1].unlink()  # as if the run had been killed after these rows, before their checkpoint
     with hold(half, STEPS) as found:
         assert found.step == 0
         assert checkpoint_paths(half) == [first]
