@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import CHECKPOINT_SECONDS, MAX_STEPS, Checkpoint, Threads, conduct
+from hedon.cli.run import MAX_STEPS, Checkpoint, Threads, conduct
+from hedon.record.folder import CHECKPOINT_SECONDS
 
 
 def branch(

@@ -10,6 +10,7 @@ import typer
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
+from hedon.record.folder import CHECKPOINT_SECONDS
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -19,8 +20,6 @@ DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
 MAX_SEED = 2**63 - 1
 MAX_STEPS = 2**31 - 1
-CHECKPOINT_SECONDS = 180.0
-"""Time between two checkpoints [s]; as `hedon.experiment.plan` has it, which takes a second to import."""
 
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]

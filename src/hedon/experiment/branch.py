@@ -9,13 +9,13 @@ from hedon.config.dump import diff, digest
 from hedon.config.load import load_config
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
-from hedon.experiment.plan import CHECKPOINT_SECONDS, Display, RunPlan, free_folder
+from hedon.experiment.plan import Display, RunPlan, free_folder
 from hedon.experiment.run import begin
 from hedon.experiment.session import first_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG
+from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
 from hedon.record.manifest import Manifest, Parent
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint

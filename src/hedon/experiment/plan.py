@@ -7,9 +7,7 @@ from typing import Protocol
 
 from hedon.config.config import Config
 from hedon.experiment.sample import Rows
-
-CHECKPOINT_SECONDS = 180.0
-"""Time after which a run keeps a checkpoint, unless told otherwise [s]."""
+from hedon.record.folder import CHECKPOINT_SECONDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +38,7 @@ class Moment:
     """Where a run is: what a progress display shows.
 
     Attributes:
+        first: Step at which this session began.
         step: Steps completed.
         steps: Steps asked for.
         seconds: Time since the first step of this session [s].
@@ -47,6 +46,7 @@ class Moment:
         extinct: The step at which each world died out, or None.
     """
 
+    first: int
     step: int
     steps: int
     seconds: float

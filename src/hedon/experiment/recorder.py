@@ -47,6 +47,7 @@ class Recorder:
         since = start.sampled or (None,) * len(simulation.worlds)
         self.samplers = [PopulationSampler(world, at) for world, at in zip(simulation.worlds, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
+        self.first = start.step
         self.living_due = 0.0
         self.shown = False
 
@@ -108,4 +109,4 @@ class Recorder:
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows after `step` of `steps` steps, `seconds` into the session."""
         extinct = tuple(world.extinct_step for world in self.simulation.worlds)
-        return Moment(step, steps, seconds, tuple(self.rows), extinct)
+        return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct)

@@ -8,14 +8,14 @@ from pathlib import Path
 from hedon.config.load import load_config
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
-from hedon.experiment.plan import CHECKPOINT_SECONDS, Display, RunPlan
+from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
 from hedon.experiment.run import drive
 from hedon.experiment.session import next_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG
+from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.provenance import git_revision

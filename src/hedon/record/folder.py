@@ -10,6 +10,8 @@ FIGURES = "figures"
 LIVING = "agents/living.parquet"
 CHECKPOINTS = "checkpoints"
 LOCK = ".lock"
+CHECKPOINT_SECONDS = 180.0
+"""Time after which a run keeps a checkpoint, unless told otherwise [s]."""
 TABLE_FOLDERS = ("agents", "population", "frames")
 
 

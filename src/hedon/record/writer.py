@@ -36,7 +36,7 @@ class Writer:
 
     Args:
         folder: made where it does not exist; must not hold a run already, unless `parts` says that one goes on.
-        config_text: the complete config, as TOML.
+        config_text: the complete config, as TOML; where a run goes on, it stands there already.
         manifest: its food kinds and its number of neutral markers fix the columns.
         part_rows: rows after which a part is written at once.
         flush_seconds: rows are on disk after this time at the latest [s]; after 200 times it, the wait
