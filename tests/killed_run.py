@@ -1,6 +1,7 @@
 """A run in a process of its own, to be killed: small, but with several worlds, frames, births and deaths."""
 
 import multiprocessing
+import signal
 import sys
 import traceback
 from multiprocessing.process import BaseProcess
@@ -36,8 +37,9 @@ def start(folder: Path) -> BaseProcess:
 
 
 def _go_in_process(folder: Path) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a Ctrl-C before the run listens for it ends the process at once
     try:
         go(folder)
-    except Exception:  # told from a Ctrl-C before the run listens for it, which ends a process with 1
+    except Exception:
         traceback.print_exc()
         sys.exit(FAULT)
