@@ -12,6 +12,7 @@ TESTS = {
         "tests/unit/test_life.py",
         "tests/crosscheck/test_sensor.py",
         "tests/property/test_world.py",
+        "tests/property/test_untrusted_checkpoint.py",
         "tests/physics",
     ],
     "tsan": ["tests/contract/test_determinism.py"],

@@ -13,6 +13,7 @@
 #include <set>
 #include <string>
 
+#include "binding/checkpoint.h"
 #include "binding/config.h"
 #include "binding/parts.h"
 
@@ -90,6 +91,12 @@ class PythonSimulation {
     }
     running_.store(false);
     raise_faults();
+  }
+
+  void restore(int index, const nb::dict& arrays) {
+    world(index);
+    const std::string complaint = simulation_.restore(index, from_arrays(arrays));
+    if (!complaint.empty()) throw nb::value_error(complaint.c_str());
   }
 
   nb::dict take_rows(int index) {
@@ -274,6 +281,17 @@ void bind_simulation(nb::module_& module) {
       .def("observations", &S::observations, nb::arg("world"),
            nb::sig("def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]"),
            "Full observations of the living: (living, size).")
+      .def(
+          "save",
+          [](S& s, int world) {
+            s.world(world);
+            return to_arrays(s.get().save(world));
+          },
+          nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
+          "All that decides a world's future, as arrays: copies.")
+      .def("restore", &S::restore, nb::arg("world"), nb::arg("arrays"),
+           nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
+           "Puts a saved world in place of one. ValueError: what is wrong; the world is then as it was.")
       .def("set_scene", &S::set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"),
            nb::arg("energy"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")

@@ -105,6 +105,14 @@ void Simulation::begin(World& world) {
   }
 }
 
+/// Takes everything out of a world.
+void Simulation::empty(World& world) {
+  for_each_array(world.state, "", []<class T>(const std::string&, Array<T>& array) {
+    memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
+  });
+  begin(world);
+}
+
 bool Simulation::set_scene(int index, const SceneInput& scene) {
   World& target = world(index);
   if (scene.x.count > shape_.slots) return false;
@@ -114,10 +122,7 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
     if (kind < 0 || kind >= shape_.kinds || ++count[static_cast<size_t>(kind)] > config_.food[kind].capacity)
       return false;
   }
-  for_each_array(target.state, "", []<class T>(const std::string&, Array<T>& array) {
-    memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
-  });
-  begin(target);
+  empty(target);
   for (int64_t i = 0; i < scene.x.count; ++i) {
     const int32_t slot = spawn(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i], 0);
     init_genome(shape_.genome, config_.genome, target.seed, static_cast<uint32_t>(i), target.genome(slot));
@@ -129,27 +134,6 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
   for (int32_t k = 0; k < shape_.kinds; ++k) target.state.food_stock[k].number = target.state.food_stock[k].present;
   if (scene.x.count == 0) target.clock().extinct_step = 0;
   return true;
-}
-
-uint64_t Simulation::digest(int index) const {
-  // Multiply and rotate, eight bytes at a time: it has to tell states apart, not to resist an attacker.
-  uint64_t hash = 0x9E3779B97F4A7C15u;
-  const auto mix = [&hash](uint64_t word) {
-    hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
-    hash ^= hash >> 32;
-  };
-  for_each_array(worlds_[static_cast<size_t>(index)].state, "",
-                 [&]<class T>(const std::string&, const Array<T>& array) {
-                   const size_t bytes = static_cast<size_t>(array.count) * sizeof(T);
-                   const char* data = reinterpret_cast<const char*>(array.data);
-                   mix(bytes);
-                   for (size_t at = 0; at < bytes; at += 8) {
-                     uint64_t word = 0;
-                     memcpy(&word, data + at, bytes - at < 8 ? bytes - at : 8);
-                     mix(word);
-                   }
-                 });
-  return hash;
 }
 
 void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {

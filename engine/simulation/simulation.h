@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
 #include "base/team.h"
+#include "simulation/checkpoint.h"
 #include "simulation/memory.h"
 #include "simulation/pace.h"
 #include "simulation/window.h"
@@ -39,7 +41,14 @@ class Simulation {
   /// False where they are more than the world can hold.
   bool set_scene(int index, const SceneInput& scene);
 
-  /// A hash of everything in a world's state: equal for equal bits.
+  /// All that decides a world's future, as arrays. Deaths that the reader has not yet taken are no part of it.
+  Checkpoint save(int index) const;
+
+  /// Puts a saved world in place of one; it goes on with the same bits as the saved one. Returns "", or what is wrong
+  /// with the checkpoint: the world is then as it was.
+  std::string restore(int index, const Checkpoint& checkpoint);
+
+  /// A hash of all that decides a world's future: equal for equal bits.
   uint64_t digest(int index) const;
 
   /// Advances every world that is not over by `steps` steps. Which threads do what changes no bit.
@@ -56,6 +65,7 @@ class Simulation {
 
  private:
   void begin(World& world);
+  void empty(World& world);
   void advance_with(Team team, int thread, int world, int64_t steps);
 
   WorldConfig config_;

@@ -14,7 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hedon.config import Config, ConfigError, dump_toml, load_config
-    from hedon.experiment.run import RunPlan, run
+    from hedon.experiment.branch import branch
+    from hedon.experiment.plan import RunPlan
+    from hedon.experiment.resume import resume
+    from hedon.experiment.run import run
     from hedon.experiment.simulation import Simulation, World
     from hedon.record.reader import Run, open_run
 
@@ -25,7 +28,9 @@ _HOME = {
     "ConfigError": "hedon.config",
     "dump_toml": "hedon.config",
     "load_config": "hedon.config",
-    "RunPlan": "hedon.experiment.run",
+    "RunPlan": "hedon.experiment.plan",
+    "branch": "hedon.experiment.branch",
+    "resume": "hedon.experiment.resume",
     "run": "hedon.experiment.run",
     "Simulation": "hedon.experiment.simulation",
     "World": "hedon.experiment.simulation",
@@ -40,9 +45,11 @@ __all__ = [
     "RunPlan",
     "Simulation",
     "World",
+    "branch",
     "dump_toml",
     "load_config",
     "open_run",
+    "resume",
     "run",
 ]
 

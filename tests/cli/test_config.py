@@ -70,7 +70,7 @@ def test_check_names_all_problems(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("args", "text"),
     [
-        (("presett",), "Did you mean 'presets'?"),
+        (("presett",), "Did you mean 'presets'"),
         (("config", "shw"), "Did you mean 'show'?"),
         (("config", "show", "basline"), "did you mean baseline?"),
         (("config", "show", "small", "--fidelity", "txt"), "did you mean text?"),

@@ -155,6 +155,7 @@ def test_ctrl_c_ends_after_the_window_and_keeps_everything(tmp_path):
     printed, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
     assert "Interrupted after step" in printed
+    assert f"hedon resume {folder}" in printed
     assert "Traceback" not in errors
     manifest = json.loads((folder / "manifest.json").read_text())
     assert manifest["status"] == "interrupted"

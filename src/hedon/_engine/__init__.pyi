@@ -37,6 +37,14 @@ class Simulation:
     def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]:
         """Full observations of the living: (living, size)."""
 
+    def save(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
+        """All that decides a world's future, as arrays: copies."""
+
+    def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[Any]]) -> None:
+        """
+        Puts a saved world in place of one. ValueError: what is wrong; the world is then as it was.
+        """
+
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Empties a world and puts these agents and foods into it."""
 

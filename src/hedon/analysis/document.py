@@ -6,7 +6,7 @@ from dataclasses import fields
 
 from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 from hedon.record.column import Table
-from hedon.record.manifest import Manifest
+from hedon.record.manifest import Manifest, Session
 from hedon.record.schema import FORMAT_VERSION, run_tables
 from hedon.record.snapshot import Snapshot
 
@@ -24,6 +24,7 @@ RUN/
   agents/living.parquet          agents alive when records were last written
   population/part-….parquet      one row per world and interval
   frames/part-….parquet          positions, only where frames were asked for
+  checkpoints/step-….npz         the newest two, for `hedon resume` and `hedon branch`
   final.npz                      last state of one world, for a picture
   summary.json, figures/*.png    made at the end of the run, and again by `hedon report RUN`
 ```
@@ -69,6 +70,7 @@ def records_page() -> str:
         if table.name == "population":
             parts.append(_LEDGER)
     parts.append(f"## manifest.json\n\n{_attributes(Manifest)}")
+    parts.append(f"### Each of `sessions`\n\n{_attributes(Session)}")
     parts.append(f"## final.npz\n\nPlain NumPy arrays, one per field.\n\n{_attributes(Snapshot)}")
     parts.append(f"## summary.json\n\n{_SUMMARY}\n{_key_table(INTERVAL_KEYS)}")
     parts.append(f"### The run\n\n{_key_table(RUN_KEYS)}")

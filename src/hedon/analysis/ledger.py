@@ -14,7 +14,7 @@ class Ledger:
     """Sums over a run of one world [energy]; energy that parents share with children stays within the world.
 
     Attributes:
-        initial: held by the founders at birth; None where their rows are missing.
+        initial: held by the founders at birth; None where their rows are missing, as in a branch.
         eaten, forgiven, basic, action, capped, lost, shared: as the columns of the table `population`.
         final: held by the living at the end.
         residual: largest difference over the intervals between the energy held and what the flows say it
@@ -43,7 +43,8 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
         agents: rows of the same world.
     """
     founders = agents.filter(pl.col("parent_id").is_null())
-    initial = float(founders["birth_energy"].cast(pl.Float64).sum()) if founders.height else None
+    from_founders = founders.height and (population.height == 0 or population["step"][0] == population["steps"][0])
+    initial = float(founders["birth_energy"].cast(pl.Float64).sum()) if from_founders else None
     sums = {name: float(population[f"energy_{name}"].sum()) for name in _names()}
     total = population["energy_total"].to_numpy()
     flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)

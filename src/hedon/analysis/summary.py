@@ -101,13 +101,14 @@ def _world(
     manifest, tail = run.manifest, run_tail(population)
     recorded = int(population["step"][-1]) if population.height else 0
     steps = max(recorded, manifest.steps_done[index] if manifest.steps_done else 0)
+    made = steps - (manifest.parent.step if manifest.parent else 0)
     extinct = manifest.extinct_steps[index] if manifest.extinct_steps else None
     extinct = extinct_step(population) if extinct is None else extinct
     alive = population["alive"][-1] if population.height else agents["death_step"].null_count()
     return {
         "seed": manifest.seeds[index],
         "steps": steps,
-        "steps_per_second": steps / manifest.run_seconds if manifest.run_seconds else None,
+        "steps_per_second": made / manifest.run_seconds if manifest.run_seconds else None,
         "alive": alive,
         "alive_mean": mean_alive(tail),
         "extinct": extinct is not None,

@@ -6,7 +6,9 @@ from typing import Annotated
 import typer
 
 from hedon.cli import config
+from hedon.cli.branch import branch
 from hedon.cli.report import report
+from hedon.cli.resume import resume
 from hedon.cli.run import run
 from hedon.error import HedonError
 
@@ -20,6 +22,8 @@ app = typer.Typer(
 
 # One file per command or group of commands; they stand in the help in this order.
 app.command()(run)
+app.command()(resume)
+app.command()(branch)
 app.command()(report)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
@@ -46,6 +50,7 @@ def _hedon(
     Examples:
       hedon run baseline
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+      hedon resume runs/poison --steps 2048000
       hedon report runs/poison
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5

@@ -1,18 +1,28 @@
 """`hedon run`: one command from a condition to a result."""
 
+import shlex
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
+from hedon.record.folder import CHECKPOINT_SECONDS
+
+if TYPE_CHECKING:
+    from hedon.experiment.plan import Display, RunPlan
+    from hedon.record.manifest import Manifest
 
 DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
 MAX_SEED = 2**63 - 1
 MAX_STEPS = 2**31 - 1
+
+Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
+Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
 
 
 class RunError(HedonError):
@@ -25,13 +35,12 @@ def run(
     ] = "baseline",
     seeds: Annotated[str, typer.Option(help="One world per seed: 7, or 1-5, or 1,4,7-9.")] = "1",
     steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = DEFAULT_STEPS,
-    threads: Annotated[
-        int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)
-    ] = 0,
+    threads: Threads = 0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")] = None,
     frames: Annotated[
         int, typer.Option(help="Keep positions of everything each so many steps; 0 for never.", min=0)
     ] = 0,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
     fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or text.")] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
@@ -39,7 +48,8 @@ def run(
 ) -> None:
     """Run a condition, from worlds to a table and figures.
 
-    Ctrl-C ends the run after the current window; all results so far are kept.
+    Ctrl-C ends the run after the current window, a second one at once; all results so far are kept, and `hedon
+    resume` goes on from there, also after the machine stopped.
 
     \b
     Examples:
@@ -51,28 +61,39 @@ def run(
     HEDON_KERNEL forces an instruction set: avx512, avx2 or portable.
     """
     from hedon.config.load import load_config
-    from hedon.experiment.progress import duration, make_display
-    from hedon.experiment.run import RunPlan, default_folder
+    from hedon.experiment.plan import RunPlan, default_folder
     from hedon.experiment.run import run as run_plan
 
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
-    console = make_console()
-    worlds = f"{len(world_seeds)} world{'s' if len(world_seeds) > 1 else ''}"
-    console.print(f"hedon: {config.name} ({config.fidelity}), {worlds}, {steps:,} steps, into {folder}")
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames)
-    with make_display(console, tuple(config.food), config.genome.neutral_count, world_seeds) as display:
-        manifest = run_plan(plan, display)
-    for seed, extinct in zip(world_seeds, manifest.extinct_steps, strict=True):
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint)
+    conduct(plan, lambda display: run_plan(plan, display))
+
+
+def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
+    """Says what will be run, shows it while `go` runs it, and shows its report; `begun` says where it goes on."""
+    from hedon.experiment.progress import duration, make_display
+
+    config, console = plan.config, make_console()
+    worlds = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}"
+    console.print(
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {plan.out}",
+        soft_wrap=True,
+    )
+    with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:
+        manifest = go(display)
+    for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:
             console.print(f"The world of seed {seed} died out at step {extinct:,}.")
+    folder = shlex.quote(str(plan.out))
     if manifest.status == "interrupted":
         done = max(manifest.steps_done)
-        console.print(f"Interrupted after step {done:,} of {steps:,}; all results up to there are kept.")
+        console.print(f"Interrupted after step {done:,} of {plan.steps:,}; all results up to there are kept.")
+        console.print(f"Go on with: hedon resume {folder}", soft_wrap=True)
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
-    show_report(folder, console)
-    console.print(f"Make them again with: uv run hedon report {folder}")
+    show_report(plan.out, console)
+    console.print(f"Make them again with: uv run hedon report {folder}", soft_wrap=True)
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

@@ -56,6 +56,20 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     return from_tables(merged, origin + " with --set" if tables else origin)
 
 
+def parse_config(text: str, origin: str) -> Config:
+    """The config of a complete TOML text, as `dump_toml` writes it; `origin` is what an error calls it.
+
+    Raises:
+        ConfigError: Anything in it is wrong or missing.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
+    tables.pop("complete", None)
+    return from_tables(tables, origin)
+
+
 def is_modified(config: Config) -> bool:
     """Whether any setting but names and colors differs from the preset and fidelity that the config names."""
     if config.preset not in PRESETS or config.fidelity not in FIDELITIES:

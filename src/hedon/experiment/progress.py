@@ -9,7 +9,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from hedon.experiment.run import Moment
+from hedon.experiment.plan import Moment
 from hedon.record.schema import weight_names
 
 FIRST_LINE_SECONDS = 1.0
@@ -32,9 +32,11 @@ class _Speed:
     SPAN = 10.0  # seconds
 
     def __init__(self) -> None:
-        self._seen: list[tuple[float, int]] = [(0.0, 0)]
+        self._seen: list[tuple[float, int]] = []
 
     def update(self, moment: Moment) -> float:
+        if not self._seen:
+            self._seen.append((0.0, moment.first))
         self._seen.append((moment.seconds, moment.step))
         while len(self._seen) > 2 and self._seen[1][0] < moment.seconds - self.SPAN:
             self._seen.pop(0)

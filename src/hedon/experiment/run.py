@@ -1,127 +1,113 @@
-"""The host loop: advances a simulation, writes its records, tells of its progress."""
+"""The host loop: advances a simulation, writes its records and checkpoints, tells of its progress."""
 
-import signal
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, Protocol
+from collections.abc import Iterator
 
-from hedon.config.arena import walls
-from hedon.config.config import Config
-from hedon.config.dump import digest, dump_toml
-from hedon.config.load import is_modified
-from hedon.experiment.sample import PopulationSampler, Rows, agent_rows, frame_rows
-from hedon.experiment.simulation import Simulation, World
+from hedon.config.dump import dump_toml
+from hedon.experiment.interrupt import Interrupts, count_interrupts
+from hedon.experiment.plan import Display, RunPlan
+from hedon.experiment.recorder import Recorder, Start
+from hedon.experiment.sample import snapshot
+from hedon.experiment.session import first_manifest, last_manifest
+from hedon.experiment.simulation import Simulation
+from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
-from hedon.record.provenance import collect_provenance, utc_now
-from hedon.record.snapshot import Snapshot, save_snapshot
+from hedon.record.snapshot import save_snapshot
 from hedon.record.writer import Writer
 
 PIECE_SECONDS = 0.2
 """Longest time in the engine without a look at the keyboard [s]."""
-LIVING_SECONDS = 30.0
-"""Time after which the file of the living agents is replaced [s]."""
-
-
-@dataclass(frozen=True, slots=True)
-class RunPlan:
-    """What to run.
-
-    Attributes:
-        config: What the worlds are.
-        seeds: One world per seed.
-        steps: Steps of each world.
-        out: The run's folder; must not hold a run already.
-        threads: Threads to use; 0 for all processors.
-        frames: Steps between two frames; 0 for none.
-    """
-
-    config: Config
-    seeds: tuple[int, ...]
-    steps: int
-    out: Path
-    threads: int = 0
-    frames: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """Where a run is: what a progress display shows.
-
-    Attributes:
-        step: Steps completed.
-        steps: Steps asked for.
-        seconds: Time since the first step [s].
-        rows: The last row of the table `population` of each world.
-        extinct: The step at which each world died out, or None.
-    """
-
-    step: int
-    steps: int
-    seconds: float
-    rows: tuple[Rows, ...]
-    extinct: tuple[int | None, ...]
-
-
-class Display(Protocol):
-    """Something that shows progress."""
-
-    def update(self, moment: Moment) -> None:
-        """Shows a moment; called about five times a second."""
-        ...
 
 
 def run(plan: RunPlan, display: Display | None = None) -> Manifest:
     """Runs a plan and keeps its records, silently where no display is given.
 
-    Ctrl-C ends it after the current window, with all results kept; a second one ends it at once, likewise.
+    Ctrl-C or SIGTERM ends it after the current window, with all results kept; a second one ends it at once, likewise.
+    `hedon.experiment.resume.resume` goes on with it, also after it was killed.
 
     Returns:
         The manifest as it was saved at the end.
 
     Raises:
-        RecordError: The folder holds a run already or cannot be written.
+        RecordError: The folder holds a run already, is in use, or cannot be written.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
-    with _interrupts() as interrupted:
-        return _run(plan, display, interrupted)
+    with count_interrupts() as interrupted:
+        simulation = Simulation(plan.config, plan.seeds, plan.threads)
+        return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 
 
-def _run(plan: RunPlan, display: Display | None, interrupted: "_Interrupts") -> Manifest:
-    simulation = Simulation(plan.config, plan.seeds, plan.threads)
-    manifest = _first_manifest(plan, simulation)
-    with Writer(plan.out, dump_toml(plan.config), manifest) as writer:
-        recorder = _Recorder(simulation, writer)
-        started = time.perf_counter()
-        status = "failed"
-        step = 0
-        try:
-            for step in _steps(simulation, plan, interrupted):
-                recorder.deaths()
-                if step % plan.config.learning.rollout_steps == 0 or step == plan.steps or simulation.extinct:
-                    recorder.interval()
-                if plan.frames and step % plan.frames == 0:
-                    recorder.frame()
-                if display is not None:
-                    display.update(recorder.moment(step, plan.steps, time.perf_counter() - started))
-            recorder.interval()  # after a second Ctrl-C: what happened since the last window began
-            status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
-        finally:
-            seconds = time.perf_counter() - started
-            manifest = _last_manifest(manifest, simulation, status, seconds)
-            recorder.living()
-            writer.save_manifest(manifest)
+def begin(
+    simulation: Simulation,
+    plan: RunPlan,
+    manifest: Manifest,
+    start: Start,
+    display: Display | None,
+    interrupted: Interrupts,
+) -> Manifest:
+    """Begins a new folder with a simulation that is at `start`, and drives it; see `run`."""
+    with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest) as writer:
+        return drive(simulation, plan, manifest, writer, start, display, interrupted)
+
+
+def drive(
+    simulation: Simulation,
+    plan: RunPlan,
+    manifest: Manifest,
+    writer: Writer,
+    start: Start,
+    display: Display | None,
+    interrupted: Interrupts,
+) -> Manifest:
+    """Advances a simulation from `start` to the end of the plan, and records it; see `run`."""
+    recorder = Recorder(simulation, writer, plan.frames, start)
+    begun = time.perf_counter()
+    seconds, step, status = start.seconds, start.step, "failed"
+    due = _Due(plan.checkpoint_seconds)
+    try:
+        recorder.living()
+        recorder.checkpoint(step, seconds)
+        for step in _steps(simulation, plan, start.step, interrupted):
+            seconds = start.seconds + time.perf_counter() - begun
+            recorder.deaths()
+            if step % plan.config.learning.rollout_steps == 0:
+                recorder.interval()
+            if plan.frames and step % plan.frames == 0:
+                recorder.frame()
+            if not writer.saving and due.now(interrupted):
+                recorder.checkpoint(step, seconds)
+            if display is not None:
+                display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
+        # First the checkpoint, then the rows of a window that may be unfinished: who goes on takes those back.
+        recorder.checkpoint(step, seconds)
+        recorder.interval()
+        status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
+    finally:
+        recorder.living()
+        manifest = last_manifest(manifest, simulation, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
     return manifest
 
 
-def _steps(simulation: Simulation, plan: RunPlan, interrupted: "_Interrupts") -> Iterator[int]:
+class _Due:
+    """When to keep a checkpoint: at intervals, and at once when somebody wants to end the run."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._next = time.perf_counter() + seconds
+        self._heard = 0
+
+    def now(self, interrupted: Interrupts) -> bool:
+        if time.perf_counter() < self._next and interrupted.count == self._heard:
+            return False
+        self._next, self._heard = time.perf_counter() + self._seconds, interrupted.count
+        return True
+
+
+def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
     """Advances to each step at which there is something to do, and yields it."""
     window = plan.config.learning.rollout_steps
     piece = 64
-    step = 0
     while step < plan.steps and not simulation.extinct:
         if interrupted.count > 1 or (interrupted.count == 1 and step % window == 0):
             return
@@ -137,149 +123,3 @@ def _steps(simulation: Simulation, plan: RunPlan, interrupted: "_Interrupts") ->
         piece = max(1, int(min(steps * PIECE_SECONDS / seconds, 4 * piece, steps / full if full else steps * 4)))
         step += steps
         yield step
-
-
-class _Recorder:
-    """Moves what the engine knows into the records, at the ends of intervals."""
-
-    def __init__(self, simulation: Simulation, writer: Writer) -> None:
-        self.simulation = simulation
-        self.writer = writer
-        self.samplers = [PopulationSampler(world) for world in simulation.worlds]
-        self.rows = [sampler.sample() for sampler in self.samplers]
-        self.last_step = [0 for _ in simulation.worlds]
-        self.living_due = 0.0
-        self.shown = False
-
-    def deaths(self) -> None:
-        """Writes those who died since the last call. The engine has room for some, so this is done in every piece."""
-        for i, world in enumerate(self.simulation.worlds):
-            lives = self.simulation.engine.take_rows(i)
-            if len(lives["agent_id"]):
-                self.writer.append("agents", agent_rows(world, lives))
-
-    def interval(self) -> None:
-        """Writes what has not been written of the deaths and one population row per world that moved."""
-        self.deaths()
-        for i, world in enumerate(self.simulation.worlds):
-            if world.step == self.last_step[i]:
-                continue
-            self.last_step[i] = world.step
-            self.rows[i] = self.samplers[i].sample()
-            self.writer.append("population", self.rows[i])
-        if time.perf_counter() >= self.living_due:
-            self.living()
-        if not self.shown:  # the first rows reach the disk at once, so that a reader sees that the run is on
-            self.writer.flush()
-            self.shown = True
-
-    def living(self) -> None:
-        """Replaces the file of the living agents."""
-        self.living_due = time.perf_counter() + LIVING_SECONDS
-        engine = self.simulation.engine
-        self.writer.replace_living(*(agent_rows(w, engine.living_rows(w.index)) for w in self.simulation.worlds))
-
-    def frame(self) -> None:
-        """Writes every agent and food of every living world as they are now."""
-        for world in self.simulation.worlds:
-            if not world.extinct:
-                for rows in frame_rows(world):
-                    self.writer.append("frames", rows)
-
-    def moment(self, step: int, steps: int, seconds: float) -> Moment:
-        extinct = tuple(world.extinct_step for world in self.simulation.worlds)
-        return Moment(step, steps, seconds, tuple(self.rows), extinct)
-
-
-def snapshot(world: World) -> Snapshot:
-    """A world as it is now, for a picture."""
-    lives, foods, config = world.agents(), world.foods(), world.config
-    return Snapshot(
-        world=world.index,
-        seed=world.seed,
-        step=world.step,
-        **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy")},
-        rays=world.rays(),
-        food_kind=foods["kind"],
-        food_x=foods["x"],
-        food_y=foods["y"],
-        walls=walls(config.arena),
-        food_kinds=tuple(config.food),
-        radius=config.body.radius,
-        food_radius=config.body.food_radius,
-        ray_length=config.sensor.ray_length,
-        ray_spread=config.sensor.ray_spread,
-        mouth_spread=config.sensor.mouth_spread,
-        energy_capacity=config.energy.capacity,
-    )
-
-
-def _first_manifest(plan: RunPlan, simulation: Simulation) -> Manifest:
-    config = plan.config
-    return Manifest(
-        food_kinds=tuple(config.food),
-        neutral_count=config.genome.neutral_count,
-        seeds=plan.seeds,
-        steps_asked=plan.steps,
-        preset=config.preset,
-        fidelity=config.fidelity,
-        name=config.name,
-        modified=is_modified(config),
-        config_digest=digest(config),
-        kernel=simulation.engine.kernel,
-        threads=simulation.engine.threads,
-        steps_done=tuple(0 for _ in plan.seeds),
-        extinct_steps=tuple(None for _ in plan.seeds),
-        food_colors=tuple(food.color for food in config.food.values()),
-        **collect_provenance(),
-    )
-
-
-def _last_manifest(manifest: Manifest, simulation: Simulation, status: str, seconds: float) -> Manifest:
-    return replace(
-        manifest,
-        status=status,
-        ended=utc_now(),
-        steps_done=tuple(world.step for world in simulation.worlds),
-        extinct_steps=tuple(world.extinct_step for world in simulation.worlds),
-        run_seconds=seconds,
-    )
-
-
-@dataclass(slots=True)
-class _Interrupts:
-    count: int = 0
-
-
-@contextmanager
-def _interrupts() -> Iterator[_Interrupts]:
-    """Counts Ctrl-C instead of raising at an arbitrary place; the loop looks at the count."""
-    seen = _Interrupts()
-
-    def note(number: int, frame: Any) -> None:
-        seen.count += 1
-
-    try:
-        previous = signal.signal(signal.SIGINT, note)
-    except ValueError:  # not in the main thread, where Python handles no signals
-        yield seen
-        return
-    try:
-        yield seen
-    finally:
-        signal.signal(signal.SIGINT, previous)
-
-
-def default_folder(config: Config, seeds: Sequence[int]) -> Path:
-    """A folder of its own for a run that names none: runs/NAME-FIDELITY-sSEEDS, with a number where it is taken."""
-    if len(seeds) == 1:
-        span = f"s{seeds[0]}"
-    elif tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
-        span = f"s{seeds[0]}-{seeds[-1]}"
-    else:
-        span = f"{len(seeds)}seeds"
-    stem = "-".join((config.name, config.fidelity, span))
-    folder, number = Path("runs") / stem, 2
-    while folder.exists():
-        folder, number = Path("runs") / f"{stem}-run{number}", number + 1
-    return folder

@@ -1,12 +1,15 @@
-"""From a world to rows of the records."""
+"""From a world to rows of the records, and to the picture of its end."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hedon.config.arena import walls
 from hedon.experiment.simulation import World
+from hedon.record.checkpoint import Sampled
 from hedon.record.schema import weight_names
+from hedon.record.snapshot import Snapshot
 
 Rows = dict[str, Any]
 
@@ -42,28 +45,35 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
 
 
 class PopulationSampler:
-    """Rows of the table `population` of one world: its state now, and what was counted since the last row."""
+    """Rows of the table `population` of one world: its state now, and what was counted since the last row.
 
-    def __init__(self, world: World) -> None:
+    Args:
+        world: Whose rows.
+        since: What the next row counts from; None for the world as it is now.
+    """
+
+    def __init__(self, world: World, since: Sampled | None = None) -> None:
         self.world = world
-        self._step = world.step
-        self._counted = world.counters
-        self._eaten = self._eaten_now()
+        self.since = since or self._now()
 
-    def sample(self) -> Rows:
-        """One row, for the interval since the last one."""
-        world = self.world
+    def advance(self) -> None:
+        """Lets the next row count from now on."""
+        self.since = self._now()
+
+    def row(self) -> Rows:
+        """The row of the interval that ends now."""
+        world, since = self.world, self.since
         lives = world.agents()
-        counters, eaten = world.counters, self._eaten_now()
+        now = self._now()
         present = world.view("food_stock.present")
         row: Rows = {
             "world": world.index,
             "seed": world.seed,
             "step": world.step,
-            "steps": world.step - self._step,
+            "steps": world.step - since.step,
         }
         row["alive"] = world.alive
-        row |= {name: counters[name] - self._counted[name] for name in (*COUNTED, *LEDGER)}
+        row |= {name: now.counters[name] - since.counters[name] for name in (*COUNTED, *LEDGER)}
         row |= _spread("energy", lives["energy"]) | _spread("age", lives["age"])
         generation = lives["generation"]
         row["generation_mean"] = generation.mean() if len(generation) else np.nan
@@ -74,13 +84,13 @@ class PopulationSampler:
             row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
         for k, kind in enumerate(world.config.food):
             row[f"food_{kind}"] = int(present[k])
-            row[f"eaten_{kind}"] = int(eaten[k] - self._eaten[k])
+            row[f"eaten_{kind}"] = now.eaten[k] - since.eaten[k]
         row["energy_total"] = lives["energy"].sum()
-        self._step, self._counted, self._eaten = world.step, counters, eaten
         return row
 
-    def _eaten_now(self) -> NDArray[np.int64]:
-        return self.world.view("food_stock.eaten").copy()
+    def _now(self) -> Sampled:
+        world = self.world
+        return Sampled(world.step, world.counters, tuple(world.view("food_stock.eaten").tolist()))
 
 
 def frame_rows(world: World) -> list[Rows]:
@@ -93,6 +103,29 @@ def frame_rows(world: World) -> list[Rows]:
         mine = foods["kind"] == k
         rows.append({**here, "kind": kind, "x": foods["x"][mine], "y": foods["y"][mine]})
     return rows
+
+
+def snapshot(world: World) -> Snapshot:
+    """A world as it is now, for a picture."""
+    lives, foods, config = world.agents(), world.foods(), world.config
+    return Snapshot(
+        world=world.index,
+        seed=world.seed,
+        step=world.step,
+        **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy")},
+        rays=world.rays(),
+        food_kind=foods["kind"],
+        food_x=foods["x"],
+        food_y=foods["y"],
+        walls=walls(config.arena),
+        food_kinds=tuple(config.food),
+        radius=config.body.radius,
+        food_radius=config.body.food_radius,
+        ray_length=config.sensor.ray_length,
+        ray_spread=config.sensor.ray_spread,
+        mouth_spread=config.sensor.mouth_spread,
+        energy_capacity=config.energy.capacity,
+    )
 
 
 def _genes(world: World) -> tuple[str, ...]:

@@ -8,12 +8,25 @@ SNAPSHOT = "final.npz"
 SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
+CHECKPOINTS = "checkpoints"
+LOCK = ".lock"
+CHECKPOINT_SECONDS = 180.0
+"""Time after which a run keeps a checkpoint, unless told otherwise [s]."""
 TABLE_FOLDERS = ("agents", "population", "frames")
 
 
 def holds_run(folder: Path) -> bool:
-    """Whether a folder holds a run, or the beginning of one."""
-    return any((folder / name).exists() for name in (CONFIG, MANIFEST, *TABLE_FOLDERS))
+    """Whether a folder holds a run.
+
+    The manifest comes last when a run begins: without one, empty tables are what a run left that was killed before it
+    began, and hold nothing.
+    """
+    if (folder / MANIFEST).exists():
+        return True
+    tables = [folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS) if (folder / name).exists()]
+    begun = all((folder / name).is_dir() for name in TABLE_FOLDERS)
+    kept = any(not path.is_dir() or any(path.iterdir()) for path in tables)
+    return kept or ((folder / CONFIG).exists() and not begun)
 
 
 def part_path(folder: Path, table: str, index: int) -> Path:
@@ -24,3 +37,13 @@ def part_path(folder: Path, table: str, index: int) -> Path:
 def part_paths(folder: Path, table: str) -> list[Path]:
     """The finished parts of a table, in the order in which they were written."""
     return sorted((folder / table).glob("part-*.parquet"))
+
+
+def checkpoint_path(folder: Path, step: int) -> Path:
+    """The path of the checkpoint that was taken after so many steps."""
+    return folder / CHECKPOINTS / f"step-{step:010d}.npz"
+
+
+def checkpoint_paths(folder: Path) -> list[Path]:
+    """The checkpoints of a run, by step."""
+    return sorted((folder / CHECKPOINTS).glob("step-??????????.npz"))

@@ -14,6 +14,44 @@ STATUSES = ("running", "finished", "interrupted", "failed")
 
 
 @dataclass(frozen=True)
+class Session:
+    """One time that a run was worked on; a run that is resumed has several.
+
+    Attributes:
+        started, ended: ISO 8601, UTC; `ended` is None where the session goes on, or was killed.
+        from_step: step that it began at [step].
+        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, of this session.
+    """
+
+    started: str | None
+    from_step: int
+    threads: int | None = None
+    kernel: str | None = None
+    hedon_version: str | None = None
+    git_revision: str | None = None
+    command_line: tuple[str, ...] = ()
+    ended: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "command_line", tuple(self.command_line))
+
+
+@dataclass(frozen=True)
+class Parent:
+    """What a branch branched off from.
+
+    Attributes:
+        folder: name of the parent's folder.
+        config_digest: digest of the parent's config.
+        step: of the checkpoint that the branch went on from [step].
+    """
+
+    folder: str
+    config_digest: str
+    step: int
+
+
+@dataclass(frozen=True)
 class Manifest:
     """The manifest of a run. Update it with `dataclasses.replace`.
 
@@ -31,12 +69,18 @@ class Manifest:
         threads: threads that the engine used.
         hedon_version, python, platform, cpu_count, git_revision, git_modified, command_line: the
             provenance; the revision is that of hedon's source checkout, None for an installed package.
-        started, ended: ISO 8601, UTC; `ended` is None while the run goes on.
+        started, ended: ISO 8601, UTC, of the first start and the last end; `ended` is None while the run goes on.
         status: one of `STATUSES`.
         steps_done: steps made, per world [step].
         extinct_steps: per world the step at which nobody was left, or None.
-        run_seconds: time spent in stepping, for steps per second; None where it was not measured [s].
+        run_seconds: time spent in stepping, for steps per second; None where it was not measured [s]. What was
+            taken back when the run was resumed does not count.
         food_colors: color per food kind for figures, as Matplotlib reads it; empty for the default colors.
+        frames: steps between two frames; 0 where none were asked for [step].
+        sessions: one for each time that the run was started or resumed.
+        parent: of a branch, the run that it branched off from; its folder, config_digest and step.
+        world_digests: per world the digest of its last state, as `World.digest()` gives it; empty until the end.
+        records_digest: digest of all rows of all tables, whatever parts they stand in; None until the end.
         format_version: of the run folder.
     """
 
@@ -65,6 +109,11 @@ class Manifest:
     extinct_steps: tuple[int | None, ...] = ()
     run_seconds: float | None = None
     food_colors: tuple[str, ...] = ()
+    frames: int = 0
+    sessions: tuple[Session, ...] = ()
+    parent: Parent | None = None
+    world_digests: tuple[str, ...] = ()
+    records_digest: str | None = None
     format_version: int = FORMAT_VERSION
 
     def __post_init__(self) -> None:
@@ -104,6 +153,8 @@ def load_manifest(folder: Path) -> Manifest:
                 f"{path}: format {version} is newer than this hedon reads ({FORMAT_VERSION}): update hedon"
             )
         known = {field.name for field in fields(Manifest)}
+        values["sessions"] = tuple(Session(**session) for session in values.get("sessions", ()))
+        values["parent"] = Parent(**values["parent"]) if values.get("parent") else None
         return Manifest(**{name: value for name, value in values.items() if name in known})
     except OSError as error:
         raise RecordError(f"cannot read the manifest {path}: {error}") from error

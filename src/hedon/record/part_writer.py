@@ -1,5 +1,8 @@
 """Gathers rows in memory and writes them as Parquet parts. It knows no thread: `writer` runs it in one."""
 
+import hashlib
+import io
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import monotonic
 
@@ -20,16 +23,27 @@ class PartWriter:
     Attributes:
         flush_seconds: the shortest time between two flushes, but for full parts [s].
         part_rows: rows of one table that are written as a part without waiting for the time.
+        parts: SHA-256 of each part on disk, in order, by table.
+
+    Args:
+        parts: those that are there already, where a run goes on.
     """
 
-    def __init__(self, folder: Path, tables: dict[str, Table], part_rows: int, flush_seconds: float) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        tables: dict[str, Table],
+        part_rows: int,
+        flush_seconds: float,
+        parts: Mapping[str, Sequence[str]] | None = None,
+    ) -> None:
         self.folder = folder
         self.tables = tables
         self.part_rows = part_rows
         self.flush_seconds = flush_seconds
         self._waiting: dict[str, list[pl.DataFrame]] = {name: [] for name in tables}
         self._rows = dict.fromkeys(tables, 0)
-        self._parts = dict.fromkeys(tables, 0)
+        self.parts = {name: list((parts or {}).get(name, ())) for name in tables}
         self._living: pl.DataFrame | None = None
         self._started = self._flushed = monotonic()
 
@@ -62,9 +76,10 @@ class PartWriter:
     def _write_part(self, table: str) -> None:
         if self._rows[table] == 0:
             return
-        rows = pl.concat(self._waiting[table])
-        path = part_path(self.folder, table, self._parts[table])
-        write_atomically(path, lambda file: rows.write_parquet(file, compression="zstd"))
-        self._parts[table] += 1
+        data = io.BytesIO()
+        pl.concat(self._waiting[table]).write_parquet(data, compression="zstd")
+        path = part_path(self.folder, table, len(self.parts[table]))
+        write_atomically(path, lambda file: file.write(data.getbuffer()))
+        self.parts[table].append(hashlib.sha256(data.getbuffer()).hexdigest())
         self._waiting[table].clear()
         self._rows[table] = 0

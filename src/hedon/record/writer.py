@@ -1,15 +1,19 @@
 """Writes a run's folder while the engine computes on: rows go through a bounded queue to a thread."""
 
 import queue
+import shlex
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import polars as pl
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hedon.record.atomic import write_atomically
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, holds_run
 from hedon.record.manifest import Manifest, save_manifest
@@ -31,13 +35,14 @@ class Writer:
     no row is ever dropped.
 
     Args:
-        folder: made where it does not exist; must not hold a run already.
-        config_text: the complete config, as TOML.
+        folder: made where it does not exist; must not hold a run already, unless `parts` says that one goes on.
+        config_text: the complete config, as TOML; where a run goes on, it stands there already.
         manifest: its food kinds and its number of neutral markers fix the columns.
         part_rows: rows after which a part is written at once.
         flush_seconds: rows are on disk after this time at the latest [s]; after 200 times it, the wait
             grows with the age of the run (0.5 %), so that a long run does not leave thousands of small parts.
         queue_size: calls that may wait for the thread.
+        parts: for a run that goes on: the SHA-256 of each part that it has, in order, by table.
 
     Raises:
         RecordError: the folder holds a run already, or cannot be written.
@@ -52,13 +57,18 @@ class Writer:
         part_rows: int = 20_000,
         flush_seconds: float = 30.0,
         queue_size: int = 64,
+        parts: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
         self.folder = Path(folder)
         self.tables = run_tables(manifest.food_kinds, manifest.neutral_count)
-        self._prepare(config_text, manifest)
-        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds)
+        if parts is None:
+            self._prepare(config_text, manifest)
+        else:
+            save_manifest(self.folder, manifest)
+        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds, parts)
         self._queue: queue.Queue = queue.Queue(queue_size)
         self._fault: Exception | None = None
+        self._saving = threading.Event()
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="hedon-record", daemon=True)
         self._thread.start()
@@ -90,6 +100,20 @@ class Writer:
         table = self.tables["agents"]
         frames = [rows_to_frame(table, each) for each in rows]
         self._put(("living", pl.concat([pl.DataFrame(schema=table.polars_schema), *frames])))
+
+    def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Keeps a checkpoint, once all rows given so far are on disk; its head is completed by their parts.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        self._saving.set()
+        self._put(Checkpoint(head, dict(arrays)))
+
+    @property
+    def saving(self) -> bool:
+        """Whether a checkpoint still waits to be on disk. One holds as much memory as its worlds' networks."""
+        return self._saving.is_set()
 
     def save_manifest(self, manifest: Manifest) -> None:
         """Replaces the manifest, at once.
@@ -137,10 +161,13 @@ class Writer:
 
     def _prepare(self, config_text: str, manifest: Manifest) -> None:
         if holds_run(self.folder):
-            raise RecordError(f"{self.folder} holds a run already: choose another folder, or remove it first")
+            raise RecordError(
+                f"{self.folder} holds a run already: go on with it by `hedon resume {shlex.quote(str(self.folder))}`, "
+                "choose another folder, or remove it first"
+            )
         try:
             for table in self.tables:
-                (self.folder / table).mkdir(parents=True)
+                (self.folder / table).mkdir(parents=True, exist_ok=True)
             write_atomically(self.folder / CONFIG, lambda file: file.write(config_text.encode()))
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {self.folder}: {error}") from error
@@ -155,7 +182,8 @@ class Writer:
     def _raise_fault(self) -> None:
         if self._fault is not None:
             raise RecordError(
-                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable"
+                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable, and "
+                f"when the cause is gone, the run goes on by: hedon resume {shlex.quote(str(self.folder))}"
             ) from self._fault
 
     def _work(self) -> None:
@@ -181,6 +209,11 @@ class Writer:
                 self._parts.replace_living(rows)
             else:
                 self._parts.append(table, rows)
+        if isinstance(item, Checkpoint):
+            self._parts.flush()
+            parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
+            save_checkpoint(self.folder, Checkpoint(replace(item.head, parts=parts), item.arrays))
+            self._saving.clear()
         urgent = item is _CLOSE or isinstance(item, threading.Event)
         if urgent or self._parts.seconds_to_flush() <= 0:
             self._parts.flush()

@@ -1,0 +1,138 @@
+#include "simulation/checkpoint.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "simulation/saved.h"
+#include "simulation/simulation.h"
+
+namespace hedon {
+namespace {
+
+Extent extent_of(const World& world) {
+  const WorldState& state = world.state;
+  const Clock& clock = world.clock();
+  Extent extent{};
+  extent.slots.assign(state.living.data, state.living.data + clock.living_count);
+  for (int32_t f = 0; f < world.shape->foods; ++f) {
+    if (state.physics.circles.present[f]) extent.foods.push_back(f);
+  }
+  extent.filled = clock.step % world.shape->steps;
+  const int64_t window_start = clock.step - extent.filled;
+  for (const int32_t slot : extent.slots) extent.learners += state.life[slot].birth_step <= window_start;
+  return extent;
+}
+
+template <class T>
+SavedArray save_list(const std::string& name, const std::vector<T>& values, std::vector<int64_t> shape) {
+  SavedArray array = make_saved<T>(name, std::move(shape));
+  if (!values.empty()) memcpy(array.bytes.data(), values.data(), array.bytes.size());
+  return array;
+}
+
+struct PairImpulse {
+  int32_t first, second;
+  float normal, tangent;
+
+  bool operator<(const PairImpulse& other) const {
+    return first != other.first ? first < other.first : second < other.second;
+  }
+};
+
+/// Adds who pushes whom, and how hard, sorted by the ranks of those who push. Pairs without impulse are as good as
+/// none. find(second, &other) gives the name of a pair's second, or false where it is gone.
+template <class Find>
+void save_pairs(const World& world, const std::vector<int32_t>& rank, const PairList& list, int kind, Find&& find,
+                Checkpoint& out) {
+  const NeighborList& neighbors = world.state.physics.neighbors;
+  std::vector<PairImpulse> pairs;
+  const int32_t count = list.start[neighbors.head[0].bodies];
+  for (int32_t pair = 0; pair < count; ++pair) {
+    PairImpulse found{rank[static_cast<size_t>(neighbors.slot[list.first[pair]])], 0, list.normal_impulse[pair],
+                      list.tangent_impulse[pair]};
+    const float zero[2] = {};
+    // Bits are compared, since a negative zero is not the zero that a new pair begins with.
+    if (found.first < 0 || memcmp(&found.normal, zero, sizeof zero) == 0 || !find(list.second[pair], &found.second))
+      continue;
+    pairs.push_back(found);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<int32_t> who;
+  std::vector<float> impulse;
+  for (const PairImpulse& pair : pairs) {
+    who.insert(who.end(), {pair.first, pair.second});
+    impulse.insert(impulse.end(), {pair.normal, pair.tangent});
+  }
+  const int64_t rows = static_cast<int64_t>(pairs.size());
+  out.push_back(save_list(PAIR_NAMES[kind], who, {rows, 2}));
+  out.push_back(save_list(IMPULSE_NAMES[kind], impulse, {rows, 2}));
+}
+
+/// The place of each slot in the living order; -1 for the dead, and for newborns, whom no list knows yet.
+std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
+  std::vector<int32_t> rank(static_cast<size_t>(world.shape->slots), -1);
+  for (size_t i = 0; i < extent.slots.size(); ++i) {
+    const int32_t slot = extent.slots[i];
+    if (world.state.life[slot].birth_step < world.clock().step)
+      rank[static_cast<size_t>(slot)] = static_cast<int32_t>(i);
+  }
+  return rank;
+}
+
+}  // namespace
+
+Checkpoint Simulation::save(int index) const {
+  const World& world = worlds_[static_cast<size_t>(index)];
+  const Extent extent = extent_of(world);
+  Checkpoint out;
+  for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
+    SavedArray array = make_saved<T>(name, rows.shape());
+    const size_t bytes = rows.row_bytes();
+    for (int64_t i = 0; i < rows.count; ++i)
+      memcpy(array.bytes.data() + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
+    out.push_back(std::move(array));
+  });
+  out.push_back(save_list("food.slot", extent.foods, {static_cast<int64_t>(extent.foods.size())}));
+
+  const NeighborList& list = world.state.physics.neighbors;
+  const std::vector<int32_t> rank = listed_ranks(world, extent);
+  const auto body = [&](int32_t place, int32_t* other) {
+    *other = rank[static_cast<size_t>(list.slot[place])];
+    return *other >= 0;
+  };
+  const auto circle = [&](int32_t food, int32_t* other) {
+    *other = food;
+    return world.state.physics.circles.present[food] != 0;
+  };
+  const auto wall = [](int32_t segment, int32_t* other) {
+    *other = segment;
+    return true;
+  };
+  save_pairs(world, rank, list.bodies, 0, body, out);
+  save_pairs(world, rank, list.circles, 1, circle, out);
+  save_pairs(world, rank, list.walls, 2, wall, out);
+  return out;
+}
+
+uint64_t Simulation::digest(int index) const { return digest_checkpoint(save(index)); }
+
+uint64_t digest_checkpoint(const Checkpoint& checkpoint) {
+  // Multiply and shift, eight bytes at a time: it has to tell states apart, not to resist an attacker.
+  uint64_t hash = 0x9E3779B97F4A7C15u;
+  const auto mix = [&hash](uint64_t word) {
+    hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
+    hash ^= hash >> 32;
+  };
+  for (const SavedArray& array : checkpoint) {
+    const size_t bytes = array.bytes.size();
+    mix(bytes);
+    for (size_t at = 0; at < bytes; at += 8) {
+      uint64_t word = 0;
+      memcpy(&word, array.bytes.data() + at, bytes - at < 8 ? bytes - at : 8);
+      mix(word);
+    }
+  }
+  return hash;
+}
+
+}  // namespace hedon

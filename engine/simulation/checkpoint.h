@@ -1,0 +1,31 @@
+/// A world as named arrays of plain numbers: everything that decides its future, and nothing else.
+///
+/// Agents stand in the order of their ids, so that nothing in a checkpoint tells in which slots they lived. What can be
+/// worked out again is left out: grids, the neighbor list (its impulses go along), folded biases, rollouts of agents
+/// that will not learn from them. Hence two worlds with equal checkpoints have equal futures, bit for bit, and a digest
+/// of the checkpoint is the digest of the world.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hedon {
+
+enum class NumberKind : int32_t { integer, natural, real };  ///< signed, unsigned, floating
+
+/// One array of a checkpoint, in C order.
+struct SavedArray {
+  std::string name;
+  NumberKind kind;
+  int32_t size;  ///< bytes of one number
+  std::vector<int64_t> shape;
+  std::vector<char> bytes;
+};
+
+using Checkpoint = std::vector<SavedArray>;
+
+/// A hash of all that a checkpoint holds.
+uint64_t digest_checkpoint(const Checkpoint& checkpoint);
+
+}  // namespace hedon

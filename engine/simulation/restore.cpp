@@ -1,0 +1,284 @@
+/// From a checkpoint back to a world. A checkpoint may come from anywhere: all that a step relies upon is checked
+/// before the world is touched.
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "simulation/saved.h"
+#include "simulation/simulation.h"
+
+namespace hedon {
+namespace {
+
+/// What a checkpoint's numbers may be. Reads arrays by name; keeps the first complaint.
+class Inspector {
+ public:
+  Inspector(const World& world, const Checkpoint& checkpoint) : world_(world), checkpoint_(checkpoint) {}
+
+  std::string complaint;
+
+  const SavedArray* find(const std::string& name) const {
+    for (const SavedArray& array : checkpoint_) {
+      if (array.name == name) return &array;
+    }
+    return nullptr;
+  }
+
+  /// The numbers of an array whose type and shape have been checked.
+  template <class T>
+  std::vector<T> numbers(const std::string& name) const {
+    const SavedArray& array = *find(name);
+    std::vector<T> values(array.bytes.size() / sizeof(T));
+    if (!values.empty()) memcpy(values.data(), array.bytes.data(), array.bytes.size());
+    return values;
+  }
+
+  bool refuse(const std::string& text) {
+    if (complaint.empty()) complaint = text;
+    return false;
+  }
+
+  /// Whether an array is there, of the type and, unless -1, of the lengths that this config gives it.
+  template <class T>
+  bool has(const std::string& name, const std::vector<int64_t>& shape) {
+    const SavedArray* array = find(name);
+    if (array == nullptr) return refuse(name + " is missing");
+    const SavedArray wanted = make_saved<T>(name, {0});
+    if (array->kind != wanted.kind || array->size != wanted.size) return refuse(name + " has numbers of another type");
+    bool same = array->shape.size() == shape.size();
+    for (size_t d = 0; same && d < shape.size(); ++d) same = shape[d] == -1 || shape[d] == array->shape[d];
+    if (!same) return refuse(name + " has shape " + text(array->shape) + ", here it is " + text(shape));
+    return true;
+  }
+
+  /// Whether all numbers of an array lie within bounds; what is not a number does not.
+  template <class T>
+  bool within(const std::string& name, double low, double high) {
+    for (const T value : numbers<T>(name)) {
+      const double number = static_cast<double>(value);
+      if (!(number >= low && number <= high)) {
+        return refuse(name + " holds " + std::to_string(number) + ", allowed is " + std::to_string(low) + " to " +
+                      std::to_string(high));
+      }
+    }
+    return true;
+  }
+
+  const World& world_;
+
+ private:
+  static std::string text(const std::vector<int64_t>& shape) {
+    std::string out = "(";
+    for (const int64_t length : shape)
+      out += (out.size() > 1 ? ", " : "") + (length < 0 ? "n" : std::to_string(length));
+    return out + ")";
+  }
+
+  const Checkpoint& checkpoint_;
+};
+
+template <class T>
+bool rises(const std::vector<T>& values, bool strictly) {
+  for (size_t i = 1; i < values.size(); ++i) {
+    if (values[i] < values[i - 1] || (strictly && values[i] == values[i - 1])) return false;
+  }
+  return true;
+}
+
+/// Reads how many rows the arrays have. Slots are those that the world will give to the living.
+bool read_extent(Inspector& in, Extent& extent) {
+  const WorldShape& shape = *in.world_.shape;
+  if (!in.has<int64_t>("clock.step", {1}) || !in.has<int32_t>("clock.living_count", {1}) ||
+      !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("clock.step", 0, UINT32_MAX) ||
+      !in.within<int32_t>("clock.living_count", 0, shape.slots) ||
+      !in.within<int32_t>("food.slot", 0, shape.foods - 1) ||
+      !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("clock.living_count")[0]})) {
+    return false;
+  }
+  extent.foods = in.numbers<int32_t>("food.slot");
+  if (!rises(extent.foods, true)) return in.refuse("food.slot is out of order");
+  const int64_t step = in.numbers<int64_t>("clock.step")[0];
+  extent.filled = step % shape.steps;
+  const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
+  if (!rises(births, false)) return in.refuse("life.birth_step is out of order");
+  if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
+  for (const int64_t birth : births) extent.learners += birth <= step - extent.filled;
+  extent.slots.resize(births.size());
+  return true;
+}
+
+/// Every array there, none besides, all numbers finite.
+bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpoint) {
+  size_t known = 1;
+  bool good = true;
+  for_each_saved(in.world_, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
+    ++known;
+    good = good && in.has<T>(name, rows.shape());
+    if constexpr (std::is_floating_point_v<T>) {
+      const double largest = static_cast<double>(std::numeric_limits<T>::max());
+      good = good && in.within<T>(name, -largest, largest);
+    }
+  });
+  for (int kind = 0; kind < 3; ++kind, known += 2) {
+    good = good && in.has<int32_t>(PAIR_NAMES[kind], {-1, 2});
+    good = good && in.has<float>(IMPULSE_NAMES[kind], {in.find(PAIR_NAMES[kind])->shape[0], 2});
+  }
+  if (good && checkpoint.size() != known) return in.refuse("an array is there that no world has, or one twice");
+  return good;
+}
+
+bool check_life(Inspector& in) {
+  const WorldShape& shape = *in.world_.shape;
+  const WorldConfig& config = *in.world_.config;
+  const double step = static_cast<double>(in.numbers<int64_t>("clock.step")[0]);
+  const std::vector<int32_t> ids = in.numbers<int32_t>("life.agent_id");
+  const double nobody = ids.empty() ? 1 : 0;
+  const double last_id = ids.empty() ? 0 : ids.back();
+  constexpr double MOST = INT32_MAX - 1.0;
+  const bool touches_all = shape.network.observation.touches >= 64;
+  const double most_touch = touches_all ? 0x1p64 : ldexp(1.0, shape.network.observation.touches) - 1.0;
+  constexpr double LARGEST = std::numeric_limits<float>::max();
+  const double turn = static_cast<double>(TWO_PI_F);
+  if (!rises(ids, true)) return in.refuse("life.agent_id is out of order");
+  const std::vector<int32_t> parents = in.numbers<int32_t>("life.parent_id");
+  const std::vector<int32_t> generations = in.numbers<int32_t>("life.generation");
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (parents[i] >= ids[i]) return in.refuse("life.parent_id names an agent that is younger than its child");
+    if (generations[i] > ids[i]) return in.refuse("life.generation counts more ancestors than there were agents");
+  }
+  return in.within<int64_t>("clock.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
+         in.within<int32_t>("clock.next_agent_id", last_id + 1.0 - nobody, MOST) &&
+         in.within<int32_t>("clock.births_in_window", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
+         in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
+         in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
+         in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
+         in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
+         in.within<uint64_t>("touch", 0, most_touch) && in.within<float>("body.x", 0, config.arena.width) &&
+         in.within<float>("body.y", 0, config.arena.height) && in.within<float>("body.angle", -turn, turn);
+}
+
+bool check_food(Inspector& in, const Extent& extent) {
+  const World& world = in.world_;
+  const std::vector<double> number = in.numbers<double>("food_stock.number");
+  const std::vector<int32_t> present = in.numbers<int32_t>("food_stock.present");
+  const std::vector<int32_t> center = in.numbers<int32_t>("food_stock.center");
+  for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    const size_t at = static_cast<size_t>(k);
+    int32_t count = 0;
+    for (const int32_t f : extent.foods)
+      count += f >= world.shape->food_offset[k] && f < world.shape->food_offset[k + 1];
+    const FoodConfig& config = world.config->food[k];
+    const int32_t centers = config.placement.centers.count > 0 ? config.placement.centers.count : 1;
+    if (present[at] != count) return in.refuse("food_stock.present differs from the foods that are there");
+    if (fabs(number[at]) > config.capacity) return in.refuse("food_stock.number is beyond the capacity");
+    if (center[at] < 0 || center[at] >= centers) return in.refuse("food_stock.center names a center that is not there");
+  }
+  return in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
+         in.within<float>("food.x", 0, world.config->arena.width) &&
+         in.within<float>("food.y", 0, world.config->arena.height);
+}
+
+/// What networks look rows up by: channels of rays, and bits of touch.
+bool check_observations(Inspector& in, const Extent& extent) {
+  if (extent.filled == 0) return true;
+  const WorldShape& shape = *in.world_.shape;
+  const ObservationShape& sizes = shape.network.observation;
+  const uint64_t beyond = sizes.touches >= 64 ? 0 : ~uint64_t{0} << sizes.touches;
+  const std::vector<uint8_t> bytes = in.numbers<uint8_t>("observation");
+  for (size_t at = 0; at < bytes.size(); at += sizeof(PackedObservation)) {
+    PackedObservation one;
+    memcpy(&one, &bytes[at], sizeof one);
+    bool good = (one.touch & beyond) == 0;
+    for (int r = 0; r < PACKED_RAYS; ++r) good = good && one.ray_type[r] < sizes.types && std::isfinite(one.ray[r]);
+    for (const float value : one.dense) good = good && std::isfinite(value);
+    if (!good) return in.refuse("observation holds what no agent can see");
+  }
+  return true;
+}
+
+bool check_pairs(Inspector& in, const Extent& extent) {
+  const NeighborList& list = in.world_.state.physics.neighbors;
+  const PairList* lists[] = {&list.bodies, &list.circles, &list.walls};
+  const int32_t living = static_cast<int32_t>(extent.slots.size());
+  const int32_t others[] = {living, in.world_.shape->foods, in.world_.shape->walls};
+  for (int kind = 0; kind < 3; ++kind) {
+    const std::vector<int32_t> who = in.numbers<int32_t>(PAIR_NAMES[kind]);
+    const std::vector<float> impulse = in.numbers<float>(IMPULSE_NAMES[kind]);
+    int64_t before = -1;
+    for (size_t i = 0; i < who.size(); i += 2) {
+      const int32_t first = who[i], second = who[i + 1];
+      const int64_t key = int64_t{first} << 32 | second;
+      const bool good = first >= 0 && first < living && second >= 0 && second < others[kind] &&
+                        (kind > 0 || first < second) && key > before && impulse[i] >= 0.0f &&
+                        std::isfinite(impulse[i]) && std::isfinite(impulse[i + 1]);
+      if (!good) return in.refuse(std::string(PAIR_NAMES[kind]) + " holds a pair that cannot be");
+      before = key;
+    }
+    if (static_cast<int64_t>(who.size() / 2) > lists[kind]->first.count)
+      return in.refuse(std::string(PAIR_NAMES[kind]) + " holds more pairs than the neighbor list");
+  }
+  return true;
+}
+
+/// Lists the pairs with impulses, bodies in the order of their ids: the next step builds its own list from this.
+void restore_pairs(const Inspector& in, const World& world, const Extent& extent) {
+  const NeighborList& list = world.state.physics.neighbors;
+  NeighborHead& head = list.head[0];
+  head.bodies = static_cast<int32_t>(extent.slots.size());
+  for (int32_t place = 0; place < head.bodies; ++place) {
+    list.slot[place] = extent.slots[static_cast<size_t>(place)];
+    list.place[list.slot[place]] = place;
+  }
+  const PairList* lists[] = {&list.bodies, &list.circles, &list.walls};
+  for (int kind = 0; kind < 3; ++kind) {
+    const PairList& pairs = *lists[kind];
+    const std::vector<int32_t> who = in.numbers<int32_t>(PAIR_NAMES[kind]);
+    const std::vector<float> impulse = in.numbers<float>(IMPULSE_NAMES[kind]);
+    const int32_t count = static_cast<int32_t>(who.size() / 2);
+    for (int32_t pair = 0, place = 0; place <= head.bodies; ++place) {
+      while (pair < count && who[2 * static_cast<size_t>(pair)] < place) ++pair;
+      pairs.start[place] = pair;
+    }
+    for (int32_t pair = 0; pair < count; ++pair) {
+      const size_t at = 2 * static_cast<size_t>(pair);
+      pairs.first[pair] = who[at];
+      pairs.second[pair] = who[at + 1];
+      pairs.normal_impulse[pair] = impulse[at];
+      pairs.tangent_impulse[pair] = impulse[at + 1];
+    }
+  }
+}
+
+}  // namespace
+
+std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
+  World& target = world(index);
+  const WorldState& state = target.state;
+  Inspector in(target, checkpoint);
+  Extent extent{};
+  if (!read_extent(in, extent) || !check_arrays(in, extent, checkpoint) || !check_life(in) || !check_food(in, extent) ||
+      !check_observations(in, extent) || !check_pairs(in, extent)) {
+    return in.complaint;
+  }
+  empty(target);
+  Clock& clock = target.clock();
+  for (size_t i = 0; i < extent.slots.size(); ++i) {
+    const int32_t slot = state.free[--clock.free_count];
+    extent.slots[i] = slot;
+    state.living[static_cast<int64_t>(i)] = slot;
+    state.alive[slot] = 1;
+  }
+  for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
+    const char* from = in.find(name)->bytes.data();
+    for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
+  });
+  for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
+  for (const int32_t slot : extent.slots)
+    target.kernel->fold_bias(shape_.network, target.params(slot), target.folded_bias(slot));
+  restore_pairs(in, target, extent);
+  return "";
+}
+
+}  // namespace hedon

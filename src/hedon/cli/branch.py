@@ -1,0 +1,46 @@
+"""`hedon branch`: goes on from a run's checkpoint under changed rules."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hedon.cli.run import MAX_STEPS, Checkpoint, Threads, conduct
+from hedon.record.folder import CHECKPOINT_SECONDS
+
+
+def branch(
+    run: Annotated[Path, typer.Argument(help="Folder of the run to branch off from; it is only read.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the new run; by default one beside the old, named after the step.")
+    ] = None,
+    at: Annotated[
+        int | None, typer.Option(help="Step of a checkpoint that the run keeps; by default the newest.")
+    ] = None,
+    steps: Annotated[
+        int | None,
+        typer.Option(help="Steps of each world in all; by default those of the old run.", min=1, max=MAX_STEPS),
+    ] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
+    ] = None,
+    threads: Threads = 0,
+    frames: Annotated[
+        int | None, typer.Option(help="Keep positions each so many steps; by default as the old run.", min=0)
+    ] = None,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+) -> None:
+    """Go on from a checkpoint of a run under changed rules, as a new run.
+
+    Without --set it is the same life in a new folder. Settings that the saved worlds are laid out by (arena, senses,
+    kinds of food, window) cannot be changed.
+
+    \b
+    Examples:
+      hedon branch runs/baseline --steps 400000 --set food.normal.growth_rate=0.2
+      hedon branch runs/baseline --at 102400 --out runs/poorer --set energy.basic_cost=0.001
+    """
+    from hedon.experiment.branch import begin_branch, plan_branch
+
+    plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint)
+    conduct(plan.run, lambda display: begin_branch(plan, display), f" from step {plan.parent.step:,}")

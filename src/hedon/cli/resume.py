@@ -1,0 +1,38 @@
+"""`hedon resume`: goes on with a run."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hedon.cli.run import MAX_STEPS, Checkpoint, Threads, conduct
+from hedon.record.folder import CHECKPOINT_SECONDS
+
+
+def resume(
+    run: Annotated[Path, typer.Argument(help="Folder of a run that was interrupted, killed, or finished.")],
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            help="Steps of each world in all, as for `hedon run`; by default those asked for.", min=1, max=MAX_STEPS
+        ),
+    ] = None,
+    threads: Threads = 0,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+) -> None:
+    """Go on with a run, as if it had never stopped.
+
+    Continues from the newest checkpoint. What was recorded after it is taken back and made again, with the same
+    bits. A finished run is taken further with --steps.
+
+    \b
+    Examples:
+      hedon resume runs/baseline
+      hedon resume runs/baseline --steps 2048000
+    """
+    from hedon.experiment.resume import go_on, hold
+
+    with hold(run, steps, threads, checkpoint) as found:
+        for note in found.notes:
+            typer.echo(f"hedon: note: {note}", err=True)
+        conduct(found.plan, lambda display: go_on(found, display), f" from step {found.step:,}")

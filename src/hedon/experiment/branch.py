@@ -1,0 +1,143 @@
+"""Goes on from a checkpoint of a run under changed rules, as a new run that names its parent."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from hedon.config.config import Config
+from hedon.config.dump import diff, digest
+from hedon.config.load import load_config
+from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.interrupt import count_interrupts
+from hedon.experiment.plan import Display, RunPlan, free_folder
+from hedon.experiment.run import begin
+from hedon.experiment.session import first_manifest
+from hedon.experiment.simulation import Simulation
+from hedon.record.checkpoint import Checkpoint
+from hedon.record.error import RecordError
+from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
+from hedon.record.manifest import Manifest, Parent
+from hedon.record.reader import open_run
+from hedon.record.rollback import find_checkpoint
+
+SHAPE = (
+    "arena.",
+    "sensor.ray_count",
+    "sensor.touch_sectors",
+    "sensor.scaling",
+    "genome.neutral_count",
+    "learning.rollout_steps",
+)
+"""Settings, and sections, that the arrays of a world are laid out by; so are the kinds of food and their capacities."""
+
+
+@dataclass(frozen=True, slots=True)
+class BranchPlan:
+    """A branch that can begin.
+
+    Attributes:
+        run: What to run, with the steps in all.
+        parent: Where it branches off.
+        checkpoint: The worlds to go on with.
+        kernel: Instruction set to use.
+    """
+
+    run: RunPlan
+    parent: Parent
+    checkpoint: Checkpoint
+    kernel: str
+
+
+def plan_branch(
+    folder: Path,
+    out: Path | None = None,
+    overrides: Sequence[str] = (),
+    at: int | None = None,
+    steps: int | None = None,
+    threads: int = 0,
+    frames: int | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+) -> BranchPlan:
+    """Looks at a run and says how a branch of it would begin; changes nothing. Arguments and errors as of `branch`."""
+    old = open_run(folder).manifest
+    config = load_config(folder / CONFIG)
+    changed = load_config(folder / CONFIG, overrides=overrides)
+    checkpoint, _ = find_checkpoint(folder, at)
+    if checkpoint is None:
+        raise RecordError(f"{folder} keeps no checkpoint to branch off from")
+    name = f"the checkpoint of {folder}"
+    check_head(checkpoint.head, config, old.seeds, name)
+    _check_shape(config, changed)
+    step = checkpoint.head.step
+    total = old.steps_asked if steps is None else steps
+    if total <= step:
+        raise RecordError(
+            f"{name} is at step {step:,}: a branch needs more steps in all than that, and {total:,} were asked for; "
+            "say by --steps how many"
+        )
+    parent = Parent(folder.resolve().name, digest(config), step)
+    place = out or free_folder(folder.parent / f"{parent.folder}-branch{step}")
+    every = old.frames if frames is None else frames
+    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds)
+    return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
+
+
+def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
+    """Begins a branch that `plan_branch` has planned; see `branch`."""
+    with count_interrupts() as interrupted:
+        simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel)
+        start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}")
+        manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
+        return begin(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)
+
+
+def branch(
+    folder: Path,
+    out: Path | None = None,
+    overrides: Sequence[str] = (),
+    at: int | None = None,
+    steps: int | None = None,
+    threads: int = 0,
+    frames: int | None = None,
+    display: Display | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+) -> Manifest:
+    """Goes on from a checkpoint that a run has kept, in a new folder, with some settings changed.
+
+    The new run's tables begin at the checkpoint: `agents` has those who lived then or were born later, and the
+    first row of `population` counts from the last row before the checkpoint.
+
+    Args:
+        folder: Of the parent, which is only read.
+        out: Of the new run; must not hold a run already. None for one beside the parent.
+        overrides: Texts `path=value`, as of `--set`.
+        at: Step of the checkpoint; None for the newest one.
+        steps: Steps of each world in all, those before the checkpoint included; None for the parent's.
+        threads: Threads to use; 0 for all processors. Changes no result.
+        frames: Steps between two frames; None for the parent's.
+        display: Shows progress.
+        checkpoint_seconds: Time between two checkpoints [s].
+
+    Returns:
+        The manifest of the new run as it was saved at the end.
+
+    Raises:
+        RecordError: The checkpoint is not there or does not fit, or a changed setting would change the shape of a
+            world's arrays; the message names it.
+        ConfigError: An override is wrong.
+        EngineError: A world reports an error.
+    """
+    plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds)
+    return begin_branch(plan, display)
+
+
+def _check_shape(config: Config, changed: Config) -> None:
+    fixed = [
+        path
+        for path, _, _ in diff(config, changed)
+        if path.startswith(SHAPE) or path == "food" or (path.startswith("food.") and path.endswith(".capacity"))
+    ]
+    if fixed:
+        raise RecordError(
+            f"a branch cannot change {', '.join(fixed)}: the saved worlds are laid out by it; begin a new run instead"
+        )

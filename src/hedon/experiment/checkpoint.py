@@ -1,0 +1,91 @@
+"""From a checkpoint back to a simulation: whether it fits, and that it is the same world again."""
+
+import os
+from importlib.metadata import version
+
+from hedon import _engine
+from hedon.config.config import Config
+from hedon.config.dump import diff
+from hedon.config.load import parse_config
+from hedon.config.problem import format_value
+from hedon.experiment.recorder import Start
+from hedon.experiment.sample import PopulationSampler
+from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
+from hedon.record.checkpoint import Checkpoint, CheckpointHead
+from hedon.record.error import RecordError
+from hedon.record.folder import TABLE_FOLDERS
+
+SAME_BITS = (frozenset({"avx2", "avx512"}),)
+"""Instruction sets that compute the same bits, so that one goes on where the other stopped."""
+SHOWN = 5
+"""Differing settings that a message lists."""
+
+
+def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], name: str) -> None:
+    """Compares a checkpoint with what it is to go on as.
+
+    Raises:
+        RecordError: The version, a setting or the seeds differ; the message says which.
+    """
+    here = version("hedon")
+    if head.hedon_version != here:
+        raise RecordError(
+            f"{name} was made by hedon {head.hedon_version}, and this is {here}, which may compute other bits: "
+            f"install hedon {head.hedon_version} to go on with it"
+        )
+    settings = diff(parse_config(head.config, f"config in {name}"), config)
+    if settings:
+        lines = [f"{path} was {_text(old)}, now {_text(new)}" for path, old, new in settings]
+        more = f", and {len(lines) - SHOWN} more" if len(lines) > SHOWN else ""
+        raise RecordError(
+            f"{name} was made with another config: {'; '.join(lines[:SHOWN])}{more}; "
+            "put config.toml back, or change settings in a new folder by `hedon branch --set`"
+        )
+    if head.seeds != seeds:
+        raise RecordError(f"{name} is of seeds {_text(head.seeds)}, and the run of {_text(seeds)}")
+    worlds = (len(head.sampled), len(head.digests))
+    if worlds != (len(seeds), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
+        raise RecordError(f"{name} does not hold what it says: worlds or tables are missing")
+
+
+def same_kernel(kernel: str | None) -> str:
+    """The instruction set that goes on where `kernel` stopped: of those with the same bits the best here.
+
+    Raises:
+        RecordError: HEDON_KERNEL names one with other bits.
+    """
+    family = next((names for names in SAME_BITS if kernel in names), frozenset({kernel}))
+    asked = os.environ.get(KERNEL_VARIABLE, "")
+    if asked and kernel is not None and asked not in family:
+        raise RecordError(
+            f"the run was made with the instruction set {kernel}, and {KERNEL_VARIABLE} asks for {asked}, which "
+            f"computes other bits: unset {KERNEL_VARIABLE}"
+        )
+    known = [name for name in _engine.kernel.kernel_names() if name in family]
+    return asked or (known[0] if known else kernel or "")
+
+
+def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
+    """Puts the worlds of a checkpoint into a simulation, and makes sure that they are those that were saved.
+
+    Returns:
+        Where the simulation now is.
+
+    Raises:
+        RecordError: The arrays are not what the simulation can use; it is then of no more use.
+    """
+    head = checkpoint.head
+    for world, sampled, digest in zip(simulation.worlds, head.sampled, head.digests, strict=True):
+        try:
+            simulation.engine.restore(world.index, checkpoint.world(world.index))
+        except ValueError as error:
+            raise RecordError(f"{name} does not fit: world {world.index}: {error}") from None
+        now = PopulationSampler(world).since
+        same_names = (now.counters.keys(), len(now.eaten)) == (sampled.counters.keys(), len(sampled.eaten))
+        if world.digest() != digest or not same_names or not (world.extinct or world.step == head.step):
+            raise RecordError(f"{name} does not hold what it says: world {world.index} is not as it was saved")
+    return Start(head.step, head.run_seconds, head.sampled)
+
+
+def _text(value: object) -> str:
+    return "(absent)" if value is None else format_value(value)

@@ -1,0 +1,82 @@
+"""What a run is asked to do, where its records go, and what it tells while it goes on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from hedon.config.config import Config
+from hedon.experiment.sample import Rows
+from hedon.record.folder import CHECKPOINT_SECONDS
+
+
+@dataclass(frozen=True, slots=True)
+class RunPlan:
+    """What to run.
+
+    Attributes:
+        config: What the worlds are.
+        seeds: One world per seed.
+        steps: Steps of each world, in all.
+        out: The run's folder; must not hold a run already.
+        threads: Threads to use; 0 for all processors.
+        frames: Steps between two frames; 0 for none.
+        checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
+    """
+
+    config: Config
+    seeds: tuple[int, ...]
+    steps: int
+    out: Path
+    threads: int = 0
+    frames: int = 0
+    checkpoint_seconds: float = CHECKPOINT_SECONDS
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Where a run is: what a progress display shows.
+
+    Attributes:
+        first: Step at which this session began.
+        step: Steps completed.
+        steps: Steps asked for.
+        seconds: Time since the first step of this session [s].
+        rows: The last row of the table `population` of each world.
+        extinct: The step at which each world died out, or None.
+    """
+
+    first: int
+    step: int
+    steps: int
+    seconds: float
+    rows: tuple[Rows, ...]
+    extinct: tuple[int | None, ...]
+
+
+class Display(Protocol):
+    """Something that shows progress."""
+
+    def update(self, moment: Moment) -> None:
+        """Shows a moment; called about five times a second."""
+        ...
+
+
+def default_folder(config: Config, seeds: Sequence[int]) -> Path:
+    """A folder of its own for a run that names none: runs/NAME-FIDELITY-sSEEDS, with a number where it is taken."""
+    if len(seeds) == 1:
+        span = f"s{seeds[0]}"
+    elif tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
+        span = f"s{seeds[0]}-{seeds[-1]}"
+    else:
+        span = f"{len(seeds)}seeds"
+    stem = "-".join((config.name, config.fidelity, span))
+    return free_folder(Path("runs") / stem)
+
+
+def free_folder(path: Path) -> Path:
+    """A path that is not taken: this one, or with a number after it."""
+    folder, number = path, 2
+    while folder.exists():
+        folder, number = path.with_name(f"{path.name}-run{number}"), number + 1
+    return folder

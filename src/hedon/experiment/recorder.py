@@ -1,0 +1,112 @@
+"""Moves what the engine knows into the records: deaths, intervals, frames, the living, checkpoints."""
+
+import time
+from dataclasses import dataclass
+from importlib.metadata import version
+
+from hedon.config.dump import dump_toml
+from hedon.experiment.plan import Moment
+from hedon.experiment.sample import PopulationSampler, agent_rows, frame_rows
+from hedon.experiment.simulation import Simulation
+from hedon.record.checkpoint import CheckpointHead, Sampled
+from hedon.record.writer import Writer
+
+LIVING_SECONDS = 30.0
+"""Time after which the file of the living agents is replaced [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where a run begins: at nothing, or at a checkpoint.
+
+    Attributes:
+        step: Steps completed.
+        seconds: Time spent in stepping before [s].
+        sampled: What the next rows of the table `population` count from, one per world; none at a run's beginning.
+    """
+
+    step: int = 0
+    seconds: float = 0.0
+    sampled: tuple[Sampled, ...] = ()
+
+
+class Recorder:
+    """What a simulation has to tell, written at the right moments.
+
+    Args:
+        simulation: In the state of `start`.
+        writer: Where the rows go.
+        frames: Steps between two frames, for the checkpoints.
+        start: Where the run begins or goes on.
+    """
+
+    def __init__(self, simulation: Simulation, writer: Writer, frames: int, start: Start) -> None:
+        self.simulation = simulation
+        self.writer = writer
+        self.frames = frames
+        since = start.sampled or (None,) * len(simulation.worlds)
+        self.samplers = [PopulationSampler(world, at) for world, at in zip(simulation.worlds, since, strict=True)]
+        self.rows = [sampler.row() for sampler in self.samplers]
+        self.first = start.step
+        self.living_due = 0.0
+        self.shown = False
+
+    def deaths(self) -> None:
+        """Writes those who died since the last call. The engine has room for some, so this is done in every piece."""
+        for i, world in enumerate(self.simulation.worlds):
+            lives = self.simulation.engine.take_rows(i)
+            if len(lives["agent_id"]):
+                self.writer.append("agents", agent_rows(world, lives))
+
+    def interval(self) -> None:
+        """Writes one population row per world that moved since its last one."""
+        for i, (world, sampler) in enumerate(zip(self.simulation.worlds, self.samplers, strict=True)):
+            if world.step == sampler.since.step:
+                continue
+            self.rows[i] = sampler.row()
+            sampler.advance()
+            self.writer.append("population", self.rows[i])
+        if time.perf_counter() >= self.living_due:
+            self.living()
+        if not self.shown:  # the first rows reach the disk at once, so that a reader sees that the run is on
+            self.writer.flush()
+            self.shown = True
+
+    def living(self) -> None:
+        """Replaces the file of the living agents."""
+        self.living_due = time.perf_counter() + LIVING_SECONDS
+        engine = self.simulation.engine
+        self.writer.replace_living(*(agent_rows(w, engine.living_rows(w.index)) for w in self.simulation.worlds))
+
+    def frame(self) -> None:
+        """Writes every agent and food of every living world as they are now."""
+        for world in self.simulation.worlds:
+            if not world.extinct:
+                for rows in frame_rows(world):
+                    self.writer.append("frames", rows)
+
+    def checkpoint(self, step: int, seconds: float) -> None:
+        """Keeps all that it takes to go on from here. Deaths and frames of this step must have been written."""
+        simulation = self.simulation
+        arrays = {
+            f"{world.index}/{name}": array
+            for world in simulation.worlds
+            for name, array in simulation.engine.save(world.index).items()
+        }
+        head = CheckpointHead(
+            step=step,
+            config=dump_toml(simulation.config),
+            seeds=simulation.seeds,
+            kernel=simulation.engine.kernel,
+            hedon_version=version("hedon"),
+            frames=self.frames,
+            run_seconds=seconds,
+            sampled=tuple(sampler.since for sampler in self.samplers),
+            digests=tuple(world.digest() for world in simulation.worlds),
+        )
+        self.writer.save_checkpoint(head, arrays)
+
+    def moment(self, step: int, steps: int, seconds: float) -> Moment:
+        """What a display shows after `step` of `steps` steps, `seconds` into the session."""
+        extinct = tuple(world.extinct_step for world in self.simulation.worlds)
+        return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct)

@@ -1,0 +1,148 @@
+"""Goes on with a run that was interrupted, killed, or finished: with the same bits as if it had never stopped."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from hedon.config.load import load_config
+from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.interrupt import count_interrupts
+from hedon.experiment.plan import Display, RunPlan
+from hedon.experiment.recorder import Start
+from hedon.experiment.run import drive
+from hedon.experiment.session import next_manifest
+from hedon.experiment.simulation import Simulation
+from hedon.record.checkpoint import Checkpoint
+from hedon.record.error import RecordError
+from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
+from hedon.record.lock import FolderLock
+from hedon.record.manifest import Manifest
+from hedon.record.provenance import git_revision
+from hedon.record.reader import open_run
+from hedon.record.rollback import find_checkpoint, roll_back, verify_parts
+from hedon.record.writer import Writer
+
+
+@dataclass(frozen=True, slots=True)
+class Resumption:
+    """A run that can go on.
+
+    Attributes:
+        plan: What is left to do, with the steps in all.
+        manifest: As the last session left it.
+        checkpoint: Where it goes on; None for a run that was killed before its first.
+        notes: What the user should know: a damaged checkpoint, a changed source.
+    """
+
+    plan: RunPlan
+    manifest: Manifest
+    checkpoint: Checkpoint | None
+    notes: tuple[str, ...]
+
+    @property
+    def step(self) -> int:
+        """The step at which it goes on."""
+        return self.checkpoint.head.step if self.checkpoint else 0
+
+
+@contextmanager
+def hold(
+    folder: Path, steps: int | None = None, threads: int = 0, checkpoint_seconds: float = CHECKPOINT_SECONDS
+) -> Iterator[Resumption]:
+    """Takes hold of a run's folder and says how the run would go on. Changes nothing by itself; see `go_on`.
+
+    Args:
+        folder: Of the run.
+        steps: Steps of each world in all; None for those that were asked for last.
+        threads: Threads to use; 0 for all processors. Changes no result.
+        checkpoint_seconds: Time between two checkpoints [s].
+
+    Raises:
+        RecordError: It is no run, is in use, has no step left to do, or its checkpoint does not fit; the message says
+            why.
+        ConfigError: Its config cannot be read.
+    """
+    open_run(folder)  # before the lock, which would make the folder
+    with FolderLock(folder):
+        manifest = open_run(folder).manifest
+        config = load_config(folder / CONFIG)
+        checkpoint, faults = find_checkpoint(folder)
+        if checkpoint is not None:
+            check_head(checkpoint.head, config, manifest.seeds, f"the checkpoint of {folder}")
+            verify_parts(folder, checkpoint.head.parts)
+        total = manifest.steps_asked if steps is None else steps
+        plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds)
+        notes = [f"{fault}: going on from the one before" for fault in faults]
+        found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
+        _check_steps(found)
+        yield found
+
+
+def resume(
+    folder: Path,
+    steps: int | None = None,
+    threads: int = 0,
+    display: Display | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+) -> Manifest:
+    """Goes on with a run from its newest whole checkpoint. What was recorded after it is taken back and made again.
+
+    Args:
+        folder: Of the run.
+        steps: Steps of each world in all; None for those that were asked for last.
+        threads: Threads to use; 0 for all processors. Changes no result.
+        display: Shows progress.
+        checkpoint_seconds: Time between two checkpoints [s].
+
+    Returns:
+        The manifest as it was saved at the end.
+
+    Raises:
+        RecordError: As `hold`; or the folder cannot be written.
+        EngineError: A world reports an error.
+    """
+    with hold(folder, steps, threads, checkpoint_seconds) as found:
+        return go_on(found, display)
+
+
+def go_on(found: Resumption, display: Display | None = None) -> Manifest:
+    """Goes on with a run that `hold` holds; see `resume`."""
+    plan, checkpoint = found.plan, found.checkpoint
+    with count_interrupts() as interrupted:
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, same_kernel(found.manifest.kernel))
+        start = Start()
+        if checkpoint is not None:
+            start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
+        parts = checkpoint.head.parts if checkpoint else {}
+        roll_back(plan.out, parts, start.step)
+        manifest = next_manifest(found.manifest, plan, simulation, start.step)
+        with Writer(plan.out, "", manifest, parts=parts) as writer:
+            return drive(simulation, plan, manifest, writer, start, display, interrupted)
+
+
+def _check_steps(found: Resumption) -> None:
+    plan, manifest, step = found.plan, found.manifest, found.step
+    whole = manifest.status == "finished"
+    if whole and all(extinct is not None for extinct in manifest.extinct_steps):
+        raise RecordError(
+            f"{plan.out} is finished: every world has died out, the last at step {max(manifest.steps_done):,}"
+        )
+    if whole and plan.steps == step:
+        raise RecordError(f"{plan.out} has made all its {step:,} steps: say by --steps how many it is to have in all")
+    if plan.steps < step:
+        raise RecordError(
+            f"--steps: {plan.out} has made {step:,} steps already, which is more than {plan.steps:,} in all"
+        )
+
+
+def _source_notes(manifest: Manifest) -> list[str]:
+    """A word on a source that has changed since, which may or may not change bits."""
+    before = manifest.sessions[-1].git_revision if manifest.sessions else manifest.git_revision
+    now, _ = git_revision(Path(__file__).resolve().parent)
+    if before is None or now is None or before == now:
+        return []
+    return [
+        f"hedon's source has changed since (revision {before[:12]}, now {now[:12]}): "
+        "only the same source is sure to give the same bits"
+    ]

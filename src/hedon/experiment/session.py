@@ -1,0 +1,91 @@
+"""What a session of a run writes into its manifest, at its beginning and at its end."""
+
+from dataclasses import replace
+
+from hedon.config.dump import digest
+from hedon.config.load import is_modified
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.simulation import Simulation
+from hedon.record.digest import records_digest
+from hedon.record.manifest import Manifest, Session
+from hedon.record.provenance import collect_provenance, utc_now
+from hedon.record.writer import Writer
+
+
+def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) -> Manifest:
+    """The manifest of a run that begins now, at a step that is 0 unless it branches off from another."""
+    config = plan.config
+    manifest = Manifest(
+        food_kinds=tuple(config.food),
+        neutral_count=config.genome.neutral_count,
+        seeds=plan.seeds,
+        steps_asked=plan.steps,
+        preset=config.preset,
+        fidelity=config.fidelity,
+        name=config.name,
+        modified=is_modified(config),
+        config_digest=digest(config),
+        kernel=simulation.engine.kernel,
+        threads=simulation.engine.threads,
+        steps_done=tuple(world.step for world in simulation.worlds),
+        extinct_steps=tuple(None for _ in plan.seeds),
+        food_colors=tuple(food.color for food in config.food.values()),
+        frames=plan.frames,
+        **collect_provenance(),
+    )
+    return replace(manifest, sessions=(_session(manifest, from_step),))
+
+
+def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, from_step: int) -> Manifest:
+    """The manifest of a run that goes on now: of its first session, but with a new one on the list."""
+    here = replace(
+        manifest,
+        kernel=simulation.engine.kernel,
+        threads=simulation.engine.threads,
+        **collect_provenance(),
+    )
+    return replace(
+        manifest,
+        status="running",
+        ended=None,
+        steps_asked=plan.steps,
+        world_digests=(),
+        records_digest=None,
+        sessions=(*manifest.sessions, _session(here, from_step)),
+    )
+
+
+def last_manifest(manifest: Manifest, simulation: Simulation, status: str, seconds: float, writer: Writer) -> Manifest:
+    """Saves the manifest of a session that ends now and returns it. Unless it failed, all rows are on disk by then."""
+    now = utc_now()
+    digests: tuple[str, ...] = ()
+    records = None
+    if status != "failed":
+        writer.flush()
+        digests = tuple(world.digest() for world in simulation.worlds)
+        records = records_digest(writer.folder, manifest.food_kinds, manifest.neutral_count)
+    manifest = replace(
+        manifest,
+        status=status,
+        ended=now,
+        steps_done=tuple(world.step for world in simulation.worlds),
+        extinct_steps=tuple(world.extinct_step for world in simulation.worlds),
+        run_seconds=seconds,
+        world_digests=digests,
+        records_digest=records,
+        sessions=(*manifest.sessions[:-1], replace(manifest.sessions[-1], ended=now)),
+    )
+    writer.save_manifest(manifest)
+    return manifest
+
+
+def _session(manifest: Manifest, from_step: int) -> Session:
+    return Session(
+        started=manifest.started,
+        from_step=from_step,
+        threads=manifest.threads,
+        kernel=manifest.kernel,
+        hedon_version=manifest.hedon_version,
+        git_revision=manifest.git_revision,
+        command_line=manifest.command_line,
+    )

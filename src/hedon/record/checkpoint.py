@@ -1,0 +1,155 @@
+"""Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading executes nothing."""
+
+import hashlib
+import io
+import json
+import math
+import zipfile
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.folder import checkpoint_path, checkpoint_paths
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+KEPT = 2
+"""Checkpoints that a run keeps: the newest, and one in case that it is damaged."""
+_HEAD, _DIGEST = "head", "digest"  # the members that are not arrays of a world: JSON, and SHA-256 of all else
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """What a row of the table `population` counts from: the counters of a world when the last row was taken."""
+
+    step: int
+    counters: dict[str, int | float]
+    eaten: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class CheckpointHead:
+    """What a checkpoint says of itself, besides the arrays of its worlds.
+
+    Attributes:
+        step: steps completed [step].
+        config: the complete config, as TOML.
+        seeds: one per world.
+        kernel: instruction set that the engine used.
+        hedon_version: that made it.
+        frames: steps between two frames; 0 for none [step].
+        run_seconds: time spent in stepping so far [s].
+        sampled: one per world.
+        digests: `World.digest()` of each world.
+        parts: SHA-256 of each part that was on disk, in order, by table: all rows up to here, and no later ones.
+    """
+
+    step: int
+    config: str
+    seeds: tuple[int, ...]
+    kernel: str
+    hedon_version: str | None
+    frames: int
+    run_seconds: float
+    sampled: tuple[Sampled, ...]
+    digests: tuple[str, ...]
+    parts: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """A head, and the arrays of all worlds: "0/params" is what the engine calls `params` in world 0."""
+
+    head: CheckpointHead
+    arrays: dict[str, NDArray[Any]]
+
+    def world(self, index: int) -> dict[str, NDArray[Any]]:
+        """The arrays of one world, as the engine names them."""
+        prefix = f"{index}/"
+        return {name.removeprefix(prefix): array for name, array in self.arrays.items() if name.startswith(prefix)}
+
+
+def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
+    """Writes a checkpoint of a run atomically, then removes all but the newest ones.
+
+    Raises:
+        OSError: as the file system raises it; the earlier checkpoints are then as they were.
+    """
+    path = checkpoint_path(folder, checkpoint.head.step)
+    path.parent.mkdir(exist_ok=True)
+    head = np.frombuffer(json.dumps(asdict(checkpoint.head)).encode(), np.uint8)
+    members = {_HEAD: head, **checkpoint.arrays}
+    members[_DIGEST] = np.frombuffer(_digest(members).encode(), np.uint8)
+    write_atomically(path, lambda file: np.savez(file, **members))
+    for old in checkpoint_paths(folder)[:-KEPT]:
+        old.unlink(missing_ok=True)
+
+
+def load_checkpoint(path: Path) -> Checkpoint:
+    """Reads a checkpoint. It may come from anywhere: its arrays are those that were written, but nothing says that the
+    engine can use them; the engine checks that itself.
+
+    Raises:
+        RecordError: the file cannot be read, is damaged, or is no checkpoint.
+    """
+    try:
+        members = _read_members(path)
+        digest = members.pop(_DIGEST).tobytes().decode()
+        if digest != _digest(members):
+            raise ValueError("its content differs from its digest")
+        head = _heads().validate_json(members.pop(_HEAD).tobytes())
+        if path.name != checkpoint_path(path.parent, head.step).name:
+            raise ValueError(f"it is of step {head.step}, which its name does not say")
+        return Checkpoint(head, members)
+    except Exception as error:  # a file that is none of ours fails in any way
+        raise RecordError(f"damaged checkpoint {path}: {error}") from error
+
+
+def _read_members(path: Path) -> dict[str, NDArray[Any]]:
+    """The arrays of an npz file, whose sizes are checked before memory is taken."""
+    members: dict[str, NDArray[Any]] = {}
+    with zipfile.ZipFile(path) as archive:
+        entries = archive.infolist()
+        if sum(entry.file_size for entry in entries) > path.stat().st_size:
+            raise ValueError("it says to hold more than it does")
+        for entry in entries:
+            if entry.compress_type != zipfile.ZIP_STORED or entry.filename in members:
+                raise ValueError(f"{entry.filename} was not written by hedon")
+            members[entry.filename.removesuffix(".npy")] = _parse_array(archive.read(entry))
+    return members
+
+
+def _parse_array(data: bytes) -> NDArray[Any]:
+    file = io.BytesIO(data)
+    if np.lib.format.read_magic(file) != (1, 0):
+        raise ValueError("an array of an unknown format")
+    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
+    if dtype.kind not in "iuf" or not dtype.isnative or in_columns:
+        raise ValueError(f"an array of type {dtype}, where plain numbers are stored")
+    if math.prod(shape) * dtype.itemsize != len(data) - file.tell():
+        raise ValueError("an array is not as long as it says")
+    return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape)
+
+
+def _digest(members: Mapping[str, NDArray[Any]]) -> str:
+    """SHA-256 over names, types, shapes and bytes of arrays, whatever their order."""
+    digest = hashlib.sha256()
+    for name, array in sorted(members.items()):
+        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.hexdigest()
+
+
+@cache
+def _heads() -> "TypeAdapter[CheckpointHead]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(CheckpointHead)

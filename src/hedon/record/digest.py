@@ -1,0 +1,67 @@
+"""A digest of what a run recorded: equal for equal rows, however they were split into parts and sessions."""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hedon.record.column import Table
+from hedon.record.error import RecordError
+from hedon.record.folder import LIVING, part_paths
+from hedon.record.schema import run_tables
+
+PARTS_AT_ONCE = 64
+"""Parts that are held in memory together: some 100 MB at most."""
+
+
+def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int) -> str:
+    """The digest of all tables of a run: SHA-256, 64 hexadecimal digits.
+
+    The rows of each world are taken in the order in which they were written, which a run repeats; how the worlds'
+    rows stand among one another, and where one part ends, may differ between repetitions and does not count.
+
+    Raises:
+        RecordError: a part cannot be read.
+    """
+    digest = hashlib.sha256()
+    for name, table in run_tables(food_kinds, neutral_count).items():
+        paths = part_paths(folder, name)
+        if name == "agents" and (folder / LIVING).exists():
+            paths.append(folder / LIVING)
+        for world, rows in sorted(_digest_worlds(paths, table).items()):
+            digest.update(f"{name} {world} {rows}\n".encode())
+    return digest.hexdigest()
+
+
+def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
+    digests = {}
+    for first in range(0, len(paths), PARTS_AT_ONCE):
+        rows = pl.concat([_read(path, table) for path in paths[first : first + PARTS_AT_ONCE]])
+        data, worlds = _row_bytes(rows, table), rows["world"].to_numpy()
+        for world in np.unique(worlds).tolist():
+            digests.setdefault(world, hashlib.sha256()).update(np.ascontiguousarray(data[worlds == world]))
+    return {world: digest.hexdigest() for world, digest in digests.items()}
+
+
+def _read(path: Path, table: Table) -> pl.DataFrame:
+    try:
+        return pl.read_parquet(path, columns=[column.name for column in table.columns])
+    except (pl.exceptions.PolarsError, OSError) as error:
+        raise RecordError(f"damaged part {path} ({error})") from error
+
+
+def _row_bytes(rows: pl.DataFrame, table: Table) -> np.ndarray:
+    """Each row as bytes, (rows, bytes): the value of each column, after whether it is missing where it may be."""
+    columns = []
+    for column in table.columns:
+        series = rows[column.name]
+        if column.nullable:
+            columns.append(series.is_null().to_numpy().astype(np.uint8)[:, None])
+            series = series.fill_null(0)
+        if column.dtype == "string":
+            codes = {text: int.from_bytes(hashlib.sha256(text.encode()).digest()[:8]) for text in series.unique()}
+            series = series.replace_strict(codes, return_dtype=pl.UInt64)
+        values = np.ascontiguousarray(series.to_numpy())
+        columns.append(values.view(np.uint8).reshape(len(values), values.itemsize))
+    return np.concatenate(columns, axis=1)

@@ -1,0 +1,69 @@
+"""One run per folder: a lock that the operating system gives back when its process ends, however it ends."""
+
+import errno
+import fcntl
+import json
+import os
+import socket
+from pathlib import Path
+from types import TracebackType
+
+from hedon.record.error import RecordError
+from hedon.record.folder import LOCK
+
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
+"""What file systems answer that know no locks: there the user alone keeps two runs apart."""
+
+
+class FolderLock:
+    """Holds a run's folder for this process. Use it as a context manager.
+
+    The lock is advisory (`flock`) and dies with its process; the file that carries it stays and says who held it last.
+
+    Args:
+        folder: made where it does not exist.
+
+    Raises:
+        RecordError: another process holds it, or the folder cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        path = folder / LOCK
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError as error:
+            raise RecordError(f"cannot write the run's folder {folder}: {error}") from error
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _write_owner(self._descriptor)
+        except BlockingIOError:
+            owner = _read_owner(self._descriptor)
+            os.close(self._descriptor)
+            raise RecordError(f"{folder} is in use by another run{owner}: wait for it, or stop it first") from None
+        except OSError as error:
+            if error.errno not in _NO_LOCKS:
+                os.close(self._descriptor)
+                raise RecordError(f"cannot write the run's folder {folder}: {error}") from error
+
+    def __enter__(self) -> "FolderLock":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        os.close(self._descriptor)
+
+
+def _write_owner(descriptor: int) -> None:
+    text = json.dumps({"host": socket.gethostname(), "process": os.getpid()})
+    os.ftruncate(descriptor, 0)
+    os.pwrite(descriptor, text.encode(), 0)
+
+
+def _read_owner(descriptor: int) -> str:
+    try:
+        owner = json.loads(os.pread(descriptor, 1000, 0))
+        return f" (process {int(owner['process'])} on {owner['host']})"
+    except (OSError, ValueError, KeyError, TypeError):  # its owner has not yet written it
+        return ""

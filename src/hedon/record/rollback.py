@@ -1,0 +1,82 @@
+"""Takes a run's records back to a checkpoint, so that a run goes on without losing or doubling a row."""
+
+import hashlib
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from hedon.record.checkpoint import Checkpoint, load_checkpoint
+from hedon.record.error import RecordError
+from hedon.record.folder import CHECKPOINTS, TABLE_FOLDERS, checkpoint_path, checkpoint_paths, part_path, part_paths
+
+
+def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
+    """The newest checkpoint of a run that is whole, or that of a step.
+
+    Returns:
+        The checkpoint, None for a run that was killed before its first, and what is to be said about damaged ones.
+
+    Raises:
+        RecordError: there is no checkpoint of that step, all are damaged, or they were removed.
+    """
+    paths = checkpoint_paths(folder)
+    if step is not None:
+        path = checkpoint_path(folder, step)
+        if path not in paths:
+            kept = ", ".join(str(int(path.stem.removeprefix("step-"))) for path in paths)
+            raise RecordError(f"{folder} keeps no checkpoint of step {step}; it keeps those of steps {kept or 'none'}")
+        return load_checkpoint(path), []
+    faults: list[str] = []
+    for path in reversed(paths):
+        try:
+            return load_checkpoint(path), faults
+        except RecordError as error:
+            faults.append(str(error))
+    if faults:
+        raise RecordError(f"{folder} has no checkpoint that is whole: {'; '.join(faults)}")
+    if any(part_paths(folder, table) for table in TABLE_FOLDERS):
+        raise RecordError(f"{folder} has records but no checkpoint to go on from: nothing in {folder / CHECKPOINTS}")
+    return None, []
+
+
+def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
+    """Compares the parts on disk with those that a checkpoint was taken after.
+
+    Raises:
+        RecordError: one is missing or has another content.
+    """
+    for table, digests in parts.items():
+        for index, digest in enumerate(digests):
+            path = part_path(folder, table, index)
+            try:
+                same = hashlib.sha256(path.read_bytes()).hexdigest() == digest
+            except OSError as error:
+                raise RecordError(f"damaged records: cannot read {path}: {error}{_remedy(folder)}") from error
+            if not same:
+                raise RecordError(f"damaged records: {path} is not as it was written{_remedy(folder)}")
+
+
+def _remedy(folder: Path) -> str:
+    return (
+        "; put the file back from a copy, or go on in a new folder, whose records begin at the checkpoint: "
+        f"hedon branch {shlex.quote(str(folder))}"
+    )
+
+
+def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> None:
+    """Removes what was written after a checkpoint: later parts, later checkpoints, and files that never got finished.
+
+    Raises:
+        RecordError: a file cannot be removed.
+    """
+    later = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
+    for table in TABLE_FOLDERS:
+        last = part_path(folder, table, len(parts.get(table, ())))
+        later += [path for path in part_paths(folder, table) if path >= last]
+    for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS))):
+        later += place.glob(".*.tmp")
+    try:
+        for path in reversed(later):
+            path.unlink(missing_ok=True)
+    except OSError as error:
+        raise RecordError(f"cannot take the records of {folder} back to step {step}: {error}") from error

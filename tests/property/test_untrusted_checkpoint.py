@@ -1,0 +1,127 @@
+"""A checkpoint may come from anywhere: what cannot be is refused, and nothing that is accepted harms the engine."""
+
+import contextlib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from worlds import QUICK, make_simulation
+
+from hedon.experiment.simulation import EngineError
+
+CROWD = ("arena.width=220", "arena.height=180", "motor.min_force=20", "food.normal.initial_count=12")
+LIVELY = (*QUICK, *CROWD, "birth.kappa=0.02", "hazard.kappa=0.2", "population.capacity=60")
+BOUNDED = {  # array: a value that no world has
+    "clock.step": -1,
+    "clock.living_count": 61,
+    "clock.next_agent_id": 0,
+    "clock.extinct_step": 3,
+    "clock.births_in_window": -1,
+    "food.slot": 10_000,
+    "food.x": -1.0,
+    "food_stock.center": 1,
+    "food_stock.present": 0,
+    "food_stock.number": 1e9,
+    "food_stock.eaten": -1,
+    "life.agent_id": -1,
+    "life.birth_step": 1_000_000,
+    "life.death_step": 5,
+    "life.parent_id": 2**30,
+    "life.generation": 2**30,
+    "life.energy": -1.0,
+    "touch": 2**63,
+    "updates": -1,
+    "second_moment": -1.0,
+    "body.x": 1e6,
+    "body.y": -0.1,
+    "body.angle": 1e30,
+    "observation": 255,
+    "pair.body": 60,
+    "pair.circle": -1,
+    "pair.wall": 1000,
+    "impulse.body": -1.0,
+}
+PLACE = {"observation": 128, "impulse.body": 0}
+"""Where the value goes, if not to the end: the channel of a ray, the normal impulse of a pair."""
+
+
+@pytest.fixture(scope="module")
+def saved():
+    simulation = make_simulation(*LIVELY)
+    simulation.run(100)  # in the midst of a window, so that there are rollouts
+    arrays = simulation.engine.save(0)
+    assert all(len(arrays[name]) for name in BOUNDED), "nothing to spoil"
+    return arrays
+
+
+@pytest.fixture(scope="module")
+def target():
+    simulation = make_simulation(*LIVELY)
+    simulation.run(3)
+    return simulation
+
+
+def refused(target, arrays, words):
+    before = target.worlds[0].digest()
+    with pytest.raises(ValueError, match=words):
+        target.engine.restore(0, arrays)
+    assert target.worlds[0].digest() == before, "a refused checkpoint leaves the world as it was"
+
+
+@pytest.mark.parametrize("name", BOUNDED)
+def test_a_value_out_of_bounds_is_refused(saved, target, name):
+    spoiled = saved[name].copy()
+    spoiled.flat[PLACE.get(name, -1)] = BOUNDED[name]
+    refused(target, saved | {name: spoiled}, name.replace("impulse", "pair"))
+
+
+def test_every_array_is_checked_for_presence_type_shape_and_finite_numbers(saved, target):
+    for name, array in saved.items():
+        refused(target, {key: value for key, value in saved.items() if key != name}, name)
+        refused(target, saved | {name: array.astype(np.complex64)}, name)
+        refused(target, saved | {name: array.astype(np.int16)}, name)
+        refused(target, saved | {name: np.concatenate([array, array])}, r"\w")
+        if array.dtype.kind == "f" and array.size:
+            for value in (np.nan, np.inf):
+                spoiled = array.copy()
+                spoiled.flat[array.size // 2] = value
+                refused(target, saved | {name: spoiled}, r"\w")
+    refused(target, saved | {"more": np.zeros(3)}, "no world has")
+    refused(target, saved | {"params": np.array(["x"])}, "params")
+    refused(target, saved | {"params": saved["params"].T}, "params")
+
+
+@pytest.mark.parametrize("name", ["life.agent_id", "life.birth_step", "food.slot", "pair.circle"])
+def test_an_array_out_of_order_is_refused(saved, target, name):
+    refused(target, saved | {name: np.ascontiguousarray(saved[name][::-1])}, name)
+
+
+def test_a_checkpoint_of_another_shape_says_so(saved):
+    for setting, array in (
+        ("sensor.ray_count=12", "params"),
+        ("genome.neutral_count=3", "genome"),
+        ("population.capacity=20", "clock.living_count"),
+        ("food.normal.capacity=20", "food.slot|food_stock.number"),
+    ):
+        other = make_simulation(*LIVELY, "population.initial_count=20", "food.normal.initial_count=5", setting)
+        refused(other, saved, array)
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_random_numbers_are_refused_or_do_no_harm(saved, data):
+    """Every byte of a small array, or any number of a large one, at random; what passes is then lived through."""
+    spoiled = dict(saved)
+    for _ in range(data.draw(st.integers(1, 3))):
+        name = data.draw(st.sampled_from(sorted(name for name, array in saved.items() if array.size)))
+        array = saved[name].copy()
+        at = data.draw(st.integers(0, array.size - 1))
+        raw = data.draw(st.binary(min_size=array.itemsize, max_size=array.itemsize))
+        array.reshape(-1)[at] = np.frombuffer(raw, array.dtype)[0]
+        spoiled[name] = array
+    simulation = make_simulation(*LIVELY)
+    with contextlib.suppress(ValueError, EngineError):
+        simulation.engine.restore(0, spoiled)
+        simulation.run(40)  # to the end of the window, and past its learning
+    simulation.worlds[0].observations()

@@ -1,0 +1,128 @@
+"""The file of a checkpoint: it comes back as it was written, and no other file passes for one."""
+
+import io
+import pickle
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, Sampled, load_checkpoint, save_checkpoint
+from hedon.record.error import RecordError
+from hedon.record.folder import checkpoint_path, checkpoint_paths
+
+ARRAYS = {
+    "0/params": np.arange(12, dtype=np.float32).reshape(3, 4),
+    "0/clock.step": np.array([7]),
+    "1/touch": np.zeros(0, np.uint64),
+    "1/observation": np.zeros((0, 192), np.uint8),
+}
+
+
+def head(step: int = 7) -> CheckpointHead:
+    sampled = Sampled(5, {"births": 3, "energy_eaten": 0.1 + 0.2}, (4, 5))
+    return CheckpointHead(
+        step, "x = 1\n", (1, 2), "avx2", "0.1.0", 0, 1.5, (sampled,) * 2, ("a", "b"), {"agents": ("c",)}
+    )
+
+
+def saved(folder: Path) -> Path:
+    save_checkpoint(folder, Checkpoint(head(), ARRAYS))
+    return checkpoint_path(folder, 7)
+
+
+def test_a_checkpoint_comes_back_as_it_was_written(tmp_path: Path) -> None:
+    found = load_checkpoint(saved(tmp_path))
+    assert found.head == head()
+    assert isinstance(found.head.sampled[0].counters["births"], int)
+    assert found.arrays.keys() == ARRAYS.keys()
+    for name, array in ARRAYS.items():
+        np.testing.assert_array_equal(found.arrays[name], array, strict=True)
+    assert set(found.world(0)) == {"params", "clock.step"}
+
+
+def test_numpy_reads_it_too(tmp_path: Path) -> None:
+    with np.load(saved(tmp_path), allow_pickle=False) as file:
+        np.testing.assert_array_equal(file["0/params"], ARRAYS["0/params"])
+
+
+def test_the_newest_two_are_kept(tmp_path: Path) -> None:
+    for step in (5, 6, 70, 71, 72):
+        save_checkpoint(tmp_path, Checkpoint(head(step), ARRAYS))
+    assert checkpoint_paths(tmp_path) == [checkpoint_path(tmp_path, 71), checkpoint_path(tmp_path, 72)]
+
+
+def test_every_cut_and_every_changed_byte_is_noticed(tmp_path: Path) -> None:
+    path = saved(tmp_path)
+    data = path.read_bytes()
+    for length in range(0, len(data), 97):
+        path.write_bytes(data[:length])
+        with pytest.raises(RecordError, match="damaged checkpoint"):
+            load_checkpoint(path)
+    arrays, passed = load_checkpoint_of(path, data).arrays, 0
+    for at in range(0, len(data), 13):
+        path.write_bytes(data[:at] + bytes([data[at] ^ 16]) + data[at + 1 :])
+        try:
+            found = load_checkpoint(path)
+        except RecordError:
+            continue
+        passed += 1  # a time stamp of the archive, say: what counts is the content
+        assert found.head == head()
+        assert all(np.array_equal(found.arrays[name], arrays[name]) for name in arrays)
+    assert passed < len(data) / 13 / 4
+
+
+def load_checkpoint_of(path: Path, data: bytes) -> Checkpoint:
+    path.write_bytes(data)
+    return load_checkpoint(path)
+
+
+def npy(array: np.ndarray, **options) -> bytes:
+    file = io.BytesIO()
+    np.lib.format.write_array(file, array, **options)
+    return file.getvalue()
+
+
+class Bomb:
+    """What a pickle of it does when it is loaded."""
+
+    def __reduce__(self):
+        return (pytest.fail, ("a checkpoint was executed",))
+
+
+@pytest.mark.parametrize(
+    ("member", "compression", "words"),
+    [
+        (npy(np.array([Bomb()]), allow_pickle=True), zipfile.ZIP_STORED, "plain numbers are stored"),
+        (pickle.dumps(Bomb()), zipfile.ZIP_STORED, "damaged"),
+        (npy(np.zeros(3, "datetime64[s]")), zipfile.ZIP_STORED, "plain numbers are stored"),
+        (npy(np.zeros(3, ">f4")), zipfile.ZIP_STORED, "plain numbers are stored"),
+        (npy(np.zeros(3))[:-8], zipfile.ZIP_STORED, "not as long as it says"),
+        (npy(np.zeros(1)).replace(b"(1,)", b"(9223372036854775807,)"), zipfile.ZIP_STORED, "damaged"),
+        (npy(np.zeros(1)).replace(b"(1,)", b"(-1,-1)"), zipfile.ZIP_STORED, "damaged"),
+        (npy(np.zeros(10_000_000)), zipfile.ZIP_DEFLATED, "more than it does"),
+        (npy(np.zeros(10)), zipfile.ZIP_DEFLATED, "more than it does|not written by hedon"),
+        (npy(np.zeros(3)), zipfile.ZIP_STORED, "digest"),
+    ],
+)
+def test_a_file_of_somebody_else_is_refused(tmp_path: Path, member: bytes, compression: int, words: str) -> None:
+    path = saved(tmp_path)
+    with zipfile.ZipFile(path, "a", compression) as archive:
+        archive.writestr("more.npy", member)
+    with pytest.raises(RecordError, match=words):
+        load_checkpoint(path)
+
+
+def test_a_head_of_another_kind_is_refused(tmp_path: Path) -> None:
+    path = checkpoint_path(tmp_path, 7)
+    path.parent.mkdir()
+    with path.open("wb") as file:
+        np.savez(file, head=np.frombuffer(b'{"step": 7}', np.uint8))
+    with pytest.raises(RecordError, match="damaged checkpoint"):
+        load_checkpoint(path)
+    saved(tmp_path).rename(checkpoint_path(tmp_path, 8))
+    with pytest.raises(RecordError, match="it is of step 7"):
+        load_checkpoint(checkpoint_path(tmp_path, 8))
+    with pytest.raises(RecordError, match="No such file"):
+        load_checkpoint(path)
