@@ -12,11 +12,12 @@ run: sync
 test: sync
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
-	$(RUN) clang-format --dry-run -Werror $(shell find engine -name '*.h' -o -name '*.cpp')
+	$(RUN) clang-format --dry-run -Werror $(shell find engine -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
 	$(RUN) pyright
 	$(RUN) pytest
 	$(RUN) python tests/sanitize.py asan
+	$(RUN) --group cuda python tests/cuda.py
 
 sync: tools $(UV)
 	$(UV) sync --quiet

@@ -1,6 +1,8 @@
 /// Marks functions that run inside a step, so that the same source compiles for the CPU and for CUDA.
 #pragma once
 
+#include <cstdint>
+
 #if defined(__CUDACC__)
 #define HEDON_FN __host__ __device__ inline
 #else
@@ -14,3 +16,16 @@
 #else
 #define HEDON_INLINE __attribute__((always_inline)) inline
 #endif
+
+namespace hedon {
+
+/// Index of the lowest bit that is set, of at least one.
+HEDON_INLINE int lowest_bit(uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(bits)) - 1;
+#else
+  return __builtin_ctzll(bits);
+#endif
+}
+
+}  // namespace hedon

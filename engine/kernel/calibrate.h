@@ -10,7 +10,7 @@ namespace {
 
 /// See `Kernel::multiply_adds`. As many independent chains as fit the registers, so that latency does not count.
 template <class Shape>
-int64_t multiply_adds(int64_t rounds, float* result) {
+HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   constexpr int chains = Shape::chains;
   // All different: equal lanes would be computed once.
   alignas(64) float first[chains * 16];

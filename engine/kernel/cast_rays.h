@@ -68,7 +68,7 @@ HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const 
   const Lanes type = broadcast(scene.segment_type);
   for (int32_t first = 0; first < scene.segments; first += 16) {
     for (uint32_t bits = segments_ahead(scene, eye, arc, first); bits != 0; bits &= bits - 1) {
-      const int32_t at = first + __builtin_ctz(bits);
+      const int32_t at = first + lowest_bit(bits);
       const float ax = scene.segment_ax[at] - eye.x, ay = scene.segment_ay[at] - eye.y;
       const float ex = scene.segment_bx[at] - eye.x - ax, ey = scene.segment_by[at] - eye.y - ay;
       const Lanes across = rays.direction_x * broadcast(ey) - rays.direction_y * broadcast(ex);
@@ -82,7 +82,7 @@ HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const 
 }
 
 /// See `Kernel::cast_rays`.
-void cast_rays(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type) {
+HEDON_FN void cast_rays(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type) {
   const Lanes forward_x = broadcast(eye.forward_x), forward_y = broadcast(eye.forward_y);
   const Lanes zero = broadcast(0.0f), length = broadcast(eye.length);
   for (int32_t a = 0; a < RAY_ARCS; ++a) {

@@ -3,8 +3,6 @@
 
 #include <cstring>
 
-#include "kernel/ppo_scratch.h"
-
 namespace hedon {
 
 extern const Kernel PORTABLE_KERNEL;
@@ -58,8 +56,6 @@ const Kernel* find_kernel(const char* name) {
   }
   return nullptr;
 }
-
-int64_t ppo_scratch_size(const NetworkShape& shape) { return scratch_size(shape); }
 
 const char* const* kernel_names() { return list().names; }
 

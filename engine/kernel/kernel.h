@@ -112,9 +112,6 @@ struct Kernel {
   int64_t (*multiply_adds)(int64_t rounds, float* result);
 };
 
-/// Floats of scratch that `gradient` and `update` need, aligned to 64 bytes.
-int64_t ppo_scratch_size(const NetworkShape& shape);
-
 /// The kernel of that name if this processor can run it, the best one for an empty name, null for an unknown one.
 const Kernel* find_kernel(const char* name);
 

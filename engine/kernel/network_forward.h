@@ -49,7 +49,7 @@ HEDON_INLINE void multiply(const float* a, const float* b, int rows, int inner, 
   }
 }
 
-void fold_bias(const NetworkShape& shape, const float* params, float* folded) {
+HEDON_FN void fold_bias(const NetworkShape& shape, const float* params, float* folded) {
   Lanes bias[WIDTH];
   unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(params + shape.b1() + c * LANES); });
   const int32_t rows = shape.observation.rays * shape.observation.types;
@@ -101,7 +101,7 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
   }
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
-      const float* row = group + __builtin_ctzll(bits) * HIDDEN;
+      const float* row = group + lowest_bit(bits) * HIDDEN;
       unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = total[s][c] + load(row + c * LANES); });
     }
   });
@@ -140,8 +140,8 @@ HEDON_INLINE void heads(const NetworkShape& shape, const float* params, const fl
 }
 
 template <class Shape>
-void forward(const NetworkShape& shape, const float* params, const float* folded, const PackedObservation& observation,
-             float* output) {
+HEDON_FN void forward(const NetworkShape& shape, const float* params, const float* folded,
+                      const PackedObservation& observation, float* output) {
   alignas(64) float hidden1[HIDDEN];
   alignas(64) float hidden2[HIDDEN];
   const PackedObservation* one = &observation;

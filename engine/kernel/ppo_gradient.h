@@ -100,7 +100,7 @@ HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation
   }
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
-      add_one(row + __builtin_ctzll(bits) * HIDDEN, s, 1.0f);
+      add_one(row + lowest_bit(bits) * HIDDEN, s, 1.0f);
     }
   });
   row += sizes.touches * HIDDEN;
@@ -168,8 +168,8 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
 
 /// Loss and gradient of one minibatch; see `Kernel::gradient`.
 template <class Shape>
-PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
-                              const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
+HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
+                                       const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
   const PpoScratch memory = split_scratch(scratch);
   fold_bias(shape, params, memory.folded);
   transpose(params + shape.w2(), HIDDEN, memory.w2_transposed);

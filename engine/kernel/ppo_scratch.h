@@ -24,8 +24,8 @@ HEDON_INLINE PpoScratch split_scratch(float* scratch) {
   return {scratch, w2_transposed, hidden1, hidden2, hidden2 + BLOCK * HIDDEN};
 }
 
-/// Floats of all parts.
-HEDON_INLINE int64_t scratch_size(const NetworkShape& shape) {
+/// Floats of scratch that `gradient` and `update` need, aligned to 64 bytes.
+HEDON_INLINE int64_t ppo_scratch_size(const NetworkShape& shape) {
   return HIDDEN + HIDDEN * HIDDEN + 2 * BLOCK * HIDDEN + shape.size();
 }
 

@@ -16,7 +16,7 @@ HEDON_INLINE double power(double base, int64_t exponent) {
 }
 
 /// One Adam step: p -= rate · m̂ / (sqrt(v̂) + ε). Source: Kingma and Ba (2015), algorithm 1.
-void adam(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner) {
+HEDON_FN void adam(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner) {
   const int64_t step = ++*learner.updates;
   const double correction1 = 1.0 - power(config.adam_beta1, step);
   const double correction2 = 1.0 - power(config.adam_beta2, step);
@@ -40,8 +40,8 @@ void adam(const LearningConfig& config, int32_t size, const float* gradient, con
 
 /// See `Kernel::update`.
 template <class Shape>
-PpoLoss update(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
-               const Learner& learner) {
+HEDON_FN PpoLoss update(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
+                        const Learner& learner) {
   float* const gradient = split_scratch(scratch).gradient;
   const int32_t minibatches = batch.count / config.minibatch_size;
   PpoLoss mean = {0.0f, 0.0f, 0.0f};

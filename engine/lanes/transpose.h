@@ -6,6 +6,17 @@
 namespace hedon {
 namespace {
 
+#if defined(__CUDACC__)
+
+/// A device has no such shuffles.
+HEDON_INLINE void transpose(const float* from, int size, float* to) {
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) to[column * size + row] = from[row * size + column];
+  }
+}
+
+#else
+
 typedef float FourFloats __attribute__((vector_size(16), may_alias));
 
 /// Writes the transpose of a (size, size) matrix; size is a multiple of 4, both are aligned to 16 bytes.
@@ -29,6 +40,8 @@ HEDON_INLINE void transpose(const float* from, int size, float* to) {
     }
   }
 }
+
+#endif
 
 }  // namespace
 }  // namespace hedon

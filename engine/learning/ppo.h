@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "kernel/kernel.h"
+#include "kernel/ppo_scratch.h"
 #include "learning/gae.h"
 
 namespace hedon {
@@ -49,14 +50,14 @@ HEDON_FN void sort_minibatches(int32_t count, int32_t minibatch_size, int32_t* o
 }
 
 /// Floats of scratch that `learn` needs, aligned to 64 bytes.
-inline int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfig& config) {
+HEDON_FN int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfig& config) {
   return ppo_scratch_size(shape) + static_cast<int64_t>(config.rollout_steps) * (4 + config.update_epochs);
 }
 
 /// One learner's whole update from one rollout of at most `rollout_steps` steps. The order of its minibatches comes
 /// from `stream`, so give each learner and window its own. Allocates nothing. Returns the means of the last epoch.
-inline PpoLoss learn(const Kernel& kernel, const NetworkShape& shape, const LearningConfig& config,
-                     const Rollout& rollout, const RandomStream& stream, float* scratch, const Learner& learner) {
+HEDON_FN PpoLoss learn(const Kernel& kernel, const NetworkShape& shape, const LearningConfig& config,
+                       const Rollout& rollout, const RandomStream& stream, float* scratch, const Learner& learner) {
   float* const advantage = scratch + ppo_scratch_size(shape);
   float* const target = advantage + rollout.count;
   int32_t* const owner = reinterpret_cast<int32_t*>(target + rollout.count);

@@ -56,7 +56,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
 /// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with all of the group or a part of
 /// it.
 template <class Group, class Pacer, class Lap>
-HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
+HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
+                      Lap&& lap) {
   const int64_t window = world.shape->steps;
   group.once([&] { gather_scene(world); });
   while (steps > 0 && !world.over()) {

@@ -20,6 +20,7 @@ ALLOWED = {
     "world": {"base", "physics", "evolution", "learning", "kernel"},
     "simulation": {"base", "physics", "evolution", "learning", "kernel", "world"},
     "binding": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
+    "cuda": {"lanes", "kernel", "simulation"},
 }
 STEP_PATH = ("physics", "evolution", "learning", "world", "kernel")
 FORBIDDEN_IN_STEP = re.compile(
@@ -40,7 +41,7 @@ def code_without_comments(path: Path) -> str:
 def test_no_file_is_too_long():
     long = {
         str(p.relative_to(ROOT)): n
-        for p in sources(".py", ".h", ".cpp")
+        for p in sources(".py", ".h", ".cpp", ".cu")
         if (n := len(p.read_text().splitlines())) > LONGEST
     }
     assert not long
@@ -48,7 +49,7 @@ def test_no_file_is_too_long():
 
 @pytest.mark.parametrize("part", sorted(ALLOWED))
 def test_engine_parts_include_only_what_they_may(part):
-    files = [p for p in sources(".h", ".cpp") if p.parent == ROOT / "engine" / part]
+    files = [p for p in sources(".h", ".cpp", ".cu") if p.parent == ROOT / "engine" / part]
     assert files
     for path in files:
         for target in re.findall(r'#include "([\w/]+)/[\w.]+"', path.read_text()):
