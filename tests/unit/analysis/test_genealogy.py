@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+from analysis_tree import lines, random_tree
 from synthetic_run import write_run
 
 from hedon.analysis.genealogy import (
-    ALIVE,
     Genealogy,
     ancestry,
     common_ancestor,
@@ -34,21 +34,6 @@ AGENTS = pl.DataFrame(
     },
     schema_overrides={"parent_id": pl.Int64, "death_step": pl.Int64},
 )
-
-
-def random_tree(rng: np.random.Generator, count: int, founders: int) -> Genealogy:
-    """Each agent has a random earlier one as its parent; one in five lives."""
-    parent = np.array([-1 if i < founders else rng.integers(max(0, i - 30), i) for i in range(count)])
-    birth = np.where(parent < 0, 0, np.arange(count))
-    return Genealogy(parent, birth, np.where(rng.random(count) < 0.2, ALIVE, birth + 40), 0)
-
-
-def lines(tree: Genealogy, agent: int) -> list[int]:
-    """An agent and its ancestors, up to the founder."""
-    path = [agent]
-    while tree.parent[path[-1]] >= 0:
-        path.append(int(tree.parent[path[-1]]))
-    return path
 
 
 def test_the_small_pedigree() -> None:
