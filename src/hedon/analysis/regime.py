@@ -23,8 +23,8 @@ The rules, tried in this order, and why:
 
 The thresholds are conventions; they lie between clear cases. In steady numbers the births tried are deaths /
 (1 − refusal): a refusal of 0.1 says that without it a generation would grow by a ninth, the baseline's third that it
-would grow by half. A hunger of 0.25 is half of the baseline's. A tenth of the turnover of the starving is a mean life of
-some 50,000 steps.
+would grow by half. A hunger of 0.25 is half of the baseline's. A tenth of the turnover of the starving is a mean life
+of some 50,000 steps.
 """
 
 from dataclasses import dataclass
