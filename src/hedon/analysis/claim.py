@@ -142,7 +142,8 @@ def _table_claims() -> Iterator[Claim]:
         ):
             if bounds is not None:
                 text = f"{name} at the end, {bounds[0]} to {bounds[1]}"
-                yield Claim(name, preset, text, measure, "mean", f"{bounds[0]} … {bounds[1]}", *map(float, bounds))
+                low, high = float(bounds[0]), float(bounds[1])
+                yield Claim(name, preset, text, measure, "mean", f"{bounds[0]} … {bounds[1]}", low, high)
 
 
 def _extinction_claims() -> Iterator[Claim]:

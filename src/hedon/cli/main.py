@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hedon.cli import config
+from hedon.cli.analyze import analyze
 from hedon.cli.report import report
 from hedon.cli.run import run
 from hedon.error import HedonError
@@ -21,6 +22,7 @@ app = typer.Typer(
 # One file per command or group of commands; they stand in the help in this order.
 app.command()(run)
 app.command()(report)
+app.command()(analyze)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 
@@ -47,6 +49,7 @@ def _hedon(
       hedon run baseline
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
       hedon report runs/poison
+      hedon analyze runs/poison --only selection,drift
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
     """

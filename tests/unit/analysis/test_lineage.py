@@ -51,7 +51,8 @@ def test_coalescence() -> None:
     dead = Genealogy(tree.parent, tree.birth, np.array([30, 15, 40, 45, 46]), 0)
     assert coalescence(dead, 50).alive == 0
     assert survivors(dead).tolist() == [4]
-    assert survivors(Genealogy(*(np.empty(0, np.int64),) * 3, 0)).tolist() == []
+    nobody = np.empty(0, np.int64)
+    assert survivors(Genealogy(nobody, nobody, nobody, 0)).tolist() == []
 
 
 def test_lines_end_with_the_living(tmp_path: Path) -> None:

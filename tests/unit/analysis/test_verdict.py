@@ -41,7 +41,10 @@ def test_rules(worlds: list[WorldRecord]) -> None:
     same = judge(claim([90.0, 100.0, 110.0], "ratio", low=100 / 1.5, high=150.0), "c", three)
     assert (same.verdict, same.value) == ("holds", pytest.approx(np.exp(np.mean(np.log([90, 100, 110])))))
     wide = judge(claim([-3.0, 0.0, 3.0, -4.0, 4.0, 3.5, -3.5, 1, 2, -2], "spread", low=1.0), "c", worlds[:10])
-    assert (wide.verdict, wide.value) == ("holds", pytest.approx(np.std([-3, 0, 3, -4, 4, 3.5, -3.5, 1, 2, -2], ddof=1)))
+    assert (wide.verdict, wide.value) == (
+        "holds",
+        pytest.approx(np.std([-3, 0, 3, -4, 4, 3.5, -3.5, 1, 2, -2], ddof=1)),
+    )
     most = judge(claim([1.0] * 12, "share", low=0.5), "c", worlds)
     assert (most.verdict, most.value, most.low) == ("holds", 1.0, pytest.approx(0.025 ** (1 / 12)))
     assert judge(claim([1.0] * 4, "share", low=0.5), "c", worlds[:4]).verdict == "undecided"
