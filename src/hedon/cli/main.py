@@ -7,6 +7,7 @@ import typer
 
 from hedon.cli import config
 from hedon.cli.analyze import analyze
+from hedon.cli.demography import demography
 from hedon.cli.report import report
 from hedon.cli.run import run
 from hedon.error import HedonError
@@ -23,6 +24,7 @@ app = typer.Typer(
 app.command()(run)
 app.command()(report)
 app.command()(analyze)
+app.command()(demography)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 
