@@ -13,15 +13,20 @@ from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
 
-_HIDDEN = ("source", "region_low", "region_high", "text", "window")  # in the files
+HIDDEN = ("source", "region_low", "region_high", "window")
+"""Columns that only the files hold."""
 _INTERVAL = ("low", "high")
 
 
-def cells(table: ResultTable) -> tuple[list[str], list[list[str]]]:
+def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str], list[list[str]]]:
     """What a reader sees of a table: headers and rows.
 
     The bounds of an interval become one column, empty below three worlds; a column `condition` with a single
     value is left out.
+
+    Args:
+        table: the results.
+        hidden: columns that are left out too.
     """
     rows = table.rows
     single = "condition" in rows.columns and rows["condition"].n_unique() == 1
@@ -29,7 +34,7 @@ def cells(table: ResultTable) -> tuple[list[str], list[list[str]]]:
     names = [
         c
         for c in rows.columns
-        if c not in _HIDDEN and not (c == "condition" and single) and not (c == "high" and merged)
+        if c not in hidden and not (c == "condition" and single) and not (c == "high" and merged)
     ]
     headers = ["95 % interval" if merged and c == "low" else c.replace("_", " ") for c in names]
     shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
@@ -53,7 +58,7 @@ def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
 
 
 def _printed(table: ResultTable) -> Table:
-    headers, rows = cells(table)
+    headers, rows = cells(table, (*HIDDEN, "text"))  # a terminal is too narrow for a claim in full
     printed = Table(
         title=escape(table.title),
         title_justify="left",

@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.genealogy import ALIVE, Genealogy, ancestry, common_ancestor, families, founder, living_at
+from hedon.analysis.genealogy import Genealogy, ancestry, common_ancestor, families, founder, living_at
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ def lines_through_time(
 ) -> pl.DataFrame:
     """The lines that lead to the survivors, back through time, beside all who lived then.
 
-    An agent carries a line from its birth until its last child with a surviving line is born, or until now
-    if it survives.
+    An agent carries a line from its birth until its last child with a surviving line is born; a survivor
+    carries it on.
 
     Args:
         tree: the pedigree.
@@ -67,8 +67,10 @@ def lines_through_time(
         By step and weight: step, weight, lines (how many lead to the survivors), alive, line_mean (mean
         weight over the lines), living_mean (mean over all alive). Null where there is nobody.
     """
-    marked = ancestry(tree, survivors(tree))
-    until = np.where(marked & tree.alive, ALIVE, -1)
+    last = survivors(tree)
+    marked = ancestry(tree, last)
+    until = np.full(tree.size, -1, np.int64)
+    until[last] = tree.death[last]
     heirs = np.flatnonzero(marked & (tree.parent >= 0))
     np.maximum.at(until, tree.parent[heirs], tree.birth[heirs])
     carriers = np.flatnonzero(marked)

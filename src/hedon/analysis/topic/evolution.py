@@ -6,13 +6,13 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.claim import last_mean
-from hedon.analysis.cohort import genome_distribution, window_bounds, with_cohorts
+from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.drift import drift_tests, world_drift
 from hedon.analysis.genealogy import genealogy
 from hedon.analysis.mode import modes
 from hedon.analysis.price import price
 from hedon.analysis.selection import selection
-from hedon.analysis.topic.life import COMPLETE, Conditions, window_count
+from hedon.analysis.topic.life import Conditions, window_count
 from hedon.analysis.topic.result import SEED, ResultTable, generator, labels, over_worlds, table
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.budget import energy_budget
-from hedon.analysis.cohort import window_bounds, with_cohorts
+from hedon.analysis.cohort import COMPLETE, window_bounds, with_cohorts
 from hedon.analysis.food import food_per_agent_step, food_per_step
 from hedon.analysis.generation import generation_time
 from hedon.analysis.population import run_tail
@@ -21,8 +21,6 @@ Conditions = Mapping[str, Sequence[WorldRecord]]
 _AGES = 200  # points of a survival curve in the records of the analysis
 _PER_WINDOW = 200  # agents that a window of births should hold
 _WINDOWS = 10  # of a run, at most
-COMPLETE = 0.95
-"""Share of a cohort that must have died for its lives to count as known in full."""
 
 
 def window_count(worlds: Sequence[WorldRecord]) -> int:
