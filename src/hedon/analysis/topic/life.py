@@ -109,8 +109,8 @@ def reproductive_success(conditions: Conditions) -> list[ResultTable]:
         whole.group_by("condition", "seed", maintain_order=True).agg(pl.col(*quantities).mean()) if rows else whole
     )
     note = (
-        f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, the "
-        "opportunity would be 1 / mean."
+        f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, in "
+        "lives of exponential length, the opportunity would be 1 + 1 / mean."
     )
     return [
         table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
