@@ -98,16 +98,16 @@ def selection(
     z = _within_strata(weights)
     z[:, np.abs(z).max(axis=0, initial=0.0) < _ROUNDING] = 0.0
     sd = z.std(axis=0) if len(z) else np.full(len(names), np.nan)
+    tables = np.full((len(FITNESS), 3, len(STATISTICS), len(names)), np.nan)
+    if cohort.height >= FEWEST:
+        omega = np.stack([_relative(fitness[name]) for name in FITNESS], axis=1)
+        tables = _estimates(z, omega, sd, _sibships(cohort), rng, replicates)
     results = []
-    for name in FITNESS:
-        values = fitness[name]
-        table = np.full((3, len(STATISTICS), len(names)), np.nan)
-        if cohort.height >= FEWEST and values.mean() > 0:
-            table = _estimates(z, _relative(values), sd, _sibships(cohort), rng, replicates)
-        mean = float(values.mean()) if len(values) else float("nan")
+    for name, table in zip(FITNESS, tables, strict=True):
+        mean = float(fitness[name].mean()) if cohort.height else float("nan")
         for i, weight in enumerate(names):
             numbers = {
-                f"{statistic}{bound}": float(table[b, k, i])
+                f"{statistic}{bound}": float(table[b, k, i]) if mean > 0 else float("nan")
                 for k, statistic in enumerate(STATISTICS)
                 for b, bound in enumerate(("", "_low", "_high"))
             }
@@ -125,38 +125,53 @@ def differential_and_gradient(z: Floats, omega: Floats) -> tuple[Floats, Floats]
     Returns:
         Each (p,). The gradient of a weight without variance is NaN, and the others are as without it.
     """
-    features = _features(z, omega)
-    s, beta = _solve(features.sum(axis=0, keepdims=True), z.shape[1])
+    features = _features(z, omega[:, None])
+    s, beta = _solve(features.sum(axis=0, keepdims=True), z.shape[1], 0)
     return s[0], beta[0]
 
 
 def _estimates(
     z: Floats, omega: Floats, sd: Floats, cluster: NDArray[np.int64], rng: np.random.Generator, replicates: int
 ) -> Floats:
-    """Value and bounds of the four statistics of each weight, shape (3, 4, p)."""
+    """Value and bounds of the four statistics of each weight, by measure of fitness, shape (f, 3, 4, p).
+
+    All measures are taken from the same bootstrap samples, since making these takes nearly all the time.
+    """
     scale = np.where(sd > 0, sd, 1.0)
     features = _features(z / scale, omega)
     sums = np.concatenate([features.sum(axis=0, keepdims=True), resampled_sums(features, cluster, rng, replicates)])
-    s, beta = _solve(sums, z.shape[1])
     varies = np.where(sd > 0, 1.0, np.nan)
-    # In units of the whole cohort's standard deviation, also within a bootstrap sample.
-    statistics = np.stack([s * scale, s * varies, beta / scale, beta], axis=1)  # (1 + replicates, 4, p)
-    low, high = percentile_interval(statistics[1:])
-    return np.stack([statistics[0], low, high])
+    tables = []
+    for k in range(omega.shape[1]):
+        s, beta = _solve(sums, z.shape[1], k)
+        # In units of the whole cohort's standard deviation, also within a bootstrap sample.
+        statistics = np.stack([s * scale, s * varies, beta / scale, beta], axis=1)  # (1 + replicates, 4, p)
+        low, high = percentile_interval(statistics[1:])
+        tables.append(np.stack([statistics[0], low, high]))
+    return np.stack(tables)
 
 
 def _features(z: Floats, omega: Floats) -> Floats:
-    """What has to be summed over agents for all moments: 1, ω, z, ωz, and the upper triangle of zz, (n, q)."""
+    """What has to be summed over agents for all moments: 1, z, the upper triangle of zz, and each ω with its ωz.
+
+    Args:
+        z: weights, shape (n, p).
+        omega: relative fitness by each measure, shape (n, f).
+    """
     first, second = np.triu_indices(z.shape[1])
-    one = np.ones((len(z), 1))
-    return np.hstack([one, omega[:, None], z, omega[:, None] * z, z[:, first] * z[:, second]])
+    parts = [np.ones((len(z), 1)), z, z[:, first] * z[:, second]]
+    for column in omega.T:
+        parts += [column[:, None], column[:, None] * z]
+    return np.hstack(parts)
 
 
-def _solve(sums: Floats, p: int) -> tuple[Floats, Floats]:
-    """Differentials and gradients from sums of features, each (samples, p)."""
+def _solve(sums: Floats, p: int, measure: int) -> tuple[Floats, Floats]:
+    """Differentials and gradients on one measure of fitness from sums of features, each (samples, p)."""
     means = sums[:, 1:] / sums[:, :1]
-    omega, z, omega_z, zz = np.split(means, (1, 1 + p, 1 + 2 * p), axis=1)
     first, second = np.triu_indices(p)
+    begin = p + len(first) + measure * (1 + p)
+    z, zz = means[:, :p], means[:, p : p + len(first)]
+    omega, omega_z = means[:, begin : begin + 1], means[:, begin + 1 : begin + 1 + p]
     covariance = np.empty((len(sums), p, p))
     covariance[:, first, second] = covariance[:, second, first] = zz - z[:, first] * z[:, second]
     s = omega_z / omega - z
