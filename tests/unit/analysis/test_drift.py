@@ -59,6 +59,11 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     tree = chain([-1, 0, 1], [0, 5, 15])
     values = neutral_means(tree, np.array([1, 2]), frozen, rng, 20_000)
     assert quartile(values) == pytest.approx(0.15, rel=0.05)  # (X + 2·X)/2
+    # Steps far beyond the limit leave signs: equal noise gives equal ones, that of another number often not.
+    signs = dataclasses.replace(frozen, scale=1e6, limit=1.0)
+    for second_birth, equal in ((15, 1.0), (6, 0.5)):
+        values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
+        assert np.mean(np.abs(values) > 0.5) == pytest.approx(equal, abs=0.03)
     assert mutation_law(load_config("baseline", "released")).frozen
     assert mutation_law(load_config("baseline")) == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024)
 

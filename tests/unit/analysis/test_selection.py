@@ -44,6 +44,20 @@ def test_the_truth_of_a_log_linear_fitness_is_found_and_covered() -> None:
     assert neutral < trials
 
 
+def test_both_measures_of_fitness_are_regressed() -> None:
+    rng = np.random.default_rng(8)
+    z = rng.normal(size=(300, 3)).astype(np.float32).astype(np.float64)  # as they are recorded
+    agents = cohort(z, rng.poisson(1.0, 300))
+    lives = np.round(1000 * np.exp(0.3 * z[:, 1])).astype(int)
+    agents = agents.with_columns(death_step=pl.col("birth_step") + lives)
+    found = selection(agents, NAMES, 10**6, rng, replicates=50)
+    design = np.column_stack([np.ones(300), z])
+    for rows, fitness in ((found[:3], agents["children"].to_numpy()), (found[3:], lives)):
+        slopes = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:]
+        np.testing.assert_allclose([row.gradient for row in rows], slopes, rtol=1e-9)
+    assert found[4].gradient_low > 0.2
+
+
 def test_raw_and_standardized_agree() -> None:
     rng = np.random.default_rng(3)
     row = selection(cohort(rng.normal(0, 2, (400, 3)), rng.poisson(1.0, 400)), NAMES, 1000, rng)[0]
@@ -62,6 +76,7 @@ def test_a_common_drift_of_weights_and_fitness_is_no_selection() -> None:
     row = selection(cohort(z, fitness), NAMES, 10**6, rng, replicates=200)[0]
     assert naive[0] < -0.1
     assert abs(row.gradient) < 0.05
+    assert row.sd == pytest.approx(1.0, abs=0.03)  # among contemporaries, without the drift
     assert row.gradient_low < 0 < row.gradient_high
 
 
