@@ -23,30 +23,31 @@ class Verdict:
     """What some worlds of one condition say of one claim.
 
     Attributes:
-        claim, text: its name and its words.
+        claim: its name.
         condition: whose worlds were asked.
-        paper: what the paper reports.
+        verdict: "holds", "fails" or "undecided".
         value: our figure; NaN where there is none, as its bounds.
         low, high: bounds of its 95 % interval.
-        region_low, region_high: where the claim holds.
+        paper: what the paper reports.
         worlds: that the figure is made of.
-        verdict: "holds", "fails" or "undecided".
         reason: why it is undecided, or what else a reader must know.
-        source: where the claim stands.
+        text: the claim in words.
+        region_low, region_high: where it holds.
+        source: where it stands.
     """
 
     claim: str
-    text: str
     condition: str
-    paper: str
+    verdict: str
     value: float
     low: float
     high: float
+    paper: str
+    worlds: int
+    reason: str
+    text: str
     region_low: float
     region_high: float
-    worlds: int
-    verdict: str
-    reason: str
     source: str = SOURCE
 
 
@@ -80,17 +81,17 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
         reason = "; ".join(filter(None, [reason, f"{left_out} extinct left out, as in the paper"]))
     return Verdict(
         claim.name,
-        claim.text,
         condition,
-        claim.paper,
+        name,
         value,
         low,
         high,
+        claim.paper,
+        len(figures),
+        reason,
+        claim.text,
         claim.low,
         claim.high,
-        len(figures),
-        name,
-        reason,
     )
 
 
