@@ -27,6 +27,8 @@ RUN/
   checkpoints/step-….npz         the newest two, for `hedon resume` and `hedon branch`
   final.npz                      last state of one world, for a picture
   summary.json, figures/*.png    made at the end of the run, and again by `hedon report RUN`
+  report.html, report.md         likewise: everything on one page
+  analysis/                      likewise, and by `hedon analyze RUN`: every number, as JSON and CSV
 ```
 
 Files appear whole or not at all, so a run can be read while it goes on, and what was written before a crash

@@ -1,15 +1,19 @@
-"""Makes a run's `summary.json` and figures from its folder alone, as often as one likes."""
+"""Makes the report of some runs from their folders alone, as often as one likes.
+
+Each run gets its `summary.json`. All runs together get figures, `analysis.json` with a CSV file per table, and the
+same on one page: `report.html`, which holds its figures and needs nothing else, and `report.md`.
+"""
 
 import json
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
-from hedon.analysis.figure_history import draw_history
-from hedon.analysis.figure_population import draw_population
-from hedon.analysis.figure_weights import draw_weights
+from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
+from hedon.analysis.condition_figure import NamedFigure, condition_figures
 from hedon.analysis.figure_world import draw_world, telling_agent
-from hedon.analysis.style import food_colors, save_figure
+from hedon.analysis.page import FigureFile, html_page, markdown_page
+from hedon.analysis.style import food_colors, save_figure, svg_bytes
 from hedon.analysis.summary import summarize
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
@@ -17,39 +21,82 @@ from hedon.record.folder import FIGURES, SUMMARY
 from hedon.record.reader import Run
 from hedon.record.snapshot import load_snapshot
 
+HTML, MARKDOWN = "report.html", "report.md"
 
-def write_report(run: Run) -> list[Path]:
-    """Writes the summary and the figures of a run into its folder, over those that are there.
 
-    Damaged parts are left out; the summary names them. The picture of the world needs `final.npz`.
+def write_report(*runs: Run, folder: Path | None = None) -> list[Path]:
+    """Writes the report of some runs, over those that are there.
+
+    Damaged parts are left out; the summary names them. The picture of a world needs `final.npz`.
+
+    Args:
+        runs: one or more.
+        folder: for all but the summaries; by default that of the run, or `report` for several.
 
     Returns:
-        The files written: `summary.json`, then `figures/*.png`.
+        The files written: a `summary.json` per run, `report.html`, `report.md`, `analysis.json` (beside its CSV
+        files), `figures/*.png`.
 
     Raises:
-        RecordError: the folder cannot be written, or `final.npz` is damaged; all other files are there then.
+        RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
     """
-    text = json.dumps(summarize(run), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
-    kinds, neutral = run.food_kinds, run.neutral_names
-    colors = food_colors(kinds, run.manifest.food_colors)
+    folder = folder or (runs[0].path if len(runs) == 1 else Path("report"))
+    analysis = analyze(runs)
+    faults: list[RecordError] = []
     try:
-        write_atomically(run.path / SUMMARY, lambda file: file.write(text.encode()))
-        (run.path / FIGURES).mkdir(exist_ok=True)
-        files = [
-            run.path / SUMMARY,
-            _save(run, "weights", draw_weights(agents, kinds, neutral)),
-            _save(run, "history", draw_history(population, kinds, neutral, colors)),
-            _save(run, "population", draw_population(population, kinds, colors)),
-        ]
-        snapshot = load_snapshot(run.path)
-        if snapshot is not None:
-            focus = telling_agent(snapshot)
-            files.append(_save(run, "world", draw_world(snapshot, colors, [] if focus is None else [focus])))
+        summaries = [_write_summary(run) for run in runs]
+        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
+        figures = [_save(folder, group, named) for group, named in _figures(analysis, faults)]
+        answers = write_analysis(analysis, folder / ANALYSIS)[0]
+        pages = {HTML: html_page(analysis, figures), MARKDOWN: markdown_page(analysis, figures)}
+        for name, text in pages.items():
+            content = text.encode()
+            write_atomically(folder / name, lambda file, content=content: file.write(content))
     except OSError as error:
-        raise RecordError(f"cannot write the report into {run.path}: {error}") from error
-    return files
+        raise RecordError(f"cannot write the report into {folder}: {error}") from error
+    if faults:
+        raise faults[0]
+    return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in figures)]
 
 
-def _save(run: Run, name: str, figure: Figure) -> Path:
-    return save_figure(figure, run.path / FIGURES / f"{name}.png")
+def _write_summary(run: Run) -> Path:
+    text = json.dumps(summarize(run), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    write_atomically(run.path / SUMMARY, lambda file: file.write(text.encode()))
+    return run.path / SUMMARY
+
+
+def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
+    """Every figure with the condition that it belongs to; damaged snapshots are noted and left out."""
+    for condition, worlds in analysis.conditions.items():
+        for named in condition_figures(worlds, analysis.tables):
+            yield condition, _with_prefix(condition, named, several=len(analysis.conditions) > 1)
+    for run in analysis.runs:
+        condition = _condition_of(run, analysis)
+        try:
+            snapshot = load_snapshot(run.path)
+        except RecordError as fault:
+            faults.append(fault)
+            continue
+        if snapshot is not None and condition is not None:
+            focus = telling_agent(snapshot)
+            colors = food_colors(snapshot.food_kinds, run.manifest.food_colors)
+            drawn = draw_world(snapshot, colors, [] if focus is None else [focus])
+            named = NamedFigure("world", "What does a world look like?", drawn)
+            yield condition, _with_prefix(run.path.name, named, several=len(analysis.runs) > 1)
+
+
+def _condition_of(run: Run, analysis: Analysis) -> str | None:
+    """The condition that a run's worlds belong to; None where all of them are kept from another run."""
+    found = (c for c, worlds in analysis.conditions.items() for world in worlds if world.run == run.path.name)
+    return next(found, None)
+
+
+def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigure:
+    """A name of its own where the report has such a figure more than once."""
+    slug = re.sub(r"[^a-z0-9]+", "-", prefix.lower()).strip("-")
+    return NamedFigure(f"{slug}-{named.name}" if several else named.name, named.question, named.figure)
+
+
+def _save(folder: Path, condition: str, named: NamedFigure) -> FigureFile:
+    path = save_figure(named.figure, folder / FIGURES / f"{named.name}.png").relative_to(folder)
+    return FigureFile(condition, named.question, path.as_posix(), svg_bytes(named.figure))

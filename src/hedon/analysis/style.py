@@ -3,7 +3,8 @@
 Colors: Okabe & Ito (2008), "Color universal design", and grays.
 """
 
-from collections.abc import Iterator, Sequence
+import io
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -87,6 +88,15 @@ def save_figure(figure: Figure, path: Path) -> Path:
     return path
 
 
+def svg_bytes(figure: Figure) -> bytes:
+    """A figure as SVG with letters as outlines, the same bytes each time and on each machine."""
+    buffer = io.BytesIO()
+    with styled():
+        mpl.rcParams["svg.hashsalt"] = "hedon"
+        figure.savefig(buffer, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None, "Creator": None})
+    return buffer.getvalue()
+
+
 def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
     """A color per food kind: the wanted ones, where they are given, else the defaults in order."""
     given = wanted if len(wanted) == len(food_kinds) else [FOOD_COLORS[i % 8] for i in range(len(food_kinds))]
@@ -110,3 +120,20 @@ def step_unit(last_step: float) -> tuple[float, str]:
 def say_empty(axes: Axes, text: str) -> None:
     """Writes into the middle of axes why there is nothing to see."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
+
+
+def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
+    """What the panel of each weight is called: those that enter the reward, and the first neutral marker."""
+    titles = {name: f"weight of {name.removeprefix('w_')} food" for name in reward_names}
+    return titles | {"w_action": "weight of action"} | dict.fromkeys(neutral_names[:1], "neutral marker")
+
+
+def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
+    """A color per weight: that of the food kind, or those of action and of neutral markers.
+
+    Args:
+        names: genome columns.
+        kinds: color per food kind.
+    """
+    special = {"w_action": ACTION_COLOR}
+    return {name: special.get(name) or kinds.get(name.removeprefix("w_"), NEUTRAL_COLOR) for name in names}

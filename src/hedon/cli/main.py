@@ -6,7 +6,9 @@ from typing import Annotated
 import typer
 
 from hedon.cli import config
+from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
+from hedon.cli.demography import demography
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
@@ -25,6 +27,8 @@ app.command()(run)
 app.command()(resume)
 app.command()(branch)
 app.command()(report)
+app.command()(analyze)
+app.command()(demography)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 
@@ -52,6 +56,7 @@ def _hedon(
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
       hedon resume runs/poison --steps 2048000
       hedon report runs/poison
+      hedon analyze runs/poison --only selection,drift
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
     """

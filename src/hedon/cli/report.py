@@ -12,24 +12,27 @@ if TYPE_CHECKING:
 
 
 def report(
-    run: Annotated[Path, typer.Argument(help="Folder of a run, finished or not.")],
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Folders of runs, finished or not.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the report; by default RUN itself, or report for several runs.")
+    ] = None,
 ) -> None:
-    """Summarize a run and draw its figures.
+    """Summarize runs on one page, with figures, tables and the paper's claims.
 
-    Writes RUN/summary.json and RUN/figures/*.png, over those that are there, and prints the figures beside
-    the paper's. Works on a run that goes on, was interrupted or has damaged files; the summary then says so.
+    Writes report.html (one file that holds everything, for any browser), report.md, figures/*.png and analysis/
+    (every number, as JSON and CSV), and RUN/summary.json for each run, over those that are there. Prints our figures
+    beside the paper's. Works on runs that go on, were interrupted or have damaged files; the report then says so.
 
+    \b
     Examples:
-
-        hedon report runs/baseline
-
-        hedon report runs/small && jq .mean_lifetime runs/small/summary.json
+      hedon report runs/baseline
+      hedon report runs/small runs/large --out comparison
     """
-    show_report(run, make_console())
+    show_report(runs[0], make_console(), *runs[1:], out=out)
 
 
-def show_report(run: Path, console: "Console") -> None:
-    """Writes a run's summary and figures, and prints the table and where the files are."""
+def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None) -> None:
+    """Writes the report of one run, or of it and others, and prints their summaries and where the files are."""
     # Imported here: they take seconds, for which neither another command nor the start of a run should wait.
     import json
 
@@ -37,7 +40,9 @@ def show_report(run: Path, console: "Console") -> None:
     from hedon.analysis.summary_table import summary_table
     from hedon.record.reader import open_run
 
-    files = write_report(open_run(run))
-    console.print(summary_table(json.loads(files[0].read_text(encoding="utf-8"))))
+    runs = [open_run(path) for path in (run, *others)]
+    files = write_report(*runs, folder=out)
+    for file in files[: len(runs)]:
+        console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
     for file in files:
         console.print(f"wrote {file}", soft_wrap=True)

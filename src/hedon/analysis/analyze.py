@@ -1,0 +1,94 @@
+"""Answers all topics about some runs, and writes the answers: `analysis.json` and one CSV file per table."""
+
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hedon.analysis.summary import plain
+from hedon.analysis.topic.result import ResultTable
+from hedon.analysis.topic.topic import TOPICS, run_topics
+from hedon.analysis.world import WorldRecord, by_condition, read_worlds
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.reader import Run
+
+ANALYSIS = "analysis"
+"""Folder of the answers within the folder of a single run."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """The answers about some runs.
+
+    Attributes:
+        runs: as they were read.
+        conditions: their worlds, by condition.
+        tables: by name, in the order of the topics.
+    """
+
+    runs: tuple[Run, ...]
+    conditions: Mapping[str, Sequence[WorldRecord]]
+    tables: Mapping[str, ResultTable]
+
+
+def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS)) -> Analysis:
+    """Answers some topics about all runs together; runs of equal configs count as one condition.
+
+    Raises:
+        RecordError, ConfigError: a run cannot be read.
+    """
+    conditions = by_condition(read_worlds(runs))
+    return Analysis(tuple(runs), conditions, {table.name: table for table in run_topics(conditions, topics)})
+
+
+def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
+    """Writes `analysis.json` and one CSV file per table into a folder, over those that are there.
+
+    Returns:
+        The files.
+
+    Raises:
+        RecordError: the folder cannot be written.
+    """
+    text = json.dumps(analysis_json(analysis), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    contents = {"analysis.json": text.encode()}
+    for name, table in analysis.tables.items():
+        buffer = io.BytesIO()
+        table.rows.write_csv(buffer)
+        contents[f"{name}.csv"] = buffer.getvalue()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            write_atomically(folder / name, lambda file, content=content: file.write(content))
+    except OSError as error:
+        raise RecordError(f"cannot write the analysis into {folder}: {error}") from error
+    return [folder / name for name in contents]
+
+
+def analysis_json(analysis: Analysis) -> dict[str, Any]:
+    """The content of `analysis.json`: runs with their manifests, worlds, and every table with its rows."""
+    worlds = [
+        {
+            "condition": world.condition,
+            "run": world.run,
+            "seed": world.seed,
+            "last_step": world.last_step,
+            "extinct_step": world.extinct_step,
+            "agents": world.agents.height,
+        }
+        for group in analysis.conditions.values()
+        for world in group
+    ]
+    return plain(
+        {
+            "runs": [{"path": str(run.path), "manifest": vars(run.manifest)} for run in analysis.runs],
+            "worlds": worlds,
+            "tables": {
+                name: {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}
+                for name, table in analysis.tables.items()
+            },
+        }
+    )

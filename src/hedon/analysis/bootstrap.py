@@ -1,0 +1,55 @@
+"""How much would a number change with other agents? Resampling whole families at once, many times over."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.analysis.interval import LEVEL
+
+REPLICATES = 1000
+"""Enough for the 2.5 % points of an interval: some 25 replicates lie beyond each."""
+
+# Poisson numbers with mean 1 by one random byte each: 94 of 256 bytes give 0, 94 give 1, 47 give 2, and so on.
+# Mean 1.004 and variance 1.004; a draw costs a nanosecond.
+_COUNTS = np.repeat(np.arange(6, dtype=np.float32), (94, 94, 47, 16, 4, 1))
+_CHUNK = 4_000_000  # numbers held at a time, 16 MB
+
+
+def resampled_sums(
+    features: NDArray[np.float64],
+    cluster: NDArray[np.int64],
+    rng: np.random.Generator,
+    replicates: int = REPLICATES,
+) -> NDArray[np.float64]:
+    """Sums of features over bootstrap samples of clusters.
+
+    The number of times that a cluster is drawn is Poisson with mean 1, the limit of drawing with replacement
+    for many clusters.
+
+    Args:
+        features: one row per agent, shape (n, q). Best of order 1: sums are made in float32.
+        cluster: index of each agent's cluster, shape (n,), n > 0; agents of one cluster are drawn together.
+        rng: source of chance.
+        replicates: how many samples.
+
+    Returns:
+        Shape (replicates, q).
+    """
+    order = np.argsort(cluster, kind="stable")
+    first = np.flatnonzero(np.diff(cluster[order], prepend=cluster[order[:1]] - 1))
+    sums = np.add.reduceat(features[order], first, axis=0).astype(np.float32)
+    return np.concatenate([(draws @ sums).astype(np.float64) for draws in _draws(rng, replicates, len(sums))])
+
+
+def percentile_interval(values: NDArray[np.float64], level: float = LEVEL) -> NDArray[np.float64]:
+    """Lower and upper bound over the first axis of the replicates, shape (2, …); NaN where one is not finite."""
+    tail = 0.5 * (1.0 - level)
+    return np.quantile(values, (tail, 1.0 - tail), axis=0)
+
+
+def _draws(rng: np.random.Generator, replicates: int, count: int) -> Iterator[NDArray[np.float32]]:
+    """How often each cluster is drawn, in pieces of some replicates."""
+    piece = max(_CHUNK // max(count, 1), 1)
+    for first in range(0, replicates, piece):
+        yield _COUNTS[rng.integers(0, 256, (min(piece, replicates - first), count), np.uint8)]

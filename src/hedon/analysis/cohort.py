@@ -1,0 +1,51 @@
+"""Who was born when: birth cohorts, and the genomes in them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import polars as pl
+
+COMPLETE = 0.95
+"""Share of a cohort that must have died for its lives to count as known in full."""
+QUANTILES = {"q05": 0.05, "q25": 0.25, "median": 0.5, "q75": 0.75, "q95": 0.95}
+
+
+def with_cohorts(agents: pl.DataFrame, last_step: int, windows: int) -> pl.DataFrame:
+    """Adds the column `window`: the run is cut into windows of equal length, by step of birth.
+
+    Args:
+        agents: table `agents` of one world.
+        last_step: up to which the records reach [step].
+        windows: how many.
+    """
+    width = max(last_step / windows, 1.0)
+    index = (pl.col("birth_step") / width).floor().clip(0, windows - 1).cast(pl.Int32)
+    return agents.with_columns(window=index)
+
+
+def window_bounds(last_step: int, windows: int) -> np.ndarray:
+    """The steps between which the windows lie [step], shape (windows + 1,)."""
+    return np.linspace(0.0, max(last_step, windows), windows + 1).round().astype(np.int64)
+
+
+def complete_share(cohort: pl.DataFrame) -> float:
+    """The share of a cohort that has died, so that its lives and children are known in full; 1 for nobody."""
+    return 1.0 - cohort["death_step"].null_count() / cohort.height if cohort.height else 1.0
+
+
+def genome_distribution(agents: pl.DataFrame, names: Sequence[str]) -> pl.DataFrame:
+    """The distribution of each weight over each birth cohort.
+
+    Args:
+        agents: table `agents` of one world, with the column `window`.
+        names: genome columns.
+
+    Returns:
+        By window and weight: agents, mean, sd (null for a single agent), q05, q25, median, q75, q95.
+    """
+    tall = agents.select("window", *names).unpivot(index="window", variable_name="weight")
+    value = pl.col("value").cast(pl.Float64)
+    spread = {"agents": pl.len(), "mean": value.mean(), "sd": value.std()}
+    spread |= {name: value.quantile(q, "linear") for name, q in QUANTILES.items()}
+    order = pl.Enum(list(names))
+    return tall.group_by("window", pl.col("weight").cast(order)).agg(**spread).sort("window", "weight")

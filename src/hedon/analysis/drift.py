@@ -1,0 +1,190 @@
+"""Did a weight go further, or more in one direction, than drift alone would have carried it?
+
+Two controls. The *walk*: in each world, the mean weight of the agents born last is compared with neutral genes that
+mutate along the same pedigree (`walk`). Its rank among them becomes a standard normal *score*; over worlds,
+scores that lean to one side say that the weight was pushed in a *direction* (Stouffer), scores that are large,
+whatever their sign, that it was carried a *distance* (chi-squared): a weight with two modes shows in the second
+alone. The *marker*: whether a weight strays further from its start than the recorded neutral markers of the same
+worlds do.
+"""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.analysis.correction import holm
+from hedon.analysis.genealogy import genealogy
+from hedon.analysis.interval import mean_interval
+from hedon.analysis.walk import WALKS, mutation_law, neutral_means
+from hedon.analysis.weight import LAST_AGENTS
+from hedon.analysis.world import WorldRecord
+
+NAN = math.nan
+_EXACT = 12  # worlds up to which all sign flips are gone through
+_FLIPS = 10_000  # otherwise so many at random
+
+
+@dataclass(frozen=True)
+class WorldDrift:
+    """One weight of one world against neutral walks.
+
+    Attributes:
+        weight: genome column.
+        start: mean of the founders' law.
+        mean: of the agents born last.
+        null_low, null_median, null_high: the walks' median, and the bounds that 95 % of them lie between.
+        score: standard normal score of the mean's rank among the walks.
+        p: two-sided chance of such a rank under drift.
+    """
+
+    weight: str
+    start: float
+    mean: float
+    null_low: float
+    null_median: float
+    null_high: float
+    score: float
+    p: float
+
+
+@dataclass(frozen=True)
+class DriftTest:
+    """One weight of one condition against one control.
+
+    Attributes:
+        weight: genome column.
+        test: "direction" or "distance" (against walks), or "marker".
+        worlds: that enter it.
+        effect: for "direction" the mean score, in standard deviations of drift; for "distance" the root mean
+            square score, 1 under drift; for "marker" the mean of |displacement of the weight| − |displacement
+            of the markers|, in units of the weight.
+        low, high: bounds of the effect's 95 % interval: Student's t over worlds; for "distance" from the
+            chi-squared law of normal scores; NaN with fewer than two worlds.
+        p: two-sided; for "marker" from all sign flips of the differences.
+        p_holm: corrected for all reward weights and both tests against walks, or for all reward weights
+            against the marker; NaN for neutral markers, which are shown as a check of the method.
+    """
+
+    weight: str
+    test: str
+    worlds: int
+    effect: float
+    low: float
+    high: float
+    p: float
+    p_holm: float = NAN
+
+
+def start_of(world: WorldRecord, weight: str) -> float:
+    """Mean of the law from which founders draw a weight."""
+    genome = world.config.genome
+    if weight in world.neutral_names:
+        return 0.0
+    return genome.initial_mean_action if weight == "w_action" else genome.initial_mean_food
+
+
+def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
+    """Each weight of a world against walks along its pedigree.
+
+    Returns:
+        None at all where there is no pedigree, or one with gaps, whose walks would have no beginning.
+    """
+    tree = genealogy(world.agents)
+    if tree.gaps or not tree.size:
+        return []
+    last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
+    starts = {start_of(world, name) for name in world.weight_names}
+    null = {start: neutral_means(tree, last, mutation_law(world.config, start), rng, walks) for start in starts}
+    results = []
+    for name in world.weight_names:
+        start = start_of(world, name)
+        mean = float(world.agents[name].to_numpy()[last].mean(dtype=np.float64))
+        low, median, high = np.quantile(null[start], (0.025, 0.5, 0.975))
+        score = rank_score(mean, null[start])
+        p = float(2.0 * stats.norm.sf(abs(score)))
+        results.append(WorldDrift(name, start, mean, float(low), float(median), float(high), score, p))
+    return results
+
+
+def rank_score(value: float, null: NDArray[np.float64]) -> float:
+    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half."""
+    below = np.count_nonzero(null < value) + 0.5 * np.count_nonzero(null == value)
+    return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
+
+
+def drift_tests(
+    worlds: Sequence[Sequence[WorldDrift]],
+    reward_names: Sequence[str],
+    neutral_names: Sequence[str],
+    rng: np.random.Generator,
+) -> list[DriftTest]:
+    """The tests of one condition.
+
+    Args:
+        worlds: of `world_drift`, one per world; empty ones are left out.
+        reward_names: genome columns that enter the reward.
+        neutral_names: the neutral markers.
+        rng: for the sign flips, where there are too many for all of them.
+    """
+    known = [{result.weight: result for result in world} for world in worlds if world]
+    walked = [test for name in (*reward_names, *neutral_names) for test in _against_walks(name, known)]
+    marked = [_against_markers(name, neutral_names, known, rng) for name in reward_names if neutral_names]
+    return [*_corrected(walked, neutral_names), *_corrected(marked, neutral_names)]
+
+
+def sign_flip_p(values: NDArray[np.float64], rng: np.random.Generator) -> float:
+    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign."""
+    n = len(values)
+    if n <= _EXACT:
+        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
+        extra = 0
+    else:
+        signs = rng.choice((-1.0, 1.0), (_FLIPS, n))
+        extra = 1  # the sample itself is one of the draws
+    sums = np.abs(signs @ values)
+    as_far = np.count_nonzero(sums >= abs(values.sum()) * (1.0 - 1e-12))
+    return float((as_far + extra) / (len(sums) + extra))
+
+
+def _against_walks(name: str, worlds: Sequence[dict[str, WorldDrift]]) -> list[DriftTest]:
+    scores = np.array([world[name].score for world in worlds])
+    n = len(scores)
+    if n == 0:
+        return [DriftTest(name, test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance")]
+    p = float(2.0 * stats.norm.sf(abs(scores.sum()) / np.sqrt(n)))
+    square = float(np.sum(scores**2))
+    low, high = (math.sqrt(square / stats.chi2.ppf(q, n)) if n > 1 else NAN for q in (0.975, 0.025))
+    return [
+        DriftTest(name, "direction", n, *_mean_and_bounds(scores), p),
+        DriftTest(name, "distance", n, math.sqrt(square / n), low, high, float(stats.chi2.sf(square, n))),
+    ]
+
+
+def _against_markers(
+    name: str, markers: Sequence[str], worlds: Sequence[dict[str, WorldDrift]], rng: np.random.Generator
+) -> DriftTest:
+    excess = np.array(
+        [_displacement(w[name]) - np.mean([_displacement(w[m]) for m in markers]) for w in worlds], np.float64
+    )
+    p = sign_flip_p(excess, rng) if len(excess) else NAN
+    return DriftTest(name, "marker", len(excess), *_mean_and_bounds(excess), p)
+
+
+def _mean_and_bounds(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    interval = mean_interval(values)
+    mean, low, high = (NAN if number is None else number for number in (interval.mean, interval.low, interval.high))
+    return mean, low, high
+
+
+def _displacement(result: WorldDrift) -> float:
+    return abs(result.mean - result.start)
+
+
+def _corrected(tests: Sequence[DriftTest], neutral_names: Sequence[str]) -> list[DriftTest]:
+    corrected = holm([NAN if test.weight in neutral_names else test.p for test in tests])
+    return [DriftTest(**{**vars(test), "p_holm": p}) for test, p in zip(tests, corrected, strict=True)]

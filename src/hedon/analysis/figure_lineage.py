@@ -1,0 +1,81 @@
+"""Did the ancestors of those who are left differ from all who lived with them?"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import polars as pl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hedon.analysis.interval import SHOWN_FROM, mean_interval
+from hedon.analysis.style import INK, MUTED, new_figure, say_empty, step_unit, styled
+from hedon.analysis.trace import draw_zero_line
+
+
+def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mapping[str, str]) -> Figure:
+    """The number of lines that lead to the survivors, and the weights along them.
+
+    Thick: mean weight over these lines; thin and gray: over all alive at that time. Both are means over
+    worlds, the band is the lines' 95 % interval. Time is counted back from the end, since lines are the fewer
+    the further one looks back.
+
+    Args:
+        lines: table `lineage` of one condition.
+        titles: per weight, in the order of the panels.
+        colors: per weight.
+    """
+    with styled():
+        figure = new_figure(2.2 * (len(titles) + 1) + 1.2, 2.9)
+        panels = figure.subplots(1, len(titles) + 1, sharex=True)
+        if lines.is_empty():
+            say_empty(panels[0], "no agents recorded")
+            return figure
+        unit, name = step_unit(float(lines["step"].to_numpy().max()))
+        first = lines.filter(pl.col("weight") == next(iter(titles)))
+        for rows in first.partition_by("seed"):
+            panels[0].step(
+                rows["step"].to_numpy() / unit, rows["lines"], where="post", color=INK, linewidth=1.0, alpha=0.6
+            )
+        panels[0].set_yscale("log")
+        panels[0].yaxis.set_major_formatter("{x:g}")
+        panels[0].set_title("lines to the survivors")
+        for axes, (weight, title) in zip(panels[1:], titles.items(), strict=True):
+            _draw_weight(axes, lines.filter(pl.col("weight") == weight), unit, colors[weight])
+            axes.set_title(title, color=colors[weight])
+            if axes is not panels[1]:
+                axes.sharey(panels[1])
+                axes.tick_params(labelleft=False)
+        for axes in panels:
+            axes.set_xlabel(f"time [{name}]")
+        panels[1].set_ylabel("mean weight")
+        handles = [
+            Line2D([], [], color=INK, linewidth=2.0, label="lines to the survivors"),
+            Line2D([], [], color=MUTED, linewidth=1.0, label="all alive"),
+        ]
+        figure.legend(handles=handles, loc="outside lower right", ncols=2)
+    return figure
+
+
+def _draw_weight(axes: Axes, rows: pl.DataFrame, unit: float, color: str) -> None:
+    draw_zero_line(axes)
+    for column, look in (
+        ("living_mean", {"color": MUTED, "linewidth": 1.0}),
+        ("line_mean", {"color": color, "linewidth": 2.0}),
+    ):
+        x, mean, low, high = _over_worlds(rows, column)
+        axes.plot(x / unit, mean, **look)
+        if column == "line_mean":
+            axes.fill_between(x / unit, low, high, color=color, alpha=0.13, linewidth=0)
+
+
+def _over_worlds(rows: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Step, mean and bounds over worlds; worlds are matched by the number of the point, for lengths may differ."""
+    numbered = rows.with_columns(point=pl.int_range(pl.len()).over("seed")).drop_nulls(column)
+    table = []
+    for part in numbered.sort("point").partition_by("point"):
+        interval = mean_interval(part[column])
+        bounds = (interval.low, interval.high) if interval.worlds >= SHOWN_FROM else (None, None)
+        table.append([float(part["step"].to_numpy().mean()), interval.mean, *bounds])
+    x, mean, low, high = np.array(table, np.float64).reshape(-1, 4).T
+    return x, mean, low, high

@@ -1,0 +1,49 @@
+"""In which regime was each world, and when?"""
+
+import polars as pl
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from hedon.analysis.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, ROOM
+from hedon.analysis.style import GREEN, INK, ORANGE, PALE, VIOLET, new_figure, say_empty, step_unit, styled
+
+REGIME_COLORS = {ROOM: ORANGE, FOOD: GREEN, IDLE: VIOLET, BETWEEN: PALE, EXTINCT: INK}
+_NAMED_WORLDS = 24  # rows that still have room for their seed
+
+
+def draw_regimes(regimes: pl.DataFrame) -> Figure:
+    """A row of colors per world, over time.
+
+    Args:
+        regimes: table `regime_time` of one condition.
+    """
+    seeds = regimes["seed"].unique(maintain_order=True).to_list() if regimes.height else []
+    with styled():
+        figure = new_figure(8.6, 1.15 + 0.24 * min(max(len(seeds), 1), 40))
+        axes = figure.subplots()
+        axes.grid(visible=False)
+        if not seeds:
+            say_empty(axes, "nothing recorded yet")
+            return figure
+        unit, name = step_unit(float(regimes["step"].to_numpy().max()))
+        for row, seed in enumerate(seeds):
+            mine = regimes.filter(pl.col("seed") == seed)
+            # Neighbors of one regime as one bar: seams between bars would show.
+            parts = mine.group_by(pl.col("regime").rle_id().alias("part"), maintain_order=True)
+            merged = parts.agg(pl.col("regime").first(), pl.col("step").max(), pl.col("steps").sum())
+            spans = [
+                ((step - steps) / unit, steps / unit) for step, steps in merged.select("step", "steps").iter_rows()
+            ]
+            colors = [REGIME_COLORS[regime] for regime in merged["regime"]]
+            axes.broken_barh(spans, (row - 0.4, 0.8), facecolors=colors, linewidth=0)
+        axes.set_ylim(len(seeds) - 0.4, -0.6)
+        axes.set_xlim(0, float(regimes["step"].to_numpy().max()) / unit)
+        axes.set_yticks(range(len(seeds)) if len(seeds) <= _NAMED_WORLDS else [])
+        axes.set_yticklabels([f"seed {seed}" for seed in seeds] if len(seeds) <= _NAMED_WORLDS else [])
+        for side in ("left", "bottom"):
+            axes.spines[side].set_visible(False)
+        axes.set_xlabel(f"time [{name}]")
+        there = set(regimes["regime"].to_list())
+        handles = [Patch(color=REGIME_COLORS[r], label=r) for r in REGIMES if r in there]
+        figure.legend(handles=handles, loc="outside upper left", ncols=len(handles), columnspacing=1.4)
+    return figure

@@ -1,0 +1,82 @@
+"""When was which weight selected, and how strongly?"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import polars as pl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hedon.analysis.cohort import COMPLETE
+from hedon.analysis.interval import SHOWN_FROM
+from hedon.analysis.style import new_figure, say_empty, step_unit, styled
+from hedon.analysis.trace import draw_zero_line
+
+_ROWS = {"children": "children", "lifespan": "length of life"}
+_LEAST_RANGE = 0.1  # of the gradient axis, so that noise does not look like selection
+
+
+def draw_selection(
+    windows: pl.DataFrame, worlds: pl.DataFrame, titles: Mapping[str, str], colors: Mapping[str, str]
+) -> Figure:
+    """Standardized gradients over time: a panel per weight, a row per measure of fitness.
+
+    Points with bars are means over worlds with their 95 % interval; with fewer than three worlds, the worlds
+    themselves with the bootstrap's. Hollow points stand for cohorts that have not all died.
+
+    Args:
+        windows: table `selection_window` of one condition.
+        worlds: table `selection_world` of the same condition.
+        titles: per weight, in the order of the panels.
+        colors: per weight.
+    """
+    with styled():
+        figure = new_figure(2.35 * len(titles) + 1.2, 4.4)
+        if worlds.is_empty():
+            say_empty(figure.subplots(), "nothing recorded yet")
+            return figure
+        panels = figure.subplots(len(_ROWS), len(titles), sharex=True, sharey=True, squeeze=False)
+        known = worlds.filter(pl.col("standard_gradient").is_not_null())
+        unit, name = step_unit(float(worlds["to_step"].to_numpy().max(initial=0.0)))
+        few = worlds["seed"].n_unique() < SHOWN_FROM or windows.is_empty()
+        for i, (fitness, label) in enumerate(_ROWS.items()):
+            for axes, (weight, title) in zip(panels[i], titles.items(), strict=True):
+                draw_zero_line(axes)
+                this = (pl.col("fitness") == fitness) & (pl.col("weight") == weight)
+                if few:
+                    _draw_worlds(axes, known.filter(this), unit, colors[weight])
+                else:
+                    _draw_means(axes, windows.filter(this), known.filter(this), unit, colors[weight])
+                if i == 0:
+                    axes.set_title(title, color=colors[weight])
+                else:
+                    axes.set_xlabel(f"born until [{name}]")
+            panels[i, 0].set_ylabel(f"gradient on\n{label}")
+        low, high = panels[0, 0].get_ylim()
+        panels[0, 0].set_ylim(min(low, -_LEAST_RANGE), max(high, _LEAST_RANGE))
+        if known.is_empty():
+            say_empty(panels[0, 0], "too few agents")
+    return figure
+
+
+def _draw_means(axes: Axes, windows: pl.DataFrame, worlds: pl.DataFrame, unit: float, color: str) -> None:
+    for rows in worlds.partition_by("seed"):
+        axes.plot(rows["to_step"].to_numpy() / unit, rows["standard_gradient"], color=color, linewidth=0.7, alpha=0.3)
+    rows = windows.drop_nulls(["mean", "low", "high"]).sort("to_step")
+    _bars(axes, rows["to_step"].to_numpy() / unit, rows.select("mean", "low", "high").to_numpy(), color)
+
+
+def _draw_worlds(axes: Axes, worlds: pl.DataFrame, unit: float, color: str) -> None:
+    for k, rows in enumerate(worlds.sort("seed", "window").partition_by("seed")):
+        steps = rows["to_step"].to_numpy()
+        shift = 0.15 * k * (steps[0] if len(steps) == 1 else np.diff(steps).min())
+        names = ("standard_gradient", "standard_gradient_low", "standard_gradient_high")
+        whole = rows["complete"].to_numpy() >= COMPLETE
+        _bars(axes, (steps - shift) / unit, rows.select(names).to_numpy(), color, whole)
+
+
+def _bars(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, whole: np.ndarray | None = None) -> None:
+    """Points with bars; the columns of the values are mean, low and high."""
+    axes.vlines(x, values[:, 1], values[:, 2], color=color, linewidth=1.3, alpha=0.8)
+    fill = [color] * len(x) if whole is None else [color if w else "white" for w in whole]
+    axes.scatter(x, values[:, 0], s=18, c=fill, edgecolors=color, linewidths=1.0, zorder=3)

@@ -1,0 +1,58 @@
+"""How long do agents live, counting those who still live?"""
+
+import numpy as np
+import polars as pl
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hedon.analysis.style import INK, MUTED, new_figure, say_empty, seed_color, step_unit, styled
+
+_LEGEND_SEEDS = 10
+_SHOWN_SHARE = 0.01  # of the newborn, below which the long tail of the axis is cut
+
+
+def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
+    """Survival curves, a color per world, with their intervals; the same on a logarithmic scale beside.
+
+    On the logarithmic scale a constant chance of death is a straight line, and one that rises with age bends
+    it downward. Dashed: the curve of an agent whose chance of death is that of the whole world at any age.
+
+    Args:
+        points: table `survival` of one condition.
+        lifetimes: table `lifetime_world` of the same condition.
+    """
+    with styled():
+        figure = new_figure(8.6, 3.3)
+        linear, logarithmic = figure.subplots(1, 2, sharex=True)
+        if points.is_empty():
+            say_empty(linear, "nobody died")
+            return figure
+        shown = points.filter(pl.col("share") >= _SHOWN_SHARE)
+        end = float(shown["age"].to_numpy().max())
+        unit, name = step_unit(end)
+        seeds = points["seed"].unique(maintain_order=True).to_list()
+        for i, seed in enumerate(seeds):
+            rows = points.filter(pl.col("seed") == seed)
+            age, color = rows["age"].to_numpy() / unit, seed_color(i)
+            low, high = (rows[bound].fill_null(strategy="forward").to_numpy() for bound in ("low", "high"))
+            for axes in (linear, logarithmic):
+                axes.step(age, rows["share"].to_numpy(), where="post", color=color, linewidth=1.4)
+                axes.fill_between(age, low, high, step="post", color=color, alpha=0.13, linewidth=0)
+        means = lifetimes["exposure_mean"].drop_nulls().to_numpy()
+        if len(means):
+            age = np.linspace(0, end, 100)
+            for axes in (linear, logarithmic):
+                axes.plot(age / unit, np.exp(-age / means.mean()), color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+        logarithmic.set_yscale("log")
+        logarithmic.set_ylim(_SHOWN_SHARE, 1.15)
+        linear.set(xlim=(0, end / unit), ylim=(0, 1.02), ylabel="share that lives on")
+        linear.set_title("survival")
+        logarithmic.set_title("the same, logarithmic")
+        logarithmic.yaxis.set_major_formatter("{x:g}")
+        for axes in (linear, logarithmic):
+            axes.set_xlabel(f"age [{name}]")
+        handles = [Line2D([], [], color=INK, linestyle=(0, (4, 3)), linewidth=1.0, label="constant chance of death")]
+        if 1 < len(seeds) <= _LEGEND_SEEDS:
+            handles += [Line2D([], [], color=seed_color(i), label=f"seed {seed}") for i, seed in enumerate(seeds)]
+        linear.legend(handles=handles, loc="upper right", labelcolor=MUTED)
+    return figure

@@ -1,0 +1,101 @@
+"""Whose descendants are left? Coalescence, the lines of the survivors, and the weights along them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from hedon.analysis.genealogy import Genealogy, ancestry, common_ancestor, families, founder, living_at
+
+
+@dataclass(frozen=True)
+class Coalescence:
+    """The common descent of those alive at one time.
+
+    Attributes:
+        step: when [step].
+        alive: agents alive.
+        families: founders with living descendants, or alive themselves.
+        largest: share of the living in the largest family; NaN where nobody lives.
+        ancestor_birth: birth of the most recent common ancestor [step]; NaN while several families are left.
+        depth: time since then [step]; NaN likewise: it is then longer than the run.
+    """
+
+    step: int
+    alive: int
+    families: int
+    largest: float
+    ancestor_birth: float
+    depth: float
+
+
+def coalescence(tree: Genealogy, step: int) -> Coalescence:
+    """Common descent of those alive after a step."""
+    alive = living_at(tree, step)
+    if not len(alive):
+        return Coalescence(step, 0, 0, np.nan, np.nan, np.nan)
+    sizes = np.bincount(founder(tree)[alive])
+    ancestor = common_ancestor(tree, alive)
+    birth = np.nan if ancestor is None else float(tree.birth[ancestor])
+    count = int(families(tree, np.array([step]))[0])
+    return Coalescence(step, len(alive), count, float(sizes.max() / len(alive)), birth, step - birth)
+
+
+def survivors(tree: Genealogy) -> NDArray[np.int64]:
+    """Those alive at the end of the records, or born last where nobody is: whose lines are followed."""
+    alive = np.flatnonzero(tree.alive)
+    return alive if len(alive) or not tree.size else np.array([int(np.argmax(tree.birth))])
+
+
+def lines_through_time(
+    tree: Genealogy, agents: pl.DataFrame, names: Sequence[str], steps: NDArray[np.int64]
+) -> pl.DataFrame:
+    """The lines that lead to the survivors, back through time, beside all who lived then.
+
+    An agent carries a line from its birth until its last child with a surviving line is born; a survivor
+    carries it on.
+
+    Args:
+        tree: the pedigree.
+        agents: table `agents` of the same world, by agent_id.
+        names: genome columns.
+        steps: times, ascending [step].
+
+    Returns:
+        By step and weight: step, weight, lines (how many lead to the survivors), alive, line_mean (mean
+        weight over the lines), living_mean (mean over all alive). Null where there is nobody.
+    """
+    last = survivors(tree)
+    marked = ancestry(tree, last)
+    until = np.full(tree.size, -1, np.int64)
+    until[last] = tree.death[last]
+    heirs = np.flatnonzero(marked & (tree.parent >= 0))
+    np.maximum.at(until, tree.parent[heirs], tree.birth[heirs])
+    carriers = np.flatnonzero(marked)
+    lines = _sums(tree.birth[carriers], until[carriers], None, steps)
+    alive = _sums(tree.birth, tree.death, None, steps)
+    rows = []
+    for name in names:
+        weight = agents[name].to_numpy().astype(np.float64)
+        on_lines = _sums(tree.birth[carriers], until[carriers], weight[carriers], steps)
+        in_all = _sums(tree.birth, tree.death, weight, steps)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            columns = {"step": steps, "lines": lines.astype(np.int64), "alive": alive.astype(np.int64)}
+            columns |= {"line_mean": on_lines / lines, "living_mean": in_all / alive}
+        rows.append(pl.DataFrame(columns, nan_to_null=True).with_columns(weight=pl.lit(name)))
+    order = ("step", "weight", "lines", "alive", "line_mean", "living_mean")
+    return pl.concat(rows).select(order)
+
+
+def _sums(
+    begin: NDArray[np.int64], end: NDArray[np.int64], value: NDArray[np.float64] | None, steps: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Sums of values (or counts) over those with begin <= step < end, for each step."""
+    total = np.zeros(len(steps))
+    for edge, sign in ((begin, 1.0), (end, -1.0)):
+        order = np.argsort(edge, kind="stable")
+        running = np.concatenate([[0.0], np.cumsum(np.ones(len(edge)) if value is None else value[order])])
+        total += sign * running[np.searchsorted(edge[order], steps, side="right")]
+    return total

@@ -1,0 +1,136 @@
+"""In which regime is a world? Selection means something else in each.
+
+What stops a population from growing is read off five rates of the table `population`, over intervals long enough for
+some hundred births:
+
+- *hunger*: share of what was charged that could not be paid, since energy cannot fall below 0.
+- *refusal*: share of the births tried that found no place or no slot.
+- *uptake*: energy eaten over energy that grew.
+- *turnover*: deaths and births per agent and step, over the chance of death of a starving newborn.
+- *crowding*: agents alive over the capacity.
+
+The rules, tried in this order, and why:
+
+1. `extinct`: nobody lives at the end of the interval.
+2. `full and idle`: turnover below 0.1, crowding or refusal of at least 0.9: those who live hold nearly all places, and
+   ten times fewer are born and die than among the starving. Selection has next to nothing to act on.
+3. `starving, limited by room`: hunger of at least 0.25 and refusal of at least 0.1. A starving agent of the paper's
+   setting replaces itself (R0 = 1.02 at energy 0), so hunger does not stop growth; places do. Eating pays by way of
+   energies near 0 alone, and who breeds is largely luck: drift is strong.
+4. `limited by food`: uptake of at least 0.8 and refusal below 0.1: what grows is eaten and children find places, so
+   numbers are held down by hunger alone. Agents compete for food: selection on eating is strongest.
+5. `between`: none of these; a growing world is here.
+
+The thresholds are conventions; they lie between clear cases. In steady numbers the births tried are deaths /
+(1 − refusal): a refusal of 0.1 says that without it a generation would grow by a ninth, the baseline's third that it
+would grow by half. A hunger of 0.25 is half of the baseline's. A tenth of the turnover of the starving is a mean life
+of some 50,000 steps.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.demography import hazard
+from hedon.config import Config
+
+EXTINCT, IDLE, ROOM, FOOD, BETWEEN = (
+    "extinct",
+    "full and idle",
+    "starving, limited by room",
+    "limited by food",
+    "between",
+)
+REGIMES = (ROOM, FOOD, IDLE, BETWEEN, EXTINCT)
+IDLE_TURNOVER = 0.1
+IDLE_CROWDING = 0.9
+ROOM_HUNGER = 0.25
+ROOM_REFUSAL = 0.1
+FOOD_UPTAKE = 0.8
+INTERVALS = 40
+"""Of a run, in which the regime is told."""
+
+
+@dataclass(frozen=True)
+class Regime:
+    """One interval of one world; rates are NaN where they are not defined.
+
+    Attributes:
+        step: end of the interval [step].
+        steps: its length [step].
+        regime: one of `REGIMES`.
+        hunger, refusal, uptake, turnover, crowding: the rates.
+    """
+
+    step: int
+    steps: int
+    regime: str
+    hunger: float
+    refusal: float
+    uptake: float
+    turnover: float
+    crowding: float
+
+
+def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS) -> list[Regime]:
+    """The regimes of a world over time.
+
+    Args:
+        population: its rows of the table `population`.
+        config: its settings.
+        intervals: into how many the rows are divided, at most; they have equal lengths, but for the rows' own.
+    """
+    if population.is_empty():
+        return []
+    edges = np.linspace(0, population.height, min(intervals, population.height) + 1).astype(int).tolist()
+    return [interval_regime(population[a:b], config) for a, b in pairwise(edges)]
+
+
+def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
+    """The regime over some rows of the table `population` of one world that follow one another."""
+    sums = {name: float(rows[name].sum()) for name in _SUMMED}
+    steps, lived = int(rows["steps"].sum()), sums["agent_steps"]
+    refused = sums["births_failed_full"] + sums["births_failed_space"]
+    grown = steps * sum(food.growth_rate * food.energy for food in config.food.values() if food.energy > 0)
+    kinds = [kind for kind, food in config.food.items() if food.energy > 0]
+    eaten = sum(config.food[kind].energy * float(rows[f"eaten_{kind}"].sum()) for kind in kinds)
+    starving = float(hazard(config.hazard, 0.0, 0.0))
+    hunger = _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"])
+    refusal = _ratio(refused, refused + sums["births"])
+    uptake = _ratio(eaten, grown)
+    turnover = _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving)
+    crowding = lived / steps / config.population.capacity
+    alive = int(rows["alive"][-1])
+    name = _name(alive, hunger, refusal, uptake, turnover, crowding)
+    return Regime(int(rows["step"][-1]), steps, name, hunger, refusal, uptake, turnover, crowding)
+
+
+_SUMMED = (
+    "agent_steps",
+    "births",
+    "deaths",
+    "births_failed_full",
+    "births_failed_space",
+    "energy_forgiven",
+    "energy_basic",
+    "energy_action",
+)
+
+
+def _name(alive: int, hunger: float, refusal: float, uptake: float, turnover: float, crowding: float) -> str:
+    """The rules; a comparison with a rate that is not defined is false."""
+    if alive == 0:
+        return EXTINCT
+    if turnover < IDLE_TURNOVER and (crowding >= IDLE_CROWDING or refusal >= IDLE_CROWDING):
+        return IDLE
+    if hunger >= ROOM_HUNGER and refusal >= ROOM_REFUSAL:
+        return ROOM
+    if uptake >= FOOD_UPTAKE and refusal < ROOM_REFUSAL:
+        return FOOD
+    return BETWEEN
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole else np.nan

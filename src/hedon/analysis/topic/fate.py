@@ -1,0 +1,93 @@
+"""Topics about whole worlds: genealogy, regimes, and what they say of the paper's claims."""
+
+from dataclasses import asdict
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.genealogy import genealogy
+from hedon.analysis.lineage import coalescence, lines_through_time
+from hedon.analysis.regime import REGIMES, regimes
+from hedon.analysis.topic.life import Conditions
+from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
+from hedon.analysis.verdict import verdicts
+
+_TIMES = 20  # at which the coalescence is told
+_LINE_TIMES = 100  # at which lines are counted
+
+
+def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
+    """Coalescence, founder families, and weights along the lines of the survivors."""
+    rows, lines = [], []
+    for worlds in conditions.values():
+        for world in worlds:
+            tree = genealogy(world.agents)
+            if not tree.size:
+                continue
+            times = np.linspace(0, world.last_step, _TIMES + 1).round().astype(np.int64)
+            rows += [labels(world) | asdict(coalescence(tree, int(step))) for step in times]
+            steps = np.linspace(0, world.last_step, _LINE_TIMES + 1).round().astype(np.int64)
+            found = lines_through_time(tree, world.agents, world.weight_names, steps)
+            lines.append(found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all()))
+    over_time = table("genealogy_time", "Common descent over time, by world", rows, shown=False)
+    last = (
+        over_time.rows.filter(pl.col("step") == pl.col("step").max().over("condition", "seed"))
+        if rows
+        else over_time.rows
+    )
+    quantities = {
+        "families": "founder families left",
+        "largest": "share of the largest family",
+        "depth": "time to the common ancestor [step]",
+    }
+    note = (
+        "Of those alive at the end. The time to the common ancestor is known only in worlds in which a single family "
+        "is left; elsewhere it is longer than the run."
+    )
+    return [
+        table("genealogy", "Common descent of the living, means over worlds", over_worlds(last, (), quantities), note),
+        over_time,
+        ResultTable(
+            "lineage",
+            "Weights along the lines of the survivors, by world",
+            pl.concat(lines) if lines else pl.DataFrame(),
+            shown=False,
+        ),
+    ]
+
+
+def regime(conditions: Conditions) -> list[ResultTable]:
+    """Regimes over time."""
+    rows = [
+        labels(world) | asdict(found)
+        for worlds in conditions.values()
+        for world in worlds
+        for found in regimes(world.population, world.config)
+    ]
+    over_time = table("regime_time", "Regimes over time, by world", rows, shown=False)
+    shares = over_time.rows
+    if rows:
+        spent = shares.group_by("condition", "seed", maintain_order=True).agg(
+            *(
+                (pl.col("steps").filter(pl.col("regime") == name).sum() / pl.col("steps").sum()).alias(name)
+                for name in REGIMES
+            )
+        )
+        shares = spent
+    note = (
+        "Share of the steps; the rules stand in docs/guide/analysis.md. A weight is selected in another way in each: "
+        "starving worlds drift, food-limited ones compete, idle ones stand still."
+    )
+    summary = over_worlds(shares, (), {name: name for name in REGIMES})
+    return [table("regime", "Share of the run in each regime, means over worlds", summary, note), over_time]
+
+
+def verdict(conditions: Conditions) -> list[ResultTable]:
+    """The paper's claims."""
+    found = verdicts(world for worlds in conditions.values() for world in worlds)
+    rows = [asdict(row) for row in found]
+    note = (
+        "The 95 % interval over worlds lies within the region in which the claim holds, outside of it, or across its "
+        "border. Fewer than three worlds, or shorter ones than the paper's, decide nothing."
+    )
+    return [table("verdict", "The paper's claims", rows, note)]

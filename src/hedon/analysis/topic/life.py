@@ -1,0 +1,190 @@
+"""Topics about single lives: lifetime, food, reproduction, generation, energy."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.budget import energy_budget
+from hedon.analysis.cohort import COMPLETE, window_bounds, with_cohorts
+from hedon.analysis.food import food_per_agent_step, food_per_step
+from hedon.analysis.generation import generation_time
+from hedon.analysis.population import run_tail
+from hedon.analysis.reproduction import reproduction
+from hedon.analysis.survival import SurvivalCurve, durations, exposure_mean, restricted_mean, survival_curve
+from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
+from hedon.analysis.world import WorldRecord
+
+Conditions = Mapping[str, Sequence[WorldRecord]]
+
+_AGES = 200  # points of a survival curve in the records of the analysis
+_PER_WINDOW = 200  # agents that a window of births should hold
+_WINDOWS = 10  # of a run, at most
+
+
+def window_count(worlds: Sequence[WorldRecord]) -> int:
+    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records."""
+    smallest = min((world.agents.height for world in worlds), default=0)
+    return max(1, min(_WINDOWS, smallest // _PER_WINDOW))
+
+
+def lifetime(conditions: Conditions) -> list[ResultTable]:
+    """Lifetimes, with those who still live counted as censored."""
+    rows, curves = [], []
+    for worlds in conditions.values():
+        lives = [durations(world.agents, world.last_step) for world in worlds]
+        fitted = [survival_curve(*life) for life in lives]
+        until = min((age for curve in fitted if (age := curve.trusted_age()) > 0), default=0.0)
+        for world, life, curve in zip(worlds, lives, fitted, strict=True):
+            rows.append(labels(world) | _life_row(*life, curve, until))
+            curves += [labels(world) | point for point in _points(curve)]
+    worlds_table = table("lifetime_world", "Lifetimes, world by world [step]", rows, shown=False)
+    quantities = {
+        "mean_of_dead": "mean of the dead",
+        "restricted_mean": "restricted mean, censored lives counted",
+        "restricted_bias": "error of the dead's restricted mean",
+        "exposure_mean": "steps lived per death",
+        "median": "median",
+    }
+    note = (
+        "The restricted mean is that of min(lifetime, `until`), up to an age that 20 agents of each world reached; the "
+        "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter."
+    )
+    return [
+        table("lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note),
+        worlds_table,
+        table("survival", "Survival curves (Kaplan and Meier, with pointwise 95 % intervals)", curves, shown=False),
+    ]
+
+
+def food(conditions: Conditions) -> list[ResultTable]:
+    """Food by both rules of averaging."""
+    rows = [
+        labels(world)
+        | {
+            "kind": kind,
+            "per_agent": food_per_step(world.agents, [kind]),
+            "per_step": food_per_agent_step(world.population, [kind]),
+        }
+        for worlds in conditions.values()
+        for world in worlds
+        for kind in world.food_kinds
+    ]
+    worlds_table = table("food_world", "Food, world by world [1/step]", rows, shown=False)
+    quantities = {"per_agent": "mean over the dead of foods / lifetime", "per_step": "all foods / all steps lived"}
+    note = (
+        "The first rule, the paper's, counts a short life as much as a long one; the second is what is eaten in a step."
+    )
+    summary = over_worlds(worlds_table.rows, ("kind",), quantities)
+    return [table("food", "Food, means over worlds [1/step]", summary, note), worlds_table]
+
+
+def reproductive_success(conditions: Conditions) -> list[ResultTable]:
+    """Children per life, by birth cohort."""
+    rows = []
+    for worlds in conditions.values():
+        windows = window_count(worlds)
+        for world in worlds:
+            bounds = window_bounds(world.last_step, windows)
+            cohorts = with_cohorts(world.agents, world.last_step, windows)
+            for window in range(windows):
+                found = asdict(reproduction(cohorts.filter(pl.col("window") == window)))
+                counts = found.pop("counts")
+                rows.append(
+                    labels(world)
+                    | {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}
+                    | found
+                    | {f"with_{i}{'_or_more' if i == len(counts) - 1 else ''}": n for i, n in enumerate(counts)}
+                )
+    worlds_table = table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
+    whole = worlds_table.rows.filter(pl.col("complete") >= COMPLETE) if rows else worlds_table.rows
+    quantities = {
+        "mean": "children per life",
+        "opportunity": "opportunity for selection",
+        "childless": "share without children",
+        "top_tenth": "share of children of the top tenth",
+    }
+    by_world = (
+        whole.group_by("condition", "seed", maintain_order=True).agg(pl.col(*quantities).mean()) if rows else whole
+    )
+    note = (
+        f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, in "
+        "lives of exponential length, the opportunity would be 1 + 1 / mean."
+    )
+    return [
+        table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
+        worlds_table,
+    ]
+
+
+def generation(conditions: Conditions) -> list[ResultTable]:
+    """Generations and generation time."""
+    rows = [
+        labels(world) | asdict(generation_time(world.agents, world.last_step))
+        for worlds in conditions.values()
+        for world in worlds
+    ]
+    worlds_table = table("generation_world", "Generations, world by world", rows, shown=False)
+    quantities = {
+        "reached": "mean generation of the living",
+        "parent_age": "age of parents at a birth [step]",
+        "line_time": "steps per generation reached",
+    }
+    summary = over_worlds(worlds_table.rows, (), quantities)
+    return [table("generation", "Generations, means over worlds", summary), worlds_table]
+
+
+def energy(conditions: Conditions) -> list[ResultTable]:
+    """Energy budgets, over the whole run and over its last tenth."""
+    rows = []
+    for worlds in conditions.values():
+        for world in worlds:
+            for part, population in (("whole run", world.population), ("last tenth", run_tail(world.population))):
+                found = energy_budget(population)
+                if found is not None:
+                    rows.append(labels(world) | {"part": part} | asdict(found))
+    worlds_table = table("energy_world", "Energy budgets, world by world", rows, shown=False)
+    names = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared", "forgiven_share")
+    summary = over_worlds(worlds_table.rows, ("part",), {name: name for name in names})
+    note = (
+        "Per 1000 steps lived by an agent. forgiven_share: of what was charged, what could not be paid at zero energy."
+    )
+    return [table("energy", "Energy budget, means over worlds", summary, note), worlds_table]
+
+
+def _life_row(duration: np.ndarray, died: np.ndarray, curve: SurvivalCurve, until: float) -> dict:
+    dead = duration[died]
+    area = restricted_mean(curve, until)
+    median, low, high = curve.quantile()
+    restricted_dead = float(np.minimum(dead, until).mean()) if len(dead) else None
+    return {
+        "agents": len(duration),
+        "died": len(dead),
+        "mean_of_dead": float(dead.mean()) if len(dead) else None,
+        "restricted_mean": area.mean if until else None,
+        "restricted_error": area.error if until else None,
+        "until": until,
+        "restricted_bias": restricted_dead - area.mean if restricted_dead is not None and until else None,
+        "exposure_mean": exposure_mean(duration, died),
+        "median": median,
+        "median_low": low,
+        "median_high": high,
+    }
+
+
+def _points(curve: SurvivalCurve) -> list[dict]:
+    """The curve from birth on, thinned to equal steps of age."""
+    if not len(curve.age):
+        return []
+    ages = np.linspace(0.0, curve.age[-1], _AGES)
+    at = np.searchsorted(curve.age, ages, side="right") - 1
+    return [
+        {
+            "age": float(age),
+            "share": float(curve.share[i]) if i >= 0 else 1.0,
+            "low": float(curve.low[i]) if i >= 0 else 1.0,
+            "high": float(curve.high[i]) if i >= 0 else 1.0,
+        }
+        for age, i in zip(ages, at, strict=True)
+    ]

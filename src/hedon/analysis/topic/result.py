@@ -1,0 +1,70 @@
+"""What a topic gives: tables with a title and a note, as they are printed, written and drawn."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.interval import mean_interval
+from hedon.analysis.world import WorldRecord
+
+SEED = 20240717
+"""Of the bootstrap and the neutral walks, so that the same records give the same numbers."""
+
+
+@dataclass(frozen=True)
+class ResultTable:
+    """One table of results.
+
+    Attributes:
+        name: unique; names the CSV file.
+        title: what it tells.
+        rows: missing values are null.
+        note: what a reader must know to read it; may be empty.
+        shown: whether it is printed; else it is only written, since it is long.
+    """
+
+    name: str
+    title: str
+    rows: pl.DataFrame
+    note: str = ""
+    shown: bool = True
+
+
+def table(
+    name: str, title: str, rows: Iterable[Mapping[str, Any]], note: str = "", *, shown: bool = True
+) -> ResultTable:
+    """A table from one mapping per row; NaN becomes null. A table without rows has no columns either."""
+    frame = pl.DataFrame(list(rows), infer_schema_length=None).fill_nan(None)
+    return ResultTable(name, title, frame, note, shown)
+
+
+def labels(world: WorldRecord) -> dict[str, Any]:
+    """The columns that name a world."""
+    return {"condition": world.condition, "seed": world.seed}
+
+
+def generator(world: WorldRecord) -> np.random.Generator:
+    """The source of chance for one world, the same in each analysis."""
+    return np.random.default_rng([SEED, world.seed])
+
+
+def over_worlds(rows: pl.DataFrame, by: Sequence[str], quantities: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Means over worlds with Student's t intervals, a row for each group and quantity.
+
+    Args:
+        rows: one row per world and group; column `condition` is always grouped by.
+        by: further columns that tell groups apart.
+        quantities: column, and what it is called.
+    """
+    if rows.is_empty():
+        return []
+    results = []
+    for key, group in rows.group_by(["condition", *by], maintain_order=True):
+        for column, label in quantities.items():
+            interval = mean_interval(group[column].to_list())
+            head = dict(zip(["condition", *by], key, strict=True))
+            results.append(head | {"quantity": label} | vars(interval))
+    return results

@@ -1,0 +1,100 @@
+"""What would drift alone have done? Neutral genes that mutate along the recorded pedigree.
+
+Given who bore whom, a gene that nothing depends on is a random walk down the pedigree: founders draw it from the
+law of founders, and each birth adds a mutation. Walks along the very pedigree of a world show how far a weight can
+stray there without selection on it; they hold all that the pedigree says of drift: bottlenecks, families, and
+the hitchhiking with whatever else was selected.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from hedon.analysis.genealogy import Genealogy, ancestry, depth
+from hedon.config import Config
+
+WALKS = 2000
+"""Per world: the smallest chance that they tell from zero is 1 in 2000."""
+_PIECE = 250  # walks at a time: 20 MB for 20,000 ancestors
+
+
+@dataclass(frozen=True)
+class MutationLaw:
+    """How a gene begins and changes: see `hedon.config.evolution.GenomeConfig`.
+
+    Attributes:
+        mean, sd: of the founders' normal distribution.
+        scale: of the Cauchy noise that each birth adds.
+        limit: weights are clipped to ± this.
+        frozen: whether the noise is the same for the births of equal number in every window.
+        window: length of a window [step].
+    """
+
+    mean: float
+    sd: float
+    scale: float
+    limit: float
+    frozen: bool
+    window: int
+
+
+def mutation_law(config: Config, mean: float = 0.0) -> MutationLaw:
+    """The law of a run; `mean` is that of the founders' gene."""
+    genome = config.genome
+    return MutationLaw(
+        mean=mean,
+        sd=genome.initial_sd,
+        scale=genome.mutation_scale,
+        limit=genome.weight_limit,
+        frozen=genome.mutation_noise == "frozen",
+        window=config.learning.rollout_steps,
+    )
+
+
+def neutral_means(
+    tree: Genealogy, sample: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int = WALKS
+) -> NDArray[np.float64]:
+    """Means over a sample of agents of neutral genes that walked down the pedigree.
+
+    Only the ancestors of the sample are walked.
+
+    Args:
+        tree: the pedigree, without gaps.
+        sample: positions of agents.
+        law: of founding and mutation.
+        rng: source of chance.
+        walks: how many genes, each independent of the others.
+
+    Returns:
+        Shape (walks,).
+    """
+    nodes = np.flatnonzero(ancestry(tree, sample))
+    place = np.zeros(tree.size, np.int64)
+    place[nodes] = np.arange(len(nodes))
+    generation = depth(tree)[nodes]
+    order = np.argsort(generation, kind="stable")
+    levels = np.split(order, np.cumsum(np.bincount(generation))[:-1])
+    parent = place[tree.parent[nodes]]
+    number = birth_number(tree, law.window)[nodes]
+    means = []
+    for first in range(0, walks, _PIECE):
+        count = min(_PIECE, walks - first)
+        gene = np.empty((len(nodes), count), np.float32)
+        founders = rng.normal(law.mean, law.sd, (len(levels[0]), count))
+        gene[levels[0]] = np.clip(founders, -law.limit, law.limit)
+        table = rng.standard_cauchy((int(number.max()) + 1 if law.frozen else 0, count))
+        for level in levels[1:]:
+            noise = table[number[level]] if law.frozen else rng.standard_cauchy((len(level), count))
+            gene[level] = np.clip(gene[parent[level]] + law.scale * noise, -law.limit, law.limit)
+        means.append(gene[place[sample]].mean(axis=0, dtype=np.float64))
+    return np.concatenate(means)
+
+
+def birth_number(tree: Genealogy, window: int) -> NDArray[np.int64]:
+    """The number of each birth within its window of learning, from 0; 0 for founders, shape (n,)."""
+    born = tree.parent >= 0
+    # Born in step s (counted from 0) has birth s + 1; ids, so positions, follow the order of birth.
+    births = pl.DataFrame({"window": np.where(born, (tree.birth - 1) // window, -1)})
+    return births.select(pl.int_range(pl.len()).over("window")).to_series().to_numpy() * born

@@ -1,0 +1,115 @@
+"""The worlds of some runs, one by one, with the condition that each of them repeats."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import polars as pl
+
+from hedon.analysis.population import extinct_step
+from hedon.config import Config, load_config
+from hedon.record.folder import CONFIG
+from hedon.record.reader import Run
+
+
+@dataclass(frozen=True)
+class WorldRecord:
+    """All that the records say of one world.
+
+    Attributes:
+        condition: the setting that the world repeats: worlds of equal config share it.
+        run: name of the run's folder.
+        seed: of the world.
+        config: the resolved config.
+        food_kinds, reward_names, neutral_names: of the tables' columns, in their order.
+        agents: its rows of the table `agents`, by agent_id.
+        population: its rows of the table `population`, by step.
+        last_step: up to which the records reach [step].
+        extinct_step: at which nobody was left [step]; None while somebody lives.
+    """
+
+    condition: str
+    run: str
+    seed: int
+    config: Config
+    food_kinds: tuple[str, ...]
+    reward_names: tuple[str, ...]
+    neutral_names: tuple[str, ...]
+    agents: pl.DataFrame
+    population: pl.DataFrame
+    last_step: int
+    extinct_step: int | None
+
+    @property
+    def weight_names(self) -> tuple[str, ...]:
+        """All genome columns, in order: those that enter the reward, then the neutral markers."""
+        return (*self.reward_names, *self.neutral_names)
+
+
+def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
+    """Reads the worlds of some runs; damaged parts are left out.
+
+    Runs of equal configs count as one condition. A seed that appears twice within a condition is one world
+    made twice: the longer record is kept.
+
+    Raises:
+        RecordError, ConfigError: a run cannot be read.
+    """
+    kept: dict[tuple[str, int], WorldRecord] = {}
+    labels: dict[str, str] = {}  # config digest (or folder, where there is none) to condition
+    for run in runs:
+        key = run.manifest.config_digest or str(run.path)
+        condition = labels.setdefault(key, _label(run, set(labels.values())))
+        for world in _run_worlds(run, condition):
+            before = kept.get((condition, world.seed))
+            if before is None or before.last_step < world.last_step:
+                kept[condition, world.seed] = world
+    return list(kept.values())
+
+
+def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
+    """The worlds of each condition, in their order."""
+    groups: dict[str, list[WorldRecord]] = {}
+    for world in worlds:
+        groups.setdefault(world.condition, []).append(world)
+    return groups
+
+
+def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
+    config = load_config(str(run.path / CONFIG))
+    agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
+    worlds = []
+    for index, seed in enumerate(run.manifest.seeds):
+        mine = agents.filter(pl.col("world") == index).sort("agent_id")
+        rows = population.filter(pl.col("world") == index)
+        ends = [rows["step"].max(), mine["birth_step"].max(), mine["death_step"].max()]
+        last = max((int(end) for end in ends if isinstance(end, int)), default=0)
+        known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
+        extinct = extinct_step(rows) if known is None else known
+        worlds.append(
+            WorldRecord(
+                condition,
+                run.path.name,
+                seed,
+                config,
+                run.food_kinds,
+                run.reward_names,
+                run.neutral_names,
+                mine,
+                rows,
+                last,
+                extinct,
+            )
+        )
+    return worlds
+
+
+def _label(run: Run, taken: set[str]) -> str:
+    """A short name of the setting that no other condition has: "baseline (released)", or with the folder."""
+    manifest = run.manifest
+    name = manifest.name or manifest.preset or run.path.name
+    label = f"{name} ({manifest.fidelity})" if manifest.fidelity else name
+    if manifest.modified:
+        label += ", modified"
+    while label in taken:
+        label += f" [{run.path.name}]"
+    return label

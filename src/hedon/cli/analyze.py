@@ -1,0 +1,54 @@
+"""The command `hedon analyze`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hedon.cli.console import make_console
+
+
+def analyze(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Folders of runs, finished or not.")],
+    only: Annotated[
+        str | None, typer.Option(metavar="TOPIC,…", help="Only these topics, as in lifetime,selection.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the answers; by default RUN/analysis, or analysis for several runs.")
+    ] = None,
+) -> None:
+    """Answer statistical questions about runs, and write every number.
+
+    Runs of equal configs count as repetitions of one condition, with their worlds as the units. Prints short
+    tables and writes analysis.json and one CSV file per table. docs/guide/analysis.md says what each means.
+
+    \b
+    Topics:
+      verdict     the paper's claims: holds, fails or undecided
+      regime      starving, limited by food, or full and idle, over time
+      lifetime, food, energy, reproduction, generation   single lives
+      genealogy   common descent, founder families, lines of the survivors
+      genome      weights by birth cohort
+      selection   differentials and gradients; price splits the change
+      drift       weights against neutral walks and neutral markers
+      mode        one mode or two, over worlds
+
+    \b
+    Examples:
+      hedon analyze runs/baseline
+      hedon analyze runs/a runs/b --only lifetime,selection --out answers
+    """
+    # Imported here: they take seconds, for which no other command should wait.
+    from hedon.analysis.analysis_table import analysis_group
+    from hedon.analysis.analyze import ANALYSIS, write_analysis
+    from hedon.analysis.analyze import analyze as answer
+    from hedon.analysis.topic.topic import choose_topics
+    from hedon.record.reader import open_run
+
+    topics = choose_topics(only)
+    analysis = answer([open_run(run) for run in runs], topics)
+    folder = out or (runs[0] / ANALYSIS if len(runs) == 1 else Path(ANALYSIS))
+    console = make_console()
+    console.print(analysis_group(analysis.tables))
+    files = write_analysis(analysis, folder)
+    console.print(f"wrote {files[0]} and {len(files) - 1} tables beside it", soft_wrap=True)

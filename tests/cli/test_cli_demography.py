@@ -1,0 +1,18 @@
+from typer.testing import CliRunner
+
+from hedon.cli.main import app
+from hedon.config import ConfigError
+
+
+def test_demography_prints_tables_and_warnings() -> None:
+    result = CliRunner().invoke(app, ["demography", "baseline", "--set", "food.normal.growth_rate=1.0"])
+    assert result.exit_code == 0, result.output
+    assert "life at constant energy" in result.output
+    assert "births that find a place" in result.output
+    assert "! It can live without eating: R0 is 1.02 at energy 0" in result.output
+    assert "stand still" in result.output
+
+
+def test_a_wrong_setting_is_an_error_of_hedon() -> None:
+    result = CliRunner().invoke(app, ["demography", "baseline", "--set", "hazard.kapa=1.0"])
+    assert isinstance(result.exception, ConfigError)

@@ -1,0 +1,99 @@
+import csv
+import io
+import json
+from pathlib import Path
+
+import polars as pl
+import pytest
+from rich.console import Console
+from synthetic_run import write_run
+
+from hedon.analysis.analysis_table import analysis_group, cells, pipe_table
+from hedon.analysis.analyze import Analysis, analyze, write_analysis
+from hedon.analysis.lifetime import mean_lifetime
+from hedon.analysis.topic.result import table
+from hedon.analysis.topic.topic import TOPICS, TopicError, choose_topics
+from hedon.record.reader import open_run
+
+
+@pytest.fixture(scope="module")
+def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
+    folder = tmp_path_factory.mktemp("analyze") / "run"
+    options = {"intervals": 60, "worlds": 4, "extinct": 3, "food_kinds": ("normal", "poison")}
+    return analyze([open_run(write_run(folder, snapshot=False, **options))])
+
+
+def test_every_topic_answers(analysis: Analysis) -> None:
+    for topic in TOPICS.keys() - {"verdict"}:  # two kinds under the settings of one: not a setting of the paper
+        assert topic in analysis.tables
+    lone = {"lifetime_world", "survival", "selection_world", "price_world", "drift_world", "lineage", "regime_time"}
+    assert lone <= set(analysis.tables)
+
+
+def test_numbers_are_those_of_the_statistics(analysis: Analysis) -> None:
+    rows = analysis.tables["lifetime_world"].rows
+    agents = analysis.runs[0].agents()
+    for i in range(4):
+        assert rows["mean_of_dead"][i] == pytest.approx(mean_lifetime(agents.filter(pl.col("world") == i)))
+    assert rows["until"].n_unique() == 1
+    life = {row["quantity"]: row for row in analysis.tables["lifetime"].rows.to_dicts()}
+    assert life["error of the dead's restricted mean"]["mean"] < 0
+    assert life["mean of the dead"]["mean"] == pytest.approx(rows["mean_of_dead"].to_numpy().mean())
+    regime = analysis.tables["regime"].rows
+    assert regime["mean"].to_numpy().sum() == pytest.approx(1.0)
+    price = analysis.tables["price_world"].rows
+    assert price["residual"].drop_nulls().abs().to_numpy().max() < 1e-12
+    drift = analysis.tables["drift"].rows
+    assert set(drift["weight"]) == {"w_normal", "w_poison", "w_action", "neutral_1"}
+
+
+def test_the_same_records_give_the_same_answers(analysis: Analysis) -> None:
+    again = analyze(analysis.runs, ["selection", "drift"])
+    for name, result in again.tables.items():
+        assert result.rows.equals(analysis.tables[name].rows)
+
+
+def test_files_hold_every_number(analysis: Analysis, tmp_path: Path) -> None:
+    files = write_analysis(analysis, tmp_path / "out")
+    assert {file.stem for file in files} == {"analysis", *analysis.tables}
+    content = json.loads((tmp_path / "out/analysis.json").read_text())
+    assert content["runs"][0]["manifest"]["seeds"] == [1, 2, 3, 4]
+    assert [world["extinct_step"] is None for world in content["worlds"]] == [True, True, True, False]
+    for name, result in analysis.tables.items():
+        with (tmp_path / f"out/{name}.csv").open() as file:
+            assert len(list(csv.DictReader(file))) == result.rows.height == len(content["tables"][name]["rows"])
+
+
+def test_what_is_printed(analysis: Analysis) -> None:
+    console = Console(width=110, record=True, file=io.StringIO())
+    console.print(analysis_group(analysis.tables))
+    text = console.export_text()
+    assert "starving, limited by room" in text
+    assert "95 % interval" in text
+    assert "condition" not in text  # there is only one
+    assert "lifetime_world" not in text
+
+
+def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -> None:
+    rows = [
+        {"condition": "a", "quantity": "x", "mean": 1.0, "low": 0.5, "high": 1.5, "worlds": 2},
+        {"condition": "b", "quantity": "x", "mean": 2e-17, "low": 0.5, "high": 1.5, "worlds": 3},
+        {"condition": "b", "quantity": "y", "mean": float("nan"), "low": None, "high": None, "worlds": 0},
+    ]
+    headers, shown = cells(table("t", "T", rows))
+    assert headers == ["condition", "quantity", "mean", "95 % interval", "worlds"]
+    assert shown == [["a", "x", "1.00", "", "2"], ["b", "x", "0", "0.500 … 1.50", "3"], ["b", "y", "", "", "0"]]
+    assert pipe_table(["a"], [["x|y"]]) == "| a |\n| --- |\n| x\\|y |\n"
+
+
+def test_a_run_without_rows_has_an_analysis(tmp_path: Path) -> None:
+    empty = analyze([open_run(write_run(tmp_path / "run", intervals=0, worlds=1, neutral_count=0, snapshot=False))])
+    assert "regime" not in empty.tables  # nothing was recorded to tell it from
+    assert write_analysis(empty, tmp_path / "out")
+
+
+def test_choosing_topics() -> None:
+    assert choose_topics(None) == tuple(TOPICS)
+    assert choose_topics("selection, lifetime") == ("lifetime", "selection")
+    with pytest.raises(TopicError, match="no topic 'selecton'; did you mean selection"):
+        choose_topics("selecton")

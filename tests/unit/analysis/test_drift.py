@@ -1,0 +1,138 @@
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+from synthetic_run import write_run
+
+from hedon.analysis.correction import holm
+from hedon.analysis.drift import WorldDrift, drift_tests, rank_score, sign_flip_p, world_drift
+from hedon.analysis.genealogy import Genealogy
+from hedon.analysis.walk import MutationLaw, mutation_law, neutral_means
+from hedon.analysis.world import read_worlds
+from hedon.config import load_config
+from hedon.record.reader import open_run
+
+LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10)
+
+
+def chain(parent: list[int], birth: list[int] | None = None) -> Genealogy:
+    steps = np.arange(len(parent)) if birth is None else np.array(birth)
+    return Genealogy(np.array(parent), steps, steps + 5, 0)
+
+
+def quartile(values: np.ndarray) -> float:
+    """Half the distance between the quartiles: the scale, if the values are Cauchy."""
+    low, high = np.quantile(values, [0.25, 0.75])
+    return 0.5 * (high - low)
+
+
+def test_walks_add_up_as_cauchy_numbers_do() -> None:
+    """A line of g births is Cauchy of scale g·0.1; the mean of independent lines keeps the scale of one."""
+    rng = np.random.default_rng(1)
+    line = chain([-1, 0, 1, 2, 3, 4])
+    assert quartile(neutral_means(line, np.array([5]), LAW, rng, 20_000)) == pytest.approx(0.5, rel=0.05)
+    star = chain([-1, 0, 0, 0, 0])
+    leaves = np.array([1, 2, 3, 4])
+    assert quartile(neutral_means(star, leaves, LAW, rng, 20_000)) == pytest.approx(0.1, rel=0.05)
+    # A shared mutation and one's own: (2·X + Y + Z)/2 has scale (2 + 1 + 1)/2.
+    fork = chain([-1, 0, 1, 1])
+    assert quartile(neutral_means(fork, np.array([2, 3]), LAW, rng, 20_000)) == pytest.approx(0.2, rel=0.05)
+
+
+def test_founders_and_the_limit() -> None:
+    rng = np.random.default_rng(2)
+    law = dataclasses.replace(LAW, mean=1.0, sd=0.5)
+    founders = neutral_means(chain([-1, -1, -1, -1]), np.arange(4), law, rng, 20_000)
+    assert founders.mean() == pytest.approx(1.0, abs=0.01)
+    assert founders.std() == pytest.approx(0.25, rel=0.05)
+    tight = dataclasses.replace(LAW, scale=100.0, limit=2.0)
+    values = neutral_means(chain([-1, 0, 1]), np.array([2]), tight, rng, 1000)
+    assert np.abs(values).max() == 2.0
+
+
+def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
+    """Two births in a row, each the first of its window: the same noise twice, so that the scale doubles."""
+    rng = np.random.default_rng(3)
+    frozen = dataclasses.replace(LAW, frozen=True)
+    tree = chain([-1, 0, 1], [0, 5, 15])
+    values = neutral_means(tree, np.array([1, 2]), frozen, rng, 20_000)
+    assert quartile(values) == pytest.approx(0.15, rel=0.05)  # (X + 2·X)/2
+    # Steps far beyond the limit leave signs: equal noise gives equal ones, that of another number often not.
+    signs = dataclasses.replace(frozen, scale=1e6, limit=1.0)
+    for second_birth, equal in ((15, 1.0), (6, 0.5)):
+        values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
+        assert np.mean(np.abs(values) > 0.5) == pytest.approx(equal, abs=0.03)
+    assert mutation_law(load_config("baseline", "released")).frozen
+    assert mutation_law(load_config("baseline")) == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024)
+
+
+def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:
+    """Type I error on whole records: 6 markers in each of 60 worlds of no selection."""
+    rng = np.random.default_rng(4)
+    options = {"intervals": 30, "worlds": 60, "neutral_count": 6, "selection": 0.0, "capacity": 60}
+    worlds = read_worlds([open_run(write_run(tmp_path / "run", snapshot=False, **options))])
+    scores = np.array([[r.score for r in world_drift(world, rng, 500)] for world in worlds])
+    p = 2 * stats.norm.sf(np.abs(scores))
+    # 480 p-values, not independent within a world: bounds of 2.5 % to 8.5 % are some 3 standard errors.
+    assert 0.025 < np.mean(p < 0.05) < 0.085
+    # Rows of the genome share the pedigree alone, so a column is an independent uniform sample.
+    assert min(stats.kstest(stats.norm.cdf(column), "uniform").pvalue for column in scores.T) > 1e-3
+
+
+def test_selection_is_found(tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
+    options = {"intervals": 150, "worlds": 5, "selection": 2.0}
+    worlds = read_worlds([open_run(write_run(tmp_path / "run", snapshot=False, **options))])
+    found = {
+        (t.weight, t.test): t
+        for t in drift_tests([world_drift(w, rng) for w in worlds], ("w_normal", "w_action"), ("neutral_1",), rng)
+    }
+    assert found["w_normal", "direction"].p_holm < 0.01
+    assert found["w_normal", "direction"].effect > 1
+    assert found["w_normal", "marker"].effect > 0
+    assert found["neutral_1", "direction"].p > 0.01
+    assert np.isnan(found["neutral_1", "direction"].p_holm)
+    assert found["w_action", "direction"].p_holm > 0.05
+
+
+def test_two_modes_are_a_distance_without_a_direction() -> None:
+    def world(score: float) -> list[WorldDrift]:
+        return [WorldDrift("w", 0.0, score, -2, 0, 2, score, 1.0), WorldDrift("n", 0.0, 0.0, -2, 0, 2, 0.0, 1.0)]
+
+    tests = drift_tests([world(s) for s in (3, -3, 2.5, -2.5)], ("w",), ("n",), np.random.default_rng(1))
+    direction, distance = tests[0], tests[1]
+    assert direction.p == 1.0
+    assert direction.low < 0 < direction.high
+    assert distance.p == pytest.approx(stats.chi2.sf(2 * 9 + 2 * 6.25, 4))
+    assert distance.low > 1  # under drift it is 1
+    marker = tests[-1]
+    assert (marker.effect, marker.p) == (2.75, 2 / 16)
+
+
+def test_without_worlds_there_is_no_test() -> None:
+    tests = drift_tests([[]], ("w",), ("n",), np.random.default_rng(1))
+    assert all(np.isnan(test.p) and test.worlds == 0 for test in tests)
+
+
+def test_rank_scores_are_normal() -> None:
+    null = np.arange(1999.0)
+    assert rank_score(999.0, null) == pytest.approx(0.0, abs=1e-9)
+    assert rank_score(1e9, null) == pytest.approx(stats.norm.ppf(1999.5 / 2000))
+    assert rank_score(-1e9, null) == pytest.approx(-rank_score(1e9, null))
+
+
+def test_sign_flips() -> None:
+    rng = np.random.default_rng(1)
+    assert sign_flip_p(np.array([1.0, 2.0, 3.0]), rng) == 2 / 8
+    assert sign_flip_p(np.array([1.0, -2.0, 3.0]), rng) == 6 / 8  # all but the two sums of 0
+    many = sign_flip_p(rng.normal(1.0, 1.0, 30), rng)
+    assert many < 0.001
+
+
+def test_holm_on_a_known_example() -> None:
+    # Sorted 0.005, 0.01, 0.03, 0.04 times 4, 3, 2, 1, never falling.
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.9, np.nan, 0.8]) == pytest.approx([1.0, np.nan, 1.0], nan_ok=True)
+    assert holm([]) == []

@@ -1,0 +1,95 @@
+import math
+
+import numpy as np
+import pytest
+
+from hedon.analysis.forecast import forecast, fresh_force
+from hedon.analysis.placement import is_free, placement_success
+from hedon.config import Config, load_config
+from hedon.config.arena import is_inside
+
+
+def setting(*overrides: str) -> Config:
+    return load_config("baseline", overrides=overrides)
+
+
+def warnings(*overrides: str) -> str:
+    return " ".join(forecast(setting(*overrides)).warnings)
+
+
+def test_the_papers_setting_lives_without_eating() -> None:
+    found = forecast(setting())
+    assert (found.levels[0].energy, round(found.levels[0].r0, 2)) == (0.0, 1.02)
+    assert found.levels[0].lifetime == pytest.approx(5095, abs=1)
+    assert found.levels[0].refusal == pytest.approx(1 - 1 / found.levels[0].r0)
+    assert found.fed == pytest.approx(0.2 / found.need)
+    assert len(found.warnings) == 1
+    assert "R0 is 1.02 at energy 0" in found.warnings[0]
+    populations = [level.population for level in found.levels]
+    assert populations == sorted(populations)
+    assert populations[-1] == 200
+
+
+def test_room_and_refusals_meet() -> None:
+    """At the number that room allows, the chance of a place is 1/R0."""
+    found = forecast(setting())
+    level = found.levels[2]
+    alive, success = zip(*((room.alive, room.success) for room in found.room), strict=True)
+    assert np.interp(level.population, alive, success) == pytest.approx(1 / level.r0, abs=0.02)
+
+
+def test_settings_that_cannot_live_or_die() -> None:
+    assert "cannot live: R0 is 0.00" in warnings("birth.kappa=0.0")
+    assert "cannot die" in warnings("hazard.kappa=0.0", "hazard.alpha_age=0.0")
+    assert "need not die" in warnings("hazard.alpha_age=0.0", "hazard.beta_energy=100.0")
+    assert "cannot" not in warnings()
+    assert "without eating" not in warnings('energy.starvation="death"')
+    assert "without eating" not in warnings("birth.kappa=3e-4")  # R0 0.76 at energy 0
+    assert "stand still: food pays for 511 agents" in warnings("food.normal.growth_rate=1.0")
+    assert "10 of 50 founders; the others starve." in warnings("food.normal.growth_rate=0.02")
+    free = forecast(setting("energy.basic_cost=0.0", "energy.action_cost=0.0"))
+    assert math.isinf(free.fed)
+    assert "any number of agents" in free.warnings[-1]
+
+
+def test_poison_is_no_supply() -> None:
+    assert forecast(load_config("poison")).supply == pytest.approx(0.2)
+
+
+def test_the_force_of_a_fresh_policy() -> None:
+    rng = np.random.default_rng(1)
+    force = -20 + 100 / (1 + np.exp(-rng.normal(size=(400_000, 2))))
+    assert fresh_force(setting()) == pytest.approx(np.linalg.norm(force, axis=1).mean(), rel=2e-3)
+
+
+def test_one_parent_in_the_open_has_a_closed_form() -> None:
+    """A Gaussian place misses the parent's own body with probability exp(−(2r)²/(2·sd²))."""
+    open_air = ("arena.width=1e5", "arena.height=1e5", "food.normal.initial_count=0", "birth.attempts=1")
+    config = setting(*open_air, "birth.distance_sd=20.0", "population.initial_count=1")
+    rng = np.random.default_rng(2)
+    once = placement_success(config, [1], rng, scenes=4000)[0]
+    assert once == pytest.approx(math.exp(-0.5), abs=0.025)  # three standard errors
+    thrice = setting(*open_air[:3], "birth.attempts=3", "birth.distance_sd=20.0", "population.initial_count=1")
+    assert placement_success(thrice, [1], rng, 4000)[0] == pytest.approx(1 - (1 - math.exp(-0.5)) ** 3, abs=0.015)
+
+
+def test_free_places_are_those_of_the_engines_rules() -> None:
+    config = setting("arena.inner_walls=[[200.0, 100.0, 200.0, 200.0]]")
+    rng = np.random.default_rng(3)
+    places = rng.uniform(-20, 500, (3000, 2))
+    nothing = np.empty((0, 2))
+    free = is_free(config, places, nothing, nothing)
+    for (x, y), found in zip(places.tolist(), free.tolist(), strict=True):
+        rim = [(x + 9.999 * math.cos(a), y + 9.999 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 73)]
+        clear = math.hypot(x - 200, y - min(max(y, 100), 200)) >= 10
+        if found:
+            assert clear
+            assert all(is_inside(config.arena, *point) for point in rim)
+        elif clear:
+            assert not all(
+                is_inside(config.arena, x + 10.02 * math.cos(a), y + 10.02 * math.sin(a))
+                for a in np.linspace(0, 2 * math.pi, 721)
+            )
+    at = np.array([[240.0, 180.0], [259.9, 180.0], [260.1, 180.0], [240.0, 193.9], [240.0, 194.1]])
+    assert is_free(config, at, at[:1], nothing).tolist() == [False, False, True, False, False]
+    assert is_free(config, at, nothing, at[:1]).tolist() == [False, True, True, False, True]

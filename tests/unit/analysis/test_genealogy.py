@@ -1,0 +1,118 @@
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+from analysis_tree import lines, random_tree
+from synthetic_run import write_run
+
+from hedon.analysis.genealogy import (
+    Genealogy,
+    ancestry,
+    common_ancestor,
+    depth,
+    families,
+    founder,
+    genealogy,
+    living_at,
+)
+from hedon.analysis.generation import generation_time
+from hedon.analysis.price import price
+from hedon.analysis.walk import birth_number
+from hedon.analysis.world import read_worlds
+from hedon.record.reader import open_run
+
+# Two founders; 0 has 2, 2 has 3 and 4, 3 has 5; 1 has 6, who dies. 4 and 5 live.
+AGENTS = pl.DataFrame(
+    {
+        "agent_id": [10, 11, 12, 13, 14, 15, 16],
+        "parent_id": [None, None, 10, 12, 12, 13, 11],
+        "generation": [0, 0, 1, 2, 2, 3, 1],
+        "birth_step": [0, 0, 5, 10, 20, 25, 30],
+        "death_step": [50, 40, 60, 70, None, None, 80],
+        "w_normal": [1.0, 2.0, 1.5, 1.25, 2.5, 1.0, 2.0],
+    },
+    schema_overrides={"parent_id": pl.Int64, "death_step": pl.Int64},
+)
+
+
+def test_the_small_pedigree() -> None:
+    tree = genealogy(AGENTS)
+    assert tree.parent.tolist() == [-1, -1, 0, 2, 2, 3, 1]
+    assert tree.gaps == 0
+    assert depth(tree).tolist() == AGENTS["generation"].to_list()
+    assert founder(tree).tolist() == [0, 1, 0, 0, 0, 0, 1]
+    assert np.flatnonzero(tree.alive).tolist() == [4, 5]
+    assert common_ancestor(tree, np.array([4, 5])) == 2
+    assert common_ancestor(tree, np.array([3, 5])) == 3  # one of them is the ancestor of the other
+    assert common_ancestor(tree, np.array([5, 6])) is None  # of two founders
+    assert common_ancestor(tree, np.array([], np.int64)) is None
+    assert families(tree, np.array([0, 39, 79, 80, 1000])).tolist() == [2, 2, 2, 1, 1]
+    assert living_at(tree, 25).tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_random_pedigrees_agree_with_climbing_one_by_one() -> None:
+    rng = np.random.default_rng(1)
+    for trial in range(40):
+        tree = random_tree(rng, 120, 1 + trial % 4)
+        paths = [lines(tree, i) for i in range(tree.size)]
+        assert depth(tree).tolist() == [len(path) - 1 for path in paths]
+        assert founder(tree).tolist() == [path[-1] for path in paths]
+        some = rng.choice(tree.size, 3, replace=False)
+        assert np.flatnonzero(ancestry(tree, some)).tolist() == sorted({a for i in some for a in paths[i]})
+        shared = set.intersection(*(set(paths[i]) for i in some))
+        assert common_ancestor(tree, some) == (max(shared) if shared else None)
+        at = int(rng.integers(0, 200))
+        alive = [i for i in range(tree.size) if tree.birth[i] <= at < tree.death[i]]
+        beyond = {founder(tree)[i] for i in range(tree.size) if tree.death[i] > at} if at >= 0 else set()
+        assert living_at(tree, at).tolist() == alive
+        assert families(tree, np.array([at]))[0] == len(beyond)
+
+
+def test_a_parent_without_a_record_is_a_gap() -> None:
+    tree = genealogy(AGENTS.filter(pl.col("agent_id") != 12))
+    assert tree.gaps == 2
+    assert depth(tree).tolist() == [0, 0, 0, 0, 1, 1]
+
+
+def test_generation_time_by_both_measures() -> None:
+    found = generation_time(AGENTS, 100)
+    ages = [5, 5, 15, 15, 30]
+    assert (found.births, found.parent_age, found.reached) == (5, np.mean(ages), 2.5)
+    assert found.parent_age_sd == pytest.approx(np.std(ages, ddof=1))
+    assert found.line_time == 40
+    nobody = generation_time(AGENTS.head(2).with_columns(death_step=pl.lit(9, pl.Int64)), 9)
+    assert (nobody.parent_age, nobody.reached, nobody.line_time) == (None, 0, None)
+
+
+def test_price_on_the_small_pedigree() -> None:
+    tree = genealogy(AGENTS)
+    cohort = np.array([True, True, True, False, False, False, False])
+    terms = price(AGENTS, tree, cohort, ["w_normal"])[0]
+    # Parents 1, 2, 1.5 have 1, 1, 2 children, with weights 1.5; 2; 1.25 and 2.5.
+    assert (terms.parents, terms.offspring) == (3, 4)
+    assert terms.change == pytest.approx(7.25 / 4 - 1.5)
+    assert terms.selection == pytest.approx(np.cov([1, 1, 2], [1, 2, 1.5], ddof=0)[0, 1] / (4 / 3))
+    assert terms.transmission == pytest.approx((1 * 0.5 + 1 * 0.0 + 2 * 0.375) / 3 / (4 / 3))
+    childless = price(AGENTS, tree, np.arange(7) == 5, ["w_normal"])[0]
+    assert np.isnan(childless.change)
+
+
+def test_price_closes_on_records(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", worlds=2, intervals=40, snapshot=False, selection=1.0))
+    for world in read_worlds([run]):
+        tree = genealogy(world.agents)
+        cohort = tree.birth < 20_000
+        for terms in price(world.agents, tree, cohort, world.weight_names):
+            assert abs(terms.residual) < 1e-14
+            assert terms.offspring == world.agents.filter(cohort)["children"].sum()
+            assert terms.selection != 0
+        food = price(world.agents, tree, cohort, ["w_normal"])[0]
+        assert food.selection > 0  # the synthetic worlds select on it
+
+
+def test_births_are_numbered_within_their_window() -> None:
+    #            founders   window 0 (steps 1 to 10)  window 1
+    birth = np.array([0, 0, 1, 9, 10, 11, 11, 20])
+    tree = Genealogy(np.array([-1, -1, 0, 1, 1, 0, 2, 2]), birth, birth + 5, 0)
+    assert birth_number(tree, 10).tolist() == [0, 0, 0, 1, 2, 0, 1, 2]

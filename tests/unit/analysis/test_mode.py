@@ -1,0 +1,90 @@
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from hedon.analysis.mode import LEVEL, dip, modes
+
+
+def dip_by_programming(x: np.ndarray) -> float:
+    """The definition: the least distance to a distribution that is convex up to a data point and concave from it."""
+    return min(_distance(x, mode) for mode in range(len(x)))
+
+
+def _distance(x: np.ndarray, mode: int) -> float:
+    # Unknowns: the curve just before and at each point, and the distance.
+    n = len(x)
+    rows, bounds, equal = [], [], []
+
+    def unknown(*terms: tuple[int, float]) -> np.ndarray:
+        row = np.zeros(2 * n + 1)
+        for index, factor in terms:
+            row[index] += factor
+        return row
+
+    def slope(i: int) -> list[tuple[int, float]]:
+        width = x[i + 1] - x[i]
+        return [(n + i, -1 / width), (i + 1, 1 / width)]  # from the value at i to that just before i + 1
+
+    for i in range(n):
+        for index, level in ((i, i / n), (n + i, (i + 1) / n)):
+            rows += [unknown((index, 1), (2 * n, -1)), unknown((index, -1), (2 * n, -1))]
+            bounds += [level, -level]
+        if i == mode:
+            rows.append(unknown((i, 1), (n + i, -1)))
+            bounds.append(0.0)
+        else:
+            equal.append(unknown((i, 1), (n + i, -1)))
+    for i in range(n - 1):
+        rows.append(-unknown(*slope(i)))
+        bounds.append(0.0)
+        if i < n - 2 and i + 1 != mode:
+            bend = unknown(*slope(i)) - unknown(*slope(i + 1))
+            rows.append(bend if i + 1 < mode else -bend)
+            bounds.append(0.0)
+    cost = unknown((2 * n, 1))
+    fixed = {"A_eq": np.array(equal), "b_eq": np.zeros(len(equal))} if equal else {}
+    return linprog(cost, A_ub=np.array(rows), b_ub=bounds, bounds=(None, None), **fixed).fun
+
+
+def test_the_dip_is_the_distance_to_the_nearest_distribution_with_one_mode() -> None:
+    rng = np.random.default_rng(1)
+    for trial in range(40):
+        n = int(rng.integers(3, 13))
+        x = rng.normal(size=n) + (trial % 3) * 2.0 * (rng.random(n) < 0.5)
+        x = np.sort(x)
+        assert dip(x) == pytest.approx(dip_by_programming(x), abs=1e-8)
+
+
+def test_dips_that_are_known() -> None:
+    assert dip(np.arange(10.0)) == pytest.approx(1 / 20)  # evenly spread: the least there is
+    assert dip(np.array([0.0] * 5 + [1.0] * 5)) == pytest.approx(0.25)
+    tight = np.concatenate([np.linspace(0, 1e-9, 50), 1 + np.linspace(0, 1e-9, 50)])
+    assert dip(tight) == pytest.approx(0.25, abs=0.01)
+    assert dip(np.full(3, 2.0)) == 0.0  # a single point has one mode
+
+
+@pytest.mark.parametrize("draw", ["normal", "uniform", "exponential"])
+@pytest.mark.parametrize("count", [5, 10, 30])
+def test_one_mode_is_called_two_no_more_often_than_promised(draw: str, count: int) -> None:
+    rng = np.random.default_rng(2)
+    wrong = sum(modes(getattr(rng, draw)(size=count)).answer == "two" for _ in range(400))
+    assert wrong / 400 <= LEVEL + 3 * np.sqrt(LEVEL * (1 - LEVEL) / 400)
+
+
+def test_two_modes_are_found_and_counted() -> None:
+    rng = np.random.default_rng(3)
+    found = modes(np.concatenate([rng.normal(5, 0.2, 6), rng.normal(-1, 0.2, 14)]))
+    assert (found.answer, found.low_worlds, found.high_worlds) == ("two", 14, 6)
+    assert found.low == pytest.approx(-1, abs=0.5)
+    assert found.high == pytest.approx(5, abs=0.5)
+    assert found.p < 0.01
+
+
+def test_few_worlds_are_undecided_and_many_are_not() -> None:
+    rng = np.random.default_rng(4)
+    assert [modes(rng.normal(size=n)).answer for n in (0, 3)] == ["undecided"] * 2
+    five = modes(np.array([-0.9, 0.1, 0.2, 0.4, 1.0]))
+    assert (five.answer, five.power < 0.8) == ("undecided", True)
+    many = modes(np.sort(rng.normal(size=40)))
+    assert (many.answer, many.power > 0.95) == ("one", True)
+    assert modes(np.full(20, 2.0)).answer == "one"

@@ -1,0 +1,114 @@
+import numpy as np
+import polars as pl
+import pytest
+
+from hedon.analysis.bootstrap import percentile_interval, resampled_sums
+from hedon.analysis.selection import STRATUM, differential_and_gradient, selection
+
+NAMES = ("w_normal", "w_action", "neutral_1")
+
+
+def cohort(z: np.ndarray, children: np.ndarray, *, parent: np.ndarray | None = None) -> pl.DataFrame:
+    """Agents with given weights and children, all of them dead, in the order of birth."""
+    n = len(z)
+    table = {"agent_id": np.arange(n), "birth_step": np.arange(n), "death_step": np.arange(n) + 100}
+    table |= {"parent_id": np.arange(n) if parent is None else parent, "children": children}
+    return pl.DataFrame(table | {name: z[:, i].astype(np.float32) for i, name in enumerate(NAMES)})
+
+
+def test_the_gradient_is_a_multiple_regression() -> None:
+    rng = np.random.default_rng(1)
+    z = rng.normal(size=(500, 3)) @ np.array([[1, 0.5, 0], [0, 1, 0.3], [0, 0, 2.0]])
+    fitness = rng.poisson(np.exp(0.2 * z[:, 0]))
+    omega = fitness / fitness.mean()
+    s, beta = differential_and_gradient(z, omega)
+    design = np.column_stack([np.ones(500), z])
+    np.testing.assert_allclose(beta, np.linalg.lstsq(design, omega, rcond=None)[0][1:], rtol=1e-9)
+    np.testing.assert_allclose(s, [np.cov(omega, z[:, i], ddof=0)[0, 1] for i in range(3)], rtol=1e-9)
+
+
+def test_the_truth_of_a_log_linear_fitness_is_found_and_covered() -> None:
+    """W Poisson with mean exp(b·z) and normal z: the gradient is b, the differential b·σ² (Lande & Arnold)."""
+    rng = np.random.default_rng(2)
+    b, trials, hits, slopes, neutral = 0.3, 120, 0, [], 0
+    for _ in range(trials):
+        z = rng.normal(0, [0.8, 1.0, 1.0], (300, 3))
+        z[:, 2] += 0.7 * z[:, 0]  # a marker that rides along: a differential, but no gradient
+        found = selection(cohort(z, rng.poisson(np.exp(b * z[:, 0]))), NAMES, 1000, rng, replicates=300)[:3]
+        slopes.append([row.gradient for row in found] + [found[2].differential])
+        hits += found[0].gradient_low <= b <= found[0].gradient_high
+        neutral += found[2].gradient_low <= 0 <= found[2].gradient_high
+    np.testing.assert_allclose(np.mean(slopes, axis=0), [b, 0, 0, b * 0.7 * 0.64], atol=0.03)
+    assert hits / trials > 0.88  # 95 %, less 3.5 standard errors of the count
+    assert neutral / trials > 0.88
+    assert neutral < trials
+
+
+def test_both_measures_of_fitness_are_regressed() -> None:
+    rng = np.random.default_rng(8)
+    z = rng.normal(size=(300, 3)).astype(np.float32).astype(np.float64)  # as they are recorded
+    agents = cohort(z, rng.poisson(1.0, 300))
+    lives = np.round(1000 * np.exp(0.3 * z[:, 1])).astype(int)
+    agents = agents.with_columns(death_step=pl.col("birth_step") + lives)
+    found = selection(agents, NAMES, 10**6, rng, replicates=50)
+    design = np.column_stack([np.ones(300), z])
+    for rows, fitness in ((found[:3], agents["children"].to_numpy()), (found[3:], lives)):
+        slopes = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:]
+        np.testing.assert_allclose([row.gradient for row in rows], slopes, rtol=1e-9)
+    assert found[4].gradient_low > 0.2
+
+
+def test_raw_and_standardized_agree() -> None:
+    rng = np.random.default_rng(3)
+    row = selection(cohort(rng.normal(0, 2, (400, 3)), rng.poisson(1.0, 400)), NAMES, 1000, rng)[0]
+    assert row.standard_gradient == pytest.approx(row.gradient * row.sd)
+    assert row.intensity == pytest.approx(row.differential / row.sd)
+    assert row.gradient_low < row.gradient < row.gradient_high
+    assert (row.fitness, row.weight, row.agents, row.complete) == ("children", "w_normal", 400, 1.0)
+
+
+def test_a_common_drift_of_weights_and_fitness_is_no_selection() -> None:
+    rng = np.random.default_rng(4)
+    time = np.linspace(0, 1, 20 * STRATUM)
+    z = np.stack([5 * time, 0 * time, 0 * time], axis=1) + rng.normal(size=(len(time), 3))
+    fitness = rng.poisson(2 - 1.5 * time)
+    _, naive = differential_and_gradient(z, fitness / fitness.mean())
+    row = selection(cohort(z, fitness), NAMES, 10**6, rng, replicates=200)[0]
+    assert naive[0] < -0.1
+    assert abs(row.gradient) < 0.05
+    assert row.sd == pytest.approx(1.0, abs=0.03)  # among contemporaries, without the drift
+    assert row.gradient_low < 0 < row.gradient_high
+
+
+def test_a_weight_that_does_not_vary_has_no_gradient_and_harms_no_other() -> None:
+    rng = np.random.default_rng(5)
+    z = rng.normal(size=(300, 3))
+    z[:, 1] = 0.1
+    children = rng.poisson(1.0, 300)
+    rows = selection(cohort(z, children), NAMES, 1000, rng)
+    assert np.isnan(rows[1].gradient)
+    assert rows[1].differential == 0
+    assert np.isfinite([rows[0].gradient, rows[0].gradient_low, rows[2].gradient_high]).all()
+
+
+def test_too_few_agents_give_nothing() -> None:
+    rng = np.random.default_rng(6)
+    for n in (0, 10):
+        rows = selection(cohort(rng.normal(size=(n, 3)), np.ones(n, int)), NAMES, 1000, rng)
+        assert len(rows) == 6
+        assert all(np.isnan(row.gradient) for row in rows)
+
+
+def test_the_bootstrap_has_the_spread_of_theory() -> None:
+    """The mean of n numbers varies by σ/√n; with clusters of equal numbers, n is the number of clusters."""
+    rng = np.random.default_rng(7)
+    values = rng.normal(size=1000)
+    features = np.stack([np.ones(1000), values], axis=1)
+    sums = resampled_sums(features, np.arange(1000), rng, 4000)
+    means = sums[:, 1] / sums[:, 0]
+    assert means.std() == pytest.approx(values.std() / np.sqrt(1000), rel=0.06)
+    low, high = percentile_interval(means)
+    assert high - low == pytest.approx(2 * 1.96 * values.std() / np.sqrt(1000), rel=0.08)
+    tens = np.repeat(values[:100], 10)
+    sums = resampled_sums(np.stack([np.ones(1000), tens], axis=1), np.repeat(np.arange(100), 10), rng, 4000)
+    assert (sums[:, 1] / sums[:, 0]).std() == pytest.approx(values[:100].std() / 10, rel=0.06)
