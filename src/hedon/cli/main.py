@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hedon.cli import config
+from hedon.cli.bench import bench
 from hedon.cli.branch import branch
 from hedon.cli.report import report
 from hedon.cli.resume import resume
@@ -26,6 +27,7 @@ app.command()(resume)
 app.command()(branch)
 app.command()(report)
 app.command()(config.presets)
+app.command()(bench)
 app.add_typer(config.app, name="config")
 
 
@@ -54,6 +56,7 @@ def _hedon(
       hedon report runs/poison
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
+      hedon bench
     """
 
 
