@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <chrono>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -73,13 +74,29 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
 }
 
 double calibrate(const std::string& kernel_name, int64_t rounds) {
+  if (rounds < 1) throw nb::value_error("rounds: at least 1");
   const Kernel& kernel = kernel_by_name(kernel_name);
   float result = 0.5f;
   const auto before = std::chrono::steady_clock::now();
   const int64_t operations = kernel.multiply_adds(rounds, &result);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
-  if (!(result > 0.0f)) throw nb::value_error("rounds: must be positive");
+  if (!(result > 0.0f)) throw std::runtime_error("a sum of positive numbers is not positive");
   return static_cast<double>(operations) / seconds.count() * 1e-9;
+}
+
+double read_rate(const std::string& kernel_name, int64_t bytes, int64_t rounds) {
+  constexpr int64_t BLOCK = 64 * sizeof(float);
+  if (bytes < BLOCK || rounds < 1) throw nb::value_error("bytes: at least 256; rounds: at least 1");
+  const Kernel& kernel = kernel_by_name(kernel_name);
+  const int64_t count = bytes / BLOCK * 64;
+  const Aligned<float> values(static_cast<size_t>(count));
+  for (int64_t i = 0; i < count; ++i) values.get()[i] = 1.0f;
+  float total = kernel.sum_floats(values.get(), count);
+  const auto before = std::chrono::steady_clock::now();
+  for (int64_t i = 0; i < rounds; ++i) total += kernel.sum_floats(values.get(), count);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
+  if (!(total > 0.0f)) throw std::runtime_error("a sum of ones is not positive");
+  return static_cast<double>(rounds * count * static_cast<int64_t>(sizeof(float))) / seconds.count() * 1e-9;
 }
 
 }  // namespace
@@ -99,8 +116,12 @@ void bind_kernel(nb::module_& module) {
       nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
       "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
       "done `repeats` times, to be timed.");
-  kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"),
-             "Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels.");
+  kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"), nb::call_guard<nb::gil_scoped_release>(),
+             "Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels. Releases the "
+             "interpreter lock.");
+  kernel.def("read_rate", read_rate, nb::arg("kernel"), nb::arg("bytes"), nb::arg("rounds"),
+             nb::call_guard<nb::gil_scoped_release>(),
+             "An array of `bytes` read again and again on this thread [GB/s]. Releases the interpreter lock.");
 }
 
 }  // namespace hedon

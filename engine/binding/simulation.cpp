@@ -72,6 +72,11 @@ class PythonSimulation {
     raise_faults();
   }
 
+  /// What a simulation would reserve.
+  static int64_t bytes_needed(nb::dict config, int32_t walls, int64_t worlds, int threads) {
+    return Simulation::bytes_needed(to_config<WorldConfig>(config), walls, worlds, count_threads(threads));
+  }
+
   Simulation& get() { return simulation_; }
 
   World& world(int index) {
@@ -271,6 +276,8 @@ void bind_simulation(nb::module_& module) {
                     const std::vector<int32_t>&>(),
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
            nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{})
+      .def_static("bytes_needed", &S::bytes_needed, nb::arg("config"), nb::arg("walls"), nb::arg("worlds"),
+                  nb::arg("threads") = 1, "Bytes that such a simulation would reserve; makes none.")
       .def("run", &S::run, nb::arg("steps"), "Advances every world that is not over; releases the interpreter lock.")
       .def("take_rows", &S::take_rows, nb::arg("world"),
            nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),

@@ -1,4 +1,4 @@
-/// Rate of multiply-adds in registers: the ceiling that the other kernels are measured against.
+/// Rates of multiply-adds in registers and of reads: the ceilings that the other kernels are measured against.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,18 @@ HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   unroll<chains - 1>([&](auto i) HEDON_INLINED { total[0] = total[0] + total[i + 1]; });
   *result = sum(total[0]);
   return rounds * chains * 16 * 2;
+}
+
+/// See `Kernel::sum_floats`. Four sums, so that additions do not wait for one another.
+float sum_floats(const float* values, int64_t count) {
+  constexpr int sums = 4, stride = sums * 16;
+  Lanes total[sums];
+  unroll<sums>([&](auto i) HEDON_INLINED { total[i] = broadcast(0.0f); });
+  for (int64_t at = 0; at < count; at += stride) {
+    unroll<sums>([&](auto i) HEDON_INLINED { total[i] = total[i] + load(values + at + i * 16); });
+  }
+  unroll<sums - 1>([&](auto i) HEDON_INLINED { total[0] = total[0] + total[i + 1]; });
+  return sum(total[0]);
 }
 
 }  // namespace

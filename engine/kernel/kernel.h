@@ -110,6 +110,9 @@ struct Kernel {
   /// Multiply-adds in registers, to measure this processor's ceiling. Reads a factor (below 1) from `result` and
   /// leaves there a number that depends on all of them. Returns how many floating-point operations that were.
   int64_t (*multiply_adds)(int64_t rounds, float* result);
+
+  /// Sum of `count` floats, a multiple of 64, aligned to 64 bytes: reads them as fast as they come, to measure caches.
+  float (*sum_floats)(const float* values, int64_t count);
 };
 
 /// The kernel of that name if this processor can run it, the best one for an empty name, null for an unknown one.

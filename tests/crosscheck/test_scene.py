@@ -17,7 +17,12 @@ ROOM = ("population.capacity=300", "food.normal.capacity=300")
 CASES = {
     "baseline": (),
     "an arena much larger than rays reach": ("arena.width=4000", "arena.height=3000"),
-    "an arena smaller than a fan": ("arena.width=150", "arena.height=120", "population.initial_count=5", "food.normal.initial_count=5"),
+    "an arena smaller than a fan": (
+        "arena.width=150",
+        "arena.height=120",
+        "population.initial_count=5",
+        "food.normal.initial_count=5",
+    ),
     "an empty plain": ("arena.width=60000", "arena.height=50000"),
     "a long corridor": ("arena.width=5000", "arena.height=80"),
     "short rays": ("sensor.ray_length=15", "arena.width=900"),

@@ -25,6 +25,10 @@ class Simulation:
 
     def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = []) -> None: ...
 
+    @staticmethod
+    def bytes_needed(config: dict, walls: int, worlds: int, threads: int = 1) -> int:
+        """Bytes that such a simulation would reserve; makes none."""
+
     def run(self, steps: int) -> None:
         """Advances every world that is not over; releases the interpreter lock."""
 

@@ -16,5 +16,10 @@ def cast_rays(kernel: str, circles: Annotated[NDArray[numpy.float32], dict(shape
 
 def calibrate(kernel: str, rounds: int) -> float:
     """
-    Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels.
+    Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels. Releases the interpreter lock.
+    """
+
+def read_rate(kernel: str, bytes: int, rounds: int) -> float:
+    """
+    An array of `bytes` read again and again on this thread [GB/s]. Releases the interpreter lock.
     """

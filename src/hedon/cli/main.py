@@ -7,6 +7,7 @@ import typer
 
 from hedon.cli import config
 from hedon.cli.analyze import analyze
+from hedon.cli.bench import bench
 from hedon.cli.branch import branch
 from hedon.cli.demography import demography
 from hedon.cli.report import report
@@ -30,6 +31,7 @@ app.command()(report)
 app.command()(analyze)
 app.command()(demography)
 app.command()(config.presets)
+app.command()(bench)
 app.add_typer(config.app, name="config")
 
 
@@ -59,6 +61,7 @@ def _hedon(
       hedon analyze runs/poison --only selection,drift
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
+      hedon bench
     """
 
 

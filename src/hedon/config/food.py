@@ -60,15 +60,15 @@ class FoodConfig:
     ] = 0.2
     capacity: Annotated[
         int,
-        Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=10_000)),
+        Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=100_000)),
     ] = 100
     initial_count: Annotated[
         int,
-        Doc("supply and food present at first", "food", EITHER, Range(ge=0, le=10_000)),
+        Doc("supply and food present at first", "food", EITHER, Range(ge=0, le=100_000)),
     ] = 20
     candidates: Annotated[
         int,
-        Doc("places tried for new food in each step; else it waits", "", EITHER, Range(ge=1, le=1000)),
+        Doc("places tried for new food in each step; else it waits", "", EITHER, Range(ge=1, le=10_000)),
     ] = 10
     color: Annotated[
         str,

@@ -1,0 +1,115 @@
+"""All parts: measures those that are asked for, between two calibrations."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from hedon.benchmark import growth, network, physics, rays, records, startup, world
+from hedon.benchmark.machine import Calibration, calibrate, describe
+from hedon.benchmark.measure import Row, Table
+from hedon.benchmark.plan import Plan, PlanError
+from hedon.config.problem import nearest
+
+FORMAT_VERSION = 1
+"""Of the JSON files; raised when a reader of old ones would misread new ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Something that can be measured by itself.
+
+    Attributes:
+        about: What it is, in a few words.
+        measure: Gives its rows of raw numbers, after it has checked what they are numbers of.
+        table: Makes a table of them.
+    """
+
+    about: str
+    measure: Callable[[Plan, Calibration], list[Row]]
+    table: Callable[[list[Row], Calibration], Table]
+
+
+PARTS = {
+    "rays": Part("one agent's rays", rays.measure, rays.table),
+    "forward": Part("one agent's network, acting", network.measure_forward, network.table_forward),
+    "update": Part("PPO of one learner, on one thread", network.measure_update, network.table_update),
+    "physics": Part("rigid bodies alone", physics.measure, physics.table),
+    "world": Part("whole worlds with learning, by threads, worlds and instruction sets", world.measure, world.table),
+    "records": Part("writing a run's tables", records.measure, records.table),
+    "startup": Part("from the start of a process to its first step", startup.measure, startup.table),
+    "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
+}
+DEFAULT_PARTS = tuple(name for name in PARTS if name != "growth")
+"""Growth takes minutes and gigabytes, so it has to be asked for."""
+
+
+def choose(names: Sequence[str]) -> tuple[str, ...]:
+    """The parts of these names, or the default ones where there is none.
+
+    Raises:
+        PlanError: There is no such part.
+    """
+    for name in names:
+        if name not in PARTS:
+            near = nearest(name, PARTS)
+            hint = f"; did you mean {near}?" if near else ""
+            raise PlanError(f"{name!r} is not a part (there is {', '.join(PARTS)}){hint}")
+    return tuple(dict.fromkeys(names)) or DEFAULT_PARTS
+
+
+def need_writable(path: Path) -> None:
+    """Finds out whether a file can be written before minutes are spent on what goes into it; keeps what it holds.
+
+    Raises:
+        PlanError: It cannot.
+    """
+    try:
+        path.open("a").close()
+    except OSError as error:
+        raise PlanError(f"--json: cannot write {path}: {error.strerror}") from error
+
+
+class Bench:
+    """One run of the benchmarks.
+
+    Attributes:
+        machine: What it runs on.
+        before: Rates of the machine at the beginning.
+        after: The same at the end; those at the beginning until then.
+        rows: Raw numbers of each part that has been measured.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.machine = describe()
+        self.before = self.after = calibrate(plan)
+        self.rows: dict[str, list[Row]] = {}
+
+    def run(self, parts: Sequence[str]) -> Iterator[Table]:
+        """Measures one part after the other and gives the table of each as soon as it is there.
+
+        Raises:
+            CheckError: What was measured did not do what it should.
+            PlanError: The preset does not fit a part.
+        """
+        for name in parts:
+            self.rows[name] = PARTS[name].measure(self.plan, self.before)
+            yield PARTS[name].table(self.rows[name], self.before)
+        self.after = calibrate(self.plan)
+
+    def document(self) -> dict[str, Any]:
+        """Everything that was measured, for a JSON file."""
+        return {
+            "format_version": FORMAT_VERSION,
+            "machine": self.machine,
+            "plan": asdict(self.plan),
+            "calibration_before": asdict(self.before),
+            "calibration_after": asdict(self.after),
+            "parts": self.rows,
+        }
+
+    def save(self, path: Path) -> None:
+        """Writes the document."""
+        path.write_text(json.dumps(self.document(), indent=1) + "\n", encoding="utf-8")

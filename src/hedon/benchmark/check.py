@@ -1,0 +1,69 @@
+"""Whether what was measured did what it should; a time of something else is not printed."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hedon.experiment.simulation import Simulation, World
+
+
+class CheckError(Exception):
+    """A measurement whose end state is wrong: a fault of hedon or of the machine, not of the user."""
+
+
+def require(holds: bool, what: str) -> None:
+    """Raises where a condition does not hold.
+
+    Args:
+        holds: The condition.
+        what: What is wrong where it does not, as a sentence without a point.
+
+    Raises:
+        CheckError: It does not hold.
+    """
+    if not holds:
+        raise CheckError(what)
+
+
+def require_finite(what: str, *arrays: ArrayLike) -> None:
+    """Raises where a number is infinite or none.
+
+    Raises:
+        CheckError: as said.
+    """
+    require(all(np.isfinite(array).all() for array in arrays), f"{what}: not all numbers are finite")
+
+
+def check_world(world: World) -> None:
+    """Raises where a world is not what it should be: peopled, within its walls, of finite numbers.
+
+    Raises:
+        CheckError: It names the seed and what is wrong.
+    """
+    name = f"the world of seed {world.seed} at step {world.step}"
+    require(not world.extinct, f"{name} has died out")
+    agents, living, arena = world.agents(), world.living, world.config.arena
+    require_finite(f"{name}, bodies", agents["x"], agents["y"], agents["angle"], agents["energy"])
+    inside = (agents["x"] > 0) & (agents["x"] < arena.width) & (agents["y"] > 0) & (agents["y"] < arena.height)
+    require(bool(inside.all()), f"{name} has {np.sum(~inside)} agents outside of its walls")
+    for array in ("params", "first_moment", "second_moment"):
+        require_finite(f"{name}, {array}", world.view(array)[living])
+
+
+def check_same_lives(simulations: Iterable[Simulation]) -> None:
+    """Raises where worlds of one seed and instruction set differ, whatever threads and company they had.
+
+    Raises:
+        CheckError: It names the seed, the instruction set and the numbers of threads.
+    """
+    seen: dict[tuple[str, int], tuple[str, int]] = {}
+    for simulation in simulations:
+        for world in simulation.worlds:
+            key = (simulation.engine.kernel, world.seed)
+            digest, threads = seen.setdefault(key, (world.digest(), simulation.engine.threads))
+            require(
+                digest == world.digest(),
+                f"the world of seed {world.seed} on {key[0]} differs between {threads} and "
+                f"{simulation.engine.threads} threads",
+            )

@@ -1,0 +1,172 @@
+"""How the time of a step grows with the world: the same density of everything in arenas of up to 500 times the size."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hedon import _engine
+from hedon.benchmark.check import check_world, require
+from hedon.benchmark.machine import Calibration, memory_bytes
+from hedon.benchmark.measure import Row, Table, median, seconds_of
+from hedon.benchmark.plan import Plan, PlanError
+from hedon.benchmark.scene import peopled, scene_of
+from hedon.config.arena import walls
+from hedon.config.config import Config
+from hedon.config.native import engine_config
+from hedon.experiment.simulation import Simulation
+
+TILES = ((1, 1), (2, 5), (10, 10), (20, 25))
+"""Copies of the preset's arena along x and y: 200, 2,000, 20,000 and 100,000 slots of the baseline."""
+QUICK_TILES = ((1, 1), (2, 1))
+PIECES = 5
+"""Timed pieces; one more goes before."""
+MAX_PIECE_STEPS = 200
+ROLLOUT_ROWS = 2_400_000
+"""Slots times steps: 500 MB of rollouts at every size, and half a million agent-steps in each piece."""
+PARTS = ("sense_and_act", "physics", "life")
+
+
+def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
+    """The preset at its own density in an arena `across` times as wide and `up` times as high.
+
+    Founders are one, because the scene brings the agents; a window is a step longer than what is timed, so that none
+    ends.
+
+    Args:
+        plan: It names the preset.
+        across: Factor of the width.
+        up: Factor of the height.
+        steps: Steps that will be run.
+
+    Raises:
+        PlanError: The preset has walls inside, or food that does not grow everywhere: it has no one density.
+        ConfigError: The scaled numbers are out of range.
+    """
+    base = plan.config()
+    if base.arena.inner_walls or any(food.placement.form != "uniform" for food in base.food.values()):
+        raise PlanError(f"growth: {plan.preset} has inner walls or food around centers, so it has no one density")
+    factor = across * up
+    overrides = [
+        f"arena.width={base.arena.width * across}",
+        f"arena.height={base.arena.height * up}",
+        f"population.capacity={base.population.capacity * factor}",
+        "population.initial_count=1",
+        f"learning.rollout_steps={steps + 1}",
+        f"learning.minibatch_size={steps + 1}",
+    ]
+    for kind, food in base.food.items():
+        overrides += [
+            f"food.{kind}.capacity={food.capacity * factor}",
+            f"food.{kind}.growth_rate={food.growth_rate * factor}",
+            f"food.{kind}.candidates={food.candidates * factor}",
+            f"food.{kind}.initial_count=0",
+        ]
+    return plan.config(*overrides)
+
+
+def measure(plan: Plan, _: Calibration) -> list[Row]:
+    """One row per size and number of threads, smallest and largest; a size that finds no memory says so.
+
+    Raises:
+        PlanError: The plan asks for a size that there is not, or its preset has no one density.
+        CheckError: A world did not end as it should.
+    """
+    base = plan.config()
+    rows: list[Row] = []
+    for slots, (across, up) in _sizes(plan).items():
+        piece = 4 if plan.quick else max(1, min(MAX_PIECE_STEPS, ROLLOUT_ROWS // slots // (PIECES + 1)))
+        config = scaled_config(plan, across, up, piece * (PIECES + 1))
+        threads = sorted({plan.threads[0], plan.threads[-1]})
+        needed, free = bytes_needed(config, threads[-1]), memory_bytes("MemAvailable")
+        full = replace(config, learning=base.learning)
+        bare = replace(config, learning=replace(base.learning, rollout_steps=1, minibatch_size=1))
+        head = {
+            "slots": slots,
+            "reserved_bytes": needed,
+            "bytes_per_slot": bytes_needed(bare, threads[-1]) / slots,
+            "bytes_per_slot_with_rollouts": bytes_needed(full, threads[-1]) / slots,
+        }
+        if needed > free:
+            rows.append({**head, "refused": f"needs {needed / 1e9:.1f} GB of memory, and {free / 1e9:.1f} GB are free"})
+            continue
+        measured = [_measure_one(plan, config, (across, up), count, piece) for count in threads]
+        require(len({row["digest"] for row in measured}) == 1, f"growth, {slots} slots: threads change the world")
+        rows += [{**head, **row} for row in measured]
+    return rows
+
+
+def _sizes(plan: Plan) -> dict[int, tuple[int, int]]:
+    """Tiles by numbers of slots, those that the plan asks for."""
+    capacity = plan.config().population.capacity
+    sizes = {capacity * across * up: (across, up) for across, up in (QUICK_TILES if plan.quick else TILES)}
+    for slots in plan.slots or ():
+        if slots not in sizes:
+            known = ", ".join(str(size) for size in sizes)
+            raise PlanError(f"--slots: {slots} is none of the sizes that growth has with {plan.preset}: {known}")
+    return {slots: tiles for slots, tiles in sizes.items() if plan.slots is None or slots in plan.slots}
+
+
+def _measure_one(plan: Plan, config: Config, tiles: tuple[int, int], threads: int, piece: int) -> Row:
+    arena = plan.config().arena
+    simulation = Simulation(config, [1], threads, plan.kernel)
+    scene_of(peopled(plan)).tiled(*tiles, arena.width, arena.height).put_into(simulation)
+    world = simulation.worlds[0]
+    for steps in (1, 1, piece - 2):  # the engine first tries how fast a team is, then how fast one of it alone
+        simulation.run(steps)
+    alive, foods, counters = world.alive, int(world.view("food_stock.present").sum()), world.counters
+    agent_steps, pieces = [], []
+    parts: dict[str, list[float]] = {part: [] for part in PARTS}
+    for _ in range(PIECES):
+        counted, seconds = world.counters["agent_steps"], world.seconds
+        pieces.append(seconds_of(lambda: simulation.run(piece)))
+        agent_steps.append(world.counters["agent_steps"] - counted)
+        for part, times in parts.items():
+            times.append(world.seconds[part] - seconds[part])
+    check_world(world)
+    after = world.counters
+    return {
+        "threads": threads,
+        "alive": alive,
+        "foods": foods,
+        "piece_steps": piece,
+        "piece_seconds": pieces,
+        "piece_agent_steps": agent_steps,
+        **{f"{part}_seconds": times for part, times in parts.items()},
+        **{name: after[name] - counters[name] for name in ("births", "deaths")},
+        "digest": world.digest(),
+    }
+
+
+def bytes_needed(config: Config, threads: int) -> int:
+    """What one world reserves [byte]."""
+    return _engine.Simulation.bytes_needed(engine_config(config), len(walls(config.arena)), 1, threads)
+
+
+def table(rows: list[Row], _: Calibration) -> Table:
+    """Nanoseconds per agent and step."""
+    headings = ("slots", "threads", "alive", "foods", "step [ms]", "agent-step [ns]", "sense+act", "physics", "life")
+    headings += ("bytes/agent", "with rollouts")
+    lines, notes = [], []
+    for row in rows:
+        slots = f"{row['slots']:,}"
+        if "refused" in row:
+            notes.append(f"{slots} slots: left out, {row['refused']}.")
+            continue
+        lines.append(
+            (
+                slots,
+                str(row["threads"]),
+                f"{row['alive']:,}",
+                f"{row['foods']:,}",
+                f"{median(row['piece_seconds']) / row['piece_steps'] * 1e3:.3f}",
+                *(_per_agent_step(row, name) for name in ("piece", *PARTS)),
+                f"{row['bytes_per_slot']:,.0f}",
+                f"{row['bytes_per_slot_with_rollouts']:,.0f}",
+            )
+        )
+    notes.append("Parts in ns per agent-step, medians of pieces. Bytes are those reserved for each slot.")
+    return Table("growth: one world without learning, at equal density", headings, lines, tuple(notes))
+
+
+def _per_agent_step(row: Row, name: str) -> str:
+    return f"{np.median(np.array(row[f'{name}_seconds']) / row['piece_agent_steps']) * 1e9:,.0f}"

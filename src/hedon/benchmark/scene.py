@@ -1,0 +1,87 @@
+"""A world as it is after a while, from which every part takes its agents, foods, networks and rollouts."""
+
+from dataclasses import dataclass, fields
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.benchmark.check import check_world
+from hedon.benchmark.plan import Plan
+from hedon.experiment.simulation import Simulation, World
+
+WARM_UP_WINDOWS = 20
+"""After that the baseline has grown from its 50 founders to some 150 agents."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Agents and foods of a world, without their past.
+
+    Attributes:
+        x, y: Places of the agents [u].
+        angle: Their headings [rad].
+        energy: Their energies.
+        food_x, food_y: Places of the foods [u].
+        food_kind: Their kinds.
+    """
+
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
+    angle: NDArray[np.float32]
+    energy: NDArray[np.float32]
+    food_x: NDArray[np.float32]
+    food_y: NDArray[np.float32]
+    food_kind: NDArray[np.int32]
+
+    def put_into(self, simulation: Simulation) -> None:
+        """Empties every world and puts these agents and foods into it; networks are fresh, by the world's seed."""
+        for world in simulation.worlds:
+            simulation.engine.set_scene(world.index, *(getattr(self, field.name) for field in fields(self)))
+
+    def tiled(self, across: int, up: int, width: float, height: float) -> "Scene":
+        """Copies side by side: `across` along x and `up` along y, each shifted by the size of an arena [u]."""
+        copies = across * up
+        shift_x = np.tile(np.arange(across, dtype=np.float32) * np.float32(width), up)
+        shift_y = np.repeat(np.arange(up, dtype=np.float32) * np.float32(height), across)
+
+        def moved(places: NDArray[np.float32], shift: NDArray[np.float32]) -> NDArray[np.float32]:
+            return (shift[:, None] + places[None, :]).ravel()
+
+        return Scene(
+            moved(self.x, shift_x),
+            moved(self.y, shift_y),
+            np.tile(self.angle, copies),
+            np.tile(self.energy, copies),
+            moved(self.food_x, shift_x),
+            moved(self.food_y, shift_y),
+            np.tile(self.food_kind, copies),
+        )
+
+
+def scene_of(world: World) -> Scene:
+    """The agents and foods of a world as they are now."""
+    agents, foods = world.agents(), world.foods()
+    single = {name: agents[name].astype(np.float32) for name in ("x", "y", "angle", "energy")}
+    return Scene(**single, food_x=foods["x"], food_y=foods["y"], food_kind=foods["kind"])
+
+
+def peopled(plan: Plan) -> World:
+    """The world of the plan's config and seed 1 after the warm-up, at the end of a window; made once."""
+    return _source(plan).worlds[0]
+
+
+def go_on_from_peopled(plan: Plan, simulation: Simulation) -> None:
+    """Puts the peopled world, networks and all, in place of every world of a simulation of the plan's config."""
+    saved = _source(plan).engine.save(0)
+    for world in simulation.worlds:
+        simulation.engine.restore(world.index, saved)
+
+
+@cache
+def _source(plan: Plan) -> Simulation:
+    config = plan.config()
+    simulation = Simulation(config, [1], plan.threads[-1], plan.kernel)
+    simulation.run((2 if plan.quick else WARM_UP_WINDOWS) * config.learning.rollout_steps)
+    check_world(simulation.worlds[0])
+    return simulation

@@ -1,0 +1,118 @@
+"""The command `hedon bench`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hedon.cli.console import make_console
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hedon.benchmark.bench import Bench
+    from hedon.benchmark.measure import Table
+
+
+def bench(
+    parts: Annotated[
+        list[str] | None, typer.Argument(metavar="[PART]...", help="What to measure; all but growth by default.")
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Keep all raw numbers in this file.")
+    ] = None,
+    preset: Annotated[str, typer.Option(help="The condition: a preset or a config file.")] = "baseline",
+    threads: Annotated[
+        str, typer.Option(metavar="N,...", help="Numbers of threads; by default 1, 2, 4 ... all processors.")
+    ] = "",
+    worlds: Annotated[
+        str,
+        typer.Option(metavar="N,...", help="Numbers of worlds; by default 1, and one per thread on all processors."),
+    ] = "",
+    slots: Annotated[
+        str, typer.Option(metavar="N,...", help="Sizes of growth, of 200,2000,20000,100000; by default all.")
+    ] = "",
+    kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
+    windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Tiny sizes: shows that all works; the numbers say nothing.")
+    ] = False,
+) -> None:
+    """Measure how fast hedon is on this machine, beside what the machine can do.
+
+    \b
+    Parts:
+      rays      one agent's rays
+      forward   one agent's network, acting
+      update    PPO of one learner, on one thread
+      physics   rigid bodies alone
+      world     whole worlds with learning, by threads, worlds and instruction sets
+      records   writing a run's tables
+      startup   from the start of a process to its first step
+      growth    one world without learning, up to 500 times as large; minutes, and 15 GB
+
+    Repeats are taken in turn, and times are medians with quartiles, since machines are shared: compare
+    figures within one run. Every part checks what it measured; if that is wrong, the exit code is 1.
+
+    \b
+    Examples:
+      hedon bench
+      hedon bench world --threads 1,2,4 --worlds 1,4 --windows 20
+      hedon bench rays forward update --kernel avx2
+      hedon bench growth --json growth.json
+    """
+    from hedon.benchmark.bench import Bench, choose, need_writable
+    from hedon.benchmark.check import CheckError
+    from hedon.benchmark.machine import drifts
+    from hedon.benchmark.plan import make_plan
+
+    chosen = choose(parts or ())
+    plan = make_plan(preset, threads=threads, worlds=worlds, slots=slots, kernel=kernel, windows=windows, quick=quick)
+    if json_file is not None:
+        need_writable(json_file)
+    measured = Bench(plan)
+    console = make_console()
+    _print_machine(console, measured)
+    try:
+        for table in measured.run(chosen):
+            _print_table(console, table, _rates(measured))
+    except CheckError as error:
+        part = next(name for name in chosen if name not in measured.rows)
+        typer.echo(f"hedon: {part} is not reported, because a check of it failed: {error}", err=True)
+        raise typer.Exit(1) from None
+    for line in drifts(measured.before, measured.after):
+        console.print(f"warning: the machine was not the same at the end: {line}", style="yellow")
+    if json_file is not None:
+        measured.save(json_file)
+        console.print(f"wrote {json_file}", soft_wrap=True)
+
+
+def _print_machine(console: "Console", measured: "Bench") -> None:
+    machine = measured.machine
+    revision = (machine["git_revision"] or "unknown")[:10] + (" with changes" if machine["git_modified"] else "")
+    console.print(f"{machine['processor']}, {machine['cores']} cores, {', '.join(machine['instruction_sets'])}")
+    console.print(f"hedon {machine['hedon_version']}, revision {revision}, {machine['date']}, {measured.plan.preset}")
+
+
+def _print_table(console: "Console", table: "Table", caption: str) -> None:
+    from rich.markup import escape
+    from rich.table import Table as RichTable
+
+    drawn = RichTable(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
+    for heading in table.headings:
+        drawn.add_column(escape(heading), justify="left" if heading == "kernel" else "right")
+    for line in table.lines:
+        drawn.add_row(*line)
+    console.print(f"\n{table.title}", style="bold", markup=False)
+    console.print(drawn)
+    for note in (*table.notes, caption):
+        console.print(note, style="dim", markup=False)
+
+
+def _rates(measured: "Bench") -> str:
+    """The machine's rates in one line."""
+    rates, kernel = measured.before, measured.plan.kernel
+    adds = ", ".join(f"{rate:.0f} on {n}" for n, rate in rates.multiply_add_gflops[kernel].items())
+    reads = ", ".join(f"{rate:.0f} on {n}" for n, rate in rates.cache_read_gbytes_per_s.items())
+    copy = rates.copy_gbytes_per_s
+    return f"machine: {kernel} multiply-adds {adds} [GF/s by threads]; cache reads {reads}, copies {copy:.0f} [GB/s]"

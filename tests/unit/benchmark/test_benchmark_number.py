@@ -1,0 +1,190 @@
+"""The benchmark's own arithmetic: floors, scaled worlds, and what its checks let pass."""
+
+import itertools
+
+import numpy as np
+import pytest
+from worlds import QUICK, make_simulation
+
+from hedon.benchmark import growth
+from hedon.benchmark.bench import DEFAULT_PARTS, PARTS, choose
+from hedon.benchmark.check import CheckError, check_same_lives, check_world
+from hedon.benchmark.floor import network_flop, step_floor
+from hedon.benchmark.machine import Calibration, drifts
+from hedon.benchmark.measure import spread
+from hedon.benchmark.plan import PlanError, make_plan
+from hedon.benchmark.scene import Scene, go_on_from_peopled, peopled, scene_of
+from hedon.config.load import load_config
+from hedon.experiment.simulation import Simulation
+
+NO_RATES = Calibration({}, {}, 0.0)
+
+
+def test_the_operations_of_a_sample_are_those_counted_by_hand():
+    # Rows of the first layer: 24 rays and 5 dense entries. (29·64 + 64·64 + 3·64) = 6,144 weights, 2 operations each;
+    # backward the same again, and 64·64 + 3·64 = 4,288 weights for the gradients of the units.
+    assert network_flop(load_config("baseline")) == (12_288, 12_288 + 8_576)
+    unit = load_config("baseline", overrides=("sensor.scaling=unit", "sensor.ray_count=8"))
+    assert network_flop(unit)[0] == 2 * ((8 + 6) * 64 + 4_288)
+
+
+def test_the_floor_is_that_of_the_work_by_the_rates():
+    floor = step_floor(
+        load_config("baseline"), alive=150, learners=127, multiply_add_gflops=200, cache_read_gbytes_per_s=50
+    )
+    # 127 learners · 40 updates · 256 samples · 33,152 operations by 200e9/s, over 1,024 steps.
+    assert floor.learning_seconds == pytest.approx(127 * 40 * 256 * 33_152 / 200e9 / 1024)
+    # 150 agents read 6,144 weights, 64 folded and 64 square biases, and 3 of the heads, 4 bytes each.
+    assert floor.forward_seconds == pytest.approx(150 * 4 * 6_275 / 50e9)
+    assert floor.seconds == pytest.approx(0.2105e-3 + 0.0753e-3, rel=1e-3)
+
+
+def test_acting_is_bound_by_operations_where_reads_are_fast():
+    floor = step_floor(load_config("baseline"), 150, 0, multiply_add_gflops=10, cache_read_gbytes_per_s=500)
+    assert floor.forward_seconds == pytest.approx(150 * 12_288 / 10e9)
+    assert floor.learning_seconds == 0
+
+
+def test_half_the_epochs_and_longer_windows_change_the_floor_as_they_should():
+    changed = load_config("baseline", overrides=("learning.update_epochs=5", "learning.rollout_steps=2048"))
+    whole = step_floor(load_config("baseline"), 1, 100, 100, 100).learning_seconds
+    assert step_floor(changed, 1, 100, 100, 100).learning_seconds == pytest.approx(whole / 2)
+
+
+@pytest.mark.parametrize("preset", ["baseline", "poison"])
+def test_a_scaled_world_has_the_same_density_of_everything(preset):
+    plan = make_plan(preset, threads="1", kernel="portable")
+    base, scaled = plan.config(), growth.scaled_config(plan, 2, 5, 99)
+    area, scaled_area = (config.arena.width * config.arena.height for config in (base, scaled))
+    assert scaled_area == 10 * area
+    assert scaled.population.capacity / scaled_area == pytest.approx(base.population.capacity / area)
+    for kind, food in base.food.items():
+        for name in ("capacity", "growth_rate", "candidates"):
+            assert getattr(scaled.food[kind], name) == pytest.approx(10 * getattr(food, name))
+        assert scaled.food[kind].energy == food.energy
+    assert scaled.learning.rollout_steps == 100  # no window ends within the 99 steps
+    assert scaled.energy == base.energy
+
+
+@pytest.mark.parametrize(("across", "up"), growth.TILES)
+def test_all_sizes_of_growth_are_valid_configs(across, up):
+    plan = make_plan(threads="1")
+    assert growth.scaled_config(plan, across, up, 10).population.capacity == 200 * across * up
+
+
+@pytest.mark.parametrize("preset", ["centered", "relocation"])
+def test_a_world_without_one_density_is_refused(preset):
+    with pytest.raises(PlanError, match=f"{preset} has inner walls or food around centers"):
+        growth.scaled_config(make_plan(preset), 2, 5, 10)
+
+
+def test_tiles_repeat_a_scene_side_by_side():
+    single = (np.array(values, np.float32) for values in ([1, 2], [3, 4], [0.1, 0.2], [5, 6], [7], [8]))
+    scene = Scene(*single, food_kind=np.array([1], np.int32)).tiled(2, 4, 100, 50)
+    expected = sorted(
+        (x + 100 * i, y + 50 * j) for x, y in ((1, 3), (2, 4)) for i, j in itertools.product(range(2), range(4))
+    )
+    assert sorted(zip(scene.x.tolist(), scene.y.tolist(), strict=True)) == expected
+    assert sorted(set(zip(scene.food_x.tolist(), scene.food_y.tolist(), strict=True)))[-1] == (107, 158)
+    assert len(scene.food_kind) == 8
+    assert scene.energy[scene.x % 100 == 2].tolist() == [6] * 8
+
+
+def test_a_size_that_finds_no_memory_says_so(monkeypatch):
+    monkeypatch.setattr(growth, "memory_bytes", lambda field: 30_000_000)
+    rows = growth.measure(make_plan(threads="1", quick=True), NO_RATES)
+    assert [row["slots"] for row in rows if "refused" in row] == [400]
+    assert "needs 0.1 GB of memory, and 0.0 GB are free" in rows[-1]["refused"]
+    notes = growth.table(rows, NO_RATES).notes
+    assert notes[0].startswith("400 slots: left out, needs")
+
+
+def test_the_scene_of_a_world_can_be_put_into_another():
+    plan = make_plan(threads="1", quick=True)
+    copy = make_simulation(*QUICK)
+    scene_of(peopled(plan)).put_into(copy)
+    for name in ("x", "y", "angle"):
+        assert np.array_equal(copy.worlds[0].agents()[name], peopled(plan).agents()[name])
+    assert len(copy.worlds[0].foods()["x"]) == len(peopled(plan).foods()["x"])
+
+
+def test_a_simulation_goes_on_from_the_peopled_world():
+    plan = make_plan(threads="1", quick=True)
+    copies = Simulation(plan.config(), [1, 2], 1, plan.kernel)
+    go_on_from_peopled(plan, copies)
+    assert {world.digest() for world in copies.worlds} == {peopled(plan).digest()}
+    copies.run(1)
+    assert copies.worlds[0].digest() != copies.worlds[1].digest()
+
+
+def test_a_world_that_died_out_fails_its_check():
+    simulation = make_simulation(*QUICK, "hazard.kappa=1", "hazard.alpha_energy=1e6", "energy.initial=0", seeds=(7,))
+    check_world(simulation.worlds[0])
+    simulation.run(20)
+    with pytest.raises(CheckError, match=r"the world of seed 7 at step .* has died out"):
+        check_world(simulation.worlds[0])
+
+
+def test_an_agent_outside_of_the_walls_fails_its_check():
+    simulation = make_simulation(*QUICK)
+    out = Scene(
+        *(np.array([value], np.float32) for value in (-5, 50, 0, 40)),
+        *([np.zeros(0, np.float32)] * 2),
+        food_kind=np.zeros(0, np.int32),
+    )
+    out.put_into(simulation)
+    with pytest.raises(CheckError, match="1 agents outside of its walls"):
+        check_world(simulation.worlds[0])
+
+
+def test_worlds_of_one_seed_that_differ_fail_their_check():
+    simulations = [make_simulation(*QUICK), make_simulation(*QUICK, threads=2)]
+    for simulation in simulations:
+        simulation.run(70)
+    check_same_lives(simulations)
+    simulations[1].run(1)
+    with pytest.raises(CheckError, match=r"seed 1 on .* differs between 1 and 2 threads"):
+        check_same_lives(simulations)
+
+
+def test_parts_and_their_nearest_names():
+    assert choose(()) == DEFAULT_PARTS
+    assert choose(("world", "rays", "world")) == ("world", "rays")
+    assert set(DEFAULT_PARTS) == set(PARTS) - {"growth"}
+    with pytest.raises(PlanError, match=r"'fysics' is not a part .*; did you mean physics\?"):
+        choose(("rays", "fysics"))
+
+
+def test_cases_are_the_product_or_one_world_per_thread():
+    assert make_plan(threads="4,1,2").cases() == [(1, 1), (2, 1), (4, 1), (4, 4)]
+    assert make_plan(threads="1").cases() == [(1, 1)]
+    assert make_plan(threads="1,2", worlds="3,1").cases() == [(1, 1), (2, 1), (1, 3), (2, 3)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"threads": "two"}, "--threads: 'two' is not a list of numbers from 1 to 1,024"),
+        ({"worlds": "0"}, "--worlds: '0' is not a list"),
+        ({"kernel": "portabel"}, r"--kernel: 'portabel' is not one of .*; did you mean portable\?"),
+    ],
+)
+def test_arguments_that_cannot_be_used(arguments, message):
+    with pytest.raises(PlanError, match=message):
+        make_plan(**arguments)
+
+
+def test_a_size_that_growth_does_not_have():
+    with pytest.raises(PlanError, match=r"--slots: 300 is none of the sizes .*: 200, 2000, 20000, 100000"):
+        growth.measure(make_plan(slots="300"), NO_RATES)
+
+
+def test_a_machine_that_changes_is_noted():
+    before = Calibration({"avx2": {1: 100.0, 2: 200.0}}, {1: 30.0}, 10.0)
+    after = Calibration({"avx2": {1: 75.0, 2: 190.0}}, {1: 35.0}, 13.0)
+    assert drifts(before, after) == ["multiply-add, avx2, 1 threads went from 100 to 75", "copy went from 10 to 13"]
+    assert drifts(before, before) == []
+
+
+def test_a_spread_is_the_median_with_quartiles():
+    assert spread([5, 1, 2, 4, 3], 1, 10) == "30.0 (20.0-40.0)"

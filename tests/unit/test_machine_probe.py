@@ -1,0 +1,45 @@
+"""What the engine offers to those who measure: the processor's rates, and memory before it is taken."""
+
+import threading
+import time
+from itertools import pairwise
+
+import pytest
+from learning_case import KERNELS
+from worlds import make_simulation
+
+from hedon import _engine
+from hedon.config.arena import walls
+from hedon.config.native import engine_config
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_rates_are_positive_and_bad_sizes_are_refused(kernel):
+    assert _engine.kernel.read_rate(kernel, 1 << 16, 4) > 0
+    assert _engine.kernel.calibrate(kernel, 1000) > 0
+    with pytest.raises(ValueError, match="bytes: at least 256; rounds: at least 1"):
+        _engine.kernel.read_rate(kernel, 255, 1)
+    with pytest.raises(ValueError, match="rounds: at least 1"):
+        _engine.kernel.calibrate(kernel, 0)
+
+
+@pytest.mark.parametrize(
+    ("probe", "arguments"), [("calibrate", ("portable", 20_000_000)), ("read_rate", ("portable", 1 << 20, 2000))]
+)
+def test_other_threads_go_on_while_a_rate_is_measured(probe, arguments):
+    worker = threading.Thread(target=getattr(_engine.kernel, probe), args=arguments)
+    worker.start()
+    seen = [time.perf_counter()]
+    while worker.is_alive():
+        seen.append(time.perf_counter())
+    worker.join()
+    assert seen[-1] - seen[0] > 0.05
+    assert max(after - before for before, after in pairwise(seen)) < 0.5 * (seen[-1] - seen[0])
+
+
+def test_the_memory_of_worlds_is_known_before_they_are_made():
+    simulation = make_simulation("learning.rollout_steps=256")
+    native, segments = engine_config(simulation.config), len(walls(simulation.config.arena))
+    one, three = (_engine.Simulation.bytes_needed(native, segments, worlds) for worlds in (1, 3))
+    assert three - one == 2 * simulation.engine.bytes_per_world
+    assert one > simulation.engine.bytes_per_world  # the rest is scratch for learning
