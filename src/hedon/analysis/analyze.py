@@ -3,7 +3,7 @@
 import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +84,7 @@ def analysis_json(analysis: Analysis) -> dict[str, Any]:
     ]
     return plain(
         {
-            "runs": [{"path": str(run.path), "manifest": vars(run.manifest)} for run in analysis.runs],
+            "runs": [{"path": str(run.path), "manifest": asdict(run.manifest)} for run in analysis.runs],
             "worlds": worlds,
             "tables": {
                 name: {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}

@@ -3,7 +3,7 @@
 import base64
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -77,7 +77,7 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
                 "path": run.path.name,
                 "status": run.manifest.status,
                 "damaged": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
-                "manifest": json.dumps(plain(vars(run.manifest)), indent=2, ensure_ascii=False),
+                "manifest": json.dumps(plain(asdict(run.manifest)), indent=2, ensure_ascii=False),
             }
             for run in analysis.runs
         ],
