@@ -7,6 +7,7 @@ import typer
 
 from hedon.cli import config
 from hedon.cli.branch import branch
+from hedon.cli.check import check
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
@@ -25,6 +26,7 @@ app.command()(run)
 app.command()(resume)
 app.command()(branch)
 app.command()(report)
+app.command()(check)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 
