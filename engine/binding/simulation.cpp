@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <set>
@@ -99,9 +100,18 @@ class PythonSimulation {
     if (!complaint.empty()) throw nb::value_error(complaint.c_str());
   }
 
+  /// A world whose slots can be relied upon; one that stopped since they could not be is not read by them.
+  World& slotted(int index) {
+    World& from = world(index);
+    if (from.fault().status == Status::slots_inconsistent)
+      throw std::runtime_error("the world's slots are inconsistent");
+    return from;
+  }
+
   nb::dict take_rows(int index) {
     World& from = world(index);
-    std::vector<int64_t> rows(static_cast<size_t>(from.clock().event_count));
+    const int32_t waiting = std::clamp(from.clock().event_count, 0, from.shape->events);
+    std::vector<int64_t> rows(static_cast<size_t>(waiting));
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
     nb::dict out =
         columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
@@ -110,7 +120,7 @@ class PythonSimulation {
   }
 
   nb::dict living_rows(int index) {
-    const World& from = world(index);
+    const World& from = slotted(index);
     std::vector<int64_t> rows;
     for (int32_t i = 0; i < from.clock().living_count; ++i) rows.push_back(from.state.living[i]);
     return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
@@ -118,7 +128,7 @@ class PythonSimulation {
 
   /// Full observations of the living, in their order, from the state as it is now.
   nb::object observations(int index) {
-    World& from = world(index);
+    World& from = slotted(index);
     const ObservationShape& shape = from.shape->network.observation;
     const size_t count = static_cast<size_t>(from.clock().living_count), size = static_cast<size_t>(shape.size());
     std::vector<float> full(count * size);
@@ -184,15 +194,21 @@ class PythonSimulation {
     return segments;
   }
 
-  /// The one place that turns a world's status into an exception.
+  /// The one place that turns a world's status into an exception: the earliest, however many steps were run at once.
   void raise_faults() {
+    int first = -1;
     for (int i = 0; i < simulation_.world_count(); ++i) {
       const Fault& fault = simulation_.world(i).fault();
-      if (fault.status == Status::ok) continue;
+      if (fault.status != Status::ok && (first < 0 || fault.step < simulation_.world(first).fault().step)) first = i;
+    }
+    if (first >= 0) {
+      const Fault& fault = simulation_.world(first).fault();
       const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
-      std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(i) + ", step " +
-                            std::to_string(fault.step) + ", value " + std::to_string(fault.value);
+      std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) +
+                            ", step " + std::to_string(fault.step) + ", value " + std::to_string(fault.value);
       if (fault.agent_id >= 0) message += ", agent " + std::to_string(fault.agent_id);
+      if (fault.other_id >= 0) message += ", with agent " + std::to_string(fault.other_id);
+      message += ", windows completed: " + std::to_string(fault.step / simulation_.shape().steps);
       throw std::runtime_error(message + ". " + text.remedy);
     }
   }
@@ -242,6 +258,28 @@ nb::object view(nb::handle self, int index, const std::string& path) {
   return out;
 }
 
+/// Writes one number of the state, as a fault of the memory would: for tests of what finds it.
+void poke(PythonSimulation& self, int index, const std::string& path, int64_t at, double value) {
+  bool known = false;
+  const auto write = [&]<class T>(T& number) {
+    number = static_cast<T>(value);
+    known = true;
+  };
+  for_each_array(self.world(index).state, "", [&]<class T>(const std::string& name, Array<T>& array) {
+    if (at < 0 || at >= array.count) return;
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (name == path) write(array[at]);
+    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
+      T::for_each_field([&](const char* column, auto member) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(array[at].*member)>>) {
+          if (name + "." + column == path) write(array[at].*member);
+        }
+      });
+    }
+  });
+  if (!known) throw nb::key_error(("no number '" + path + "' of that index in the state").c_str());
+}
+
 nb::list view_names(PythonSimulation& self) {
   nb::list names;
   for_each_array(self.world(0).state, "", [&]<class T>(const std::string& name, Array<T>&) {
@@ -284,7 +322,7 @@ void bind_simulation(nb::module_& module) {
       .def(
           "save",
           [](S& s, int world) {
-            s.world(world);
+            s.slotted(world);
             return to_arrays(s.get().save(world));
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
@@ -301,6 +339,8 @@ void bind_simulation(nb::module_& module) {
           nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"),
           "One array of a world's state, by slot.")
       .def("view_names", &view_names, "Paths that `view` knows.")
+      .def("poke", &poke, nb::arg("world"), nb::arg("path"), nb::arg("index"), nb::arg("value"),
+           "For tests: writes one number of a world's state, as a fault of the memory would.")
       .def(
           "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
       .def(
@@ -308,7 +348,7 @@ void bind_simulation(nb::module_& module) {
       .def(
           "digest",
           [](S& s, int world) {
-            s.world(world);
+            s.slotted(world);
             return s.get().digest(world);
           },
           nb::arg("world"))

@@ -1,9 +1,10 @@
-/// A window: N steps, then learning. All agents share this clock.
+/// A window: N steps, then learning, then a look whether all is well. All agents share this clock.
 #pragma once
 
 #include <cstdint>
 
 #include "learning/ppo.h"
+#include "world/audit.h"
 #include "world/step.h"
 
 namespace hedon {
@@ -56,7 +57,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
 /// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with all of the group or a part of
 /// it.
 template <class Group, class Pacer, class Lap>
-HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer, Lap&& lap) {
+HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
+                      Lap&& lap) {
   const int64_t window = world.shape->steps;
   group.once([&] { gather_scene(world); });
   while (steps > 0 && !world.over()) {
@@ -69,6 +71,8 @@ HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch,
     if (world.clock().step % window == 0 && !world.over()) {
       learn_window(group, world, scratch, stride);
       lap(Part::learning);
+      audit(group, world);
+      lap(Part::life);
     }
   }
 }

@@ -54,6 +54,11 @@ class Simulation:
     def view_names(self) -> list:
         """Paths that `view` knows."""
 
+    def poke(self, world: int, path: str, index: int, value: float) -> None:
+        """
+        For tests: writes one number of a world's state, as a fault of the memory would.
+        """
+
     def counters(self, world: int) -> dict: ...
 
     def clock(self, world: int) -> dict: ...

@@ -26,6 +26,7 @@ from hedon.record.folder import (
     MANIFEST,
     TABLE_FOLDERS,
     checkpoint_paths,
+    fault_paths,
     holds_run,
     part_path,
 )
@@ -151,6 +152,11 @@ def _check_checkpoints(folder: _Folder) -> None:
             folder.findings.append(Finding(name, "is of other seeds than the manifest says"))
         else:
             folder.checkpoints.append(checkpoint)
+    for path in fault_paths(folder.path):
+        try:
+            load_checkpoint(path)
+        except RecordError as error:
+            folder.findings.append(Finding(str(path.relative_to(folder.path)), f"cannot be used: {error}"))
     if not checkpoint_paths(folder.path):
         folder.notes.append(f"nothing in {CHECKPOINTS}: the run cannot be gone on with")
 

@@ -8,6 +8,7 @@ import typer
 from hedon.cli import config
 from hedon.cli.branch import branch
 from hedon.cli.check import check
+from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
@@ -27,6 +28,7 @@ app.command()(resume)
 app.command()(branch)
 app.command()(report)
 app.command()(check)
+app.command()(replay_fault)
 app.command()(config.presets)
 app.add_typer(config.app, name="config")
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 from hedon.config.dump import dump_toml
 from hedon.experiment.interrupt import Interrupts, count_interrupts
@@ -9,7 +10,8 @@ from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
-from hedon.experiment.simulation import Simulation
+from hedon.experiment.simulation import EngineError, Simulation
+from hedon.record.error import RecordError
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.snapshot import save_snapshot
@@ -82,6 +84,13 @@ def drive(
         recorder.checkpoint(step, seconds)
         recorder.interval()
         status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
+    except EngineError as error:
+        manifest = replace(manifest, fault=str(error))
+        try:
+            recorder.fault(seconds)
+        except RecordError as lost:
+            raise EngineError(f"{error} The state of its worlds could not be kept: {lost}") from error
+        raise
     finally:
         recorder.living()
         manifest = last_manifest(manifest, simulation, status, seconds, writer)

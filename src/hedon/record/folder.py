@@ -9,6 +9,7 @@ SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
 CHECKPOINTS = "checkpoints"
+FAULT = "fault"
 LOCK = ".lock"
 CHECKPOINT_SECONDS = 180.0
 """Time after which a run keeps a checkpoint, unless told otherwise [s]."""
@@ -42,6 +43,16 @@ def part_paths(folder: Path, table: str) -> list[Path]:
 def checkpoint_path(folder: Path, step: int) -> Path:
     """The path of the checkpoint that was taken after so many steps."""
     return folder / CHECKPOINTS / f"step-{step:010d}.npz"
+
+
+def fault_path(folder: Path, step: int) -> Path:
+    """The path of the checkpoint of a run that stopped at a fault after so many steps."""
+    return folder / FAULT / f"step-{step:010d}.npz"
+
+
+def fault_paths(folder: Path) -> list[Path]:
+    """The checkpoint of a run that stopped at a fault, or nothing."""
+    return sorted((folder / FAULT).glob("step-??????????.npz"))
 
 
 def checkpoint_paths(folder: Path) -> list[Path]:

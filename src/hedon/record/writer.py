@@ -13,9 +13,9 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from hedon.record.atomic import write_atomically
-from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, holds_run
+from hedon.record.folder import CONFIG, fault_path, holds_run
 from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
@@ -109,6 +109,19 @@ class Writer:
         """
         self._saving.set()
         self._put(Checkpoint(head, dict(arrays)))
+
+    def save_fault(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Keeps the state of a run that stopped at a fault, beside its checkpoints, once all rows are on disk.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        self.flush()
+        path = fault_path(self.folder, head.step)
+        try:
+            write_checkpoint(path, Checkpoint(head, dict(arrays)))
+        except OSError as error:
+            raise RecordError(f"cannot write {path}: {error}") from error
 
     @property
     def saving(self) -> bool:
