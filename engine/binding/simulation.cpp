@@ -6,6 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -74,6 +75,8 @@ class PythonSimulation {
   }
 
   Simulation& get() { return simulation_; }
+
+  static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
 
   World& world(int index) {
     if (index < 0 || index >= simulation_.world_count()) throw nb::index_error("no world of that index");
@@ -169,12 +172,11 @@ class PythonSimulation {
         ("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
   }
 
-  static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
-
   /// Refuses what this machine cannot hold, before anything is reserved.
   static WorldConfig need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
-    const double needed = static_cast<double>(
-        Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads));
+    const MemoryNeed need =
+        Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
+    const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
     const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (needed > present) {
       char text[160];
@@ -184,6 +186,12 @@ class PythonSimulation {
                needed / 1e9, present / 1e9);
       throw nb::value_error(text);
     }
+    // A limit on addresses (ulimit -v) shows only when they are asked for.
+    const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
+    void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (probe == MAP_FAILED)
+      throw nb::value_error("the system gives the worlds no memory, though there is enough: look at `ulimit -v`");
+    munmap(probe, bytes);
     return config;
   }
 
@@ -303,6 +311,16 @@ void bind_simulation(nb::module_& module) {
       "read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
       nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
       "What the engine understood of a config.");
+  module.def(
+      "memory_needed",
+      [](nb::dict config, int32_t walls, int64_t worlds, int threads) {
+        return to_dict(
+            Simulation::bytes_needed(to_config<WorldConfig>(config), walls, worlds, S::count_threads(threads)));
+      },
+      nb::arg("config"), nb::arg("walls"), nb::arg("worlds"), nb::arg("threads"),
+      nb::sig(
+          "def memory_needed(config: dict[str, typing.Any], walls: int, worlds: int, threads: int) -> dict[str, int]"),
+      "Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.");
   nb::class_<S>(module, "Simulation",
                 "Many worlds under one config. Views are read-only and valid until the next `run`.")
       .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&,

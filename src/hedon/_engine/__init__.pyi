@@ -18,6 +18,11 @@ from hedon._engine import (
 def read_config(config: dict[str, Any]) -> dict[str, Any]:
     """What the engine understood of a config."""
 
+def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int) -> dict[str, int]:
+    """
+    Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.
+    """
+
 class Simulation:
     """
     Many worlds under one config. Views are read-only and valid until the next `run`.

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from hedon.config.dump import dump_toml
 from hedon.experiment.interrupt import Interrupts, count_interrupts
+from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
@@ -32,9 +33,11 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
 
     Raises:
         RecordError: The folder holds a run already, is in use, or cannot be written.
+        MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
     with count_interrupts() as interrupted:
+        require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 

@@ -23,6 +23,9 @@ from hedon.record.schema import run_tables
 
 Rows = Mapping[str, ArrayLike]
 
+PART_ROWS = 20_000
+"""Rows after which a part is written at once, unless told otherwise."""
+
 _CLOSE = object()
 
 
@@ -54,7 +57,7 @@ class Writer:
         config_text: str,
         manifest: Manifest,
         *,
-        part_rows: int = 20_000,
+        part_rows: int = PART_ROWS,
         flush_seconds: float = 30.0,
         queue_size: int = 64,
         parts: Mapping[str, Sequence[str]] | None = None,
