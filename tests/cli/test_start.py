@@ -36,3 +36,10 @@ main()
 def test_the_installed_command_begins_there() -> None:
     (script,) = entry_points(group="console_scripts", name="hedon")
     assert script.value == "hedon.cli.start:main"
+
+
+@pytest.mark.parametrize("command", ["report", "resume", "branch", "check", "replay-fault"])
+def test_a_path_that_no_file_system_takes_is_a_message(command: str) -> None:
+    answer = subprocess.run(["hedon", command, "a" * 300], capture_output=True, text=True, check=False)
+    assert answer.returncode == 2
+    assert answer.stderr.strip().endswith("aaa: File name too long")

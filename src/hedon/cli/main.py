@@ -68,3 +68,9 @@ def main() -> None:
     except HedonError as error:
         typer.echo(f"hedon: {error}", err=True)
         sys.exit(2)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        # A path that the file system does not take, or may not be read: anywhere that a path is looked at.
+        typer.echo(f"hedon: {error.filename}: {error.strerror}", err=True)
+        sys.exit(2)
