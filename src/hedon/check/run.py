@@ -29,6 +29,7 @@ from hedon.record.folder import (
     fault_paths,
     holds_run,
     part_path,
+    require_unicode,
 )
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.reader import open_run
@@ -73,6 +74,7 @@ def check_run(path: Path) -> Verdict:
     Raises:
         RecordError: It is not the folder of a run.
     """
+    require_unicode(path)
     if not holds_run(path):
         open_run(path)  # says what it is instead, and which may have been meant
     folder = _Folder(path)

@@ -18,6 +18,7 @@ from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
 from hedon.record.manifest import Manifest, Parent
+from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 
@@ -76,8 +77,8 @@ def plan_branch(
             f"{name} is at step {step:,}: a branch needs more steps in all than that, and {total:,} were asked for; "
             "say by --steps how many"
         )
-    parent = Parent(folder.resolve().name, digest(config), step)
-    place = out or free_folder(folder.parent / f"{parent.folder}-branch{step}")
+    parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
+    place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
     plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds)
     return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))

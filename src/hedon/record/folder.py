@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from hedon.record.error import RecordError
+
 CONFIG = "config.toml"
 MANIFEST = "manifest.json"
 SNAPSHOT = "final.npz"
@@ -14,6 +16,19 @@ LOCK = ".lock"
 CHECKPOINT_SECONDS = 180.0
 """Time after which a run keeps a checkpoint, unless told otherwise [s]."""
 TABLE_FOLDERS = ("agents", "population", "frames")
+
+
+def require_unicode(folder: Path) -> None:
+    """Refuses a folder whose name has bytes that are no UTF-8: tables could be written there, and never read.
+
+    Raises:
+        RecordError: it has.
+    """
+    try:
+        str(folder).encode()
+    except UnicodeEncodeError:
+        name = str(folder).encode("utf-8", "backslashreplace").decode()
+        raise RecordError(f"{name}: the name of a run's folder must be UTF-8: choose or give it another") from None
 
 
 def holds_run(folder: Path) -> bool:
