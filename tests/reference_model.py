@@ -173,7 +173,7 @@ class Model:
             if self.pay(world, agent, meal, force):
                 starved.add(agent.agent_id)
             rewards[agent.agent_id] = self.reward(agent.genome, meal, force)
-        self.breed(world)
+        self.breed(world, starved)
         dead = self.reap(world, starved)
         self.grow(world)
         world.step += 1
@@ -229,11 +229,12 @@ class Model:
         strength = force / largest if settings["action_norm"] == "max_force" else force
         return float(genome[: len(meal)] @ meal + settings["action_coef"] * genome[len(meal)] * strength)
 
-    def breed(self, world: World) -> None:
+    def breed(self, world: World, starved: set[int]) -> None:
+        """Who drew a birth has a child, but for those who starve in this step."""
         parents = []
         for agent in world.agents:
             high, low, *_ = self.draw("life_and_death", agent.agent_id, world.step)
-            if fine_uniform(high, low) < self.birth_rate(agent.energy):
+            if agent.agent_id not in starved and fine_uniform(high, low) < self.birth_rate(agent.energy):
                 parents.append(agent)
         for parent in sorted(parents, key=lambda a: self.draw("parent_order", a.agent_id, world.step)[0]):
             if len(world.agents) == self.config["population"]["capacity"]:

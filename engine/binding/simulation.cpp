@@ -6,8 +6,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <set>
@@ -72,12 +74,9 @@ class PythonSimulation {
     raise_faults();
   }
 
-  /// What a simulation would reserve.
-  static int64_t bytes_needed(nb::dict config, int32_t walls, int64_t worlds, int threads) {
-    return Simulation::bytes_needed(to_config<WorldConfig>(config), walls, worlds, count_threads(threads));
-  }
-
   Simulation& get() { return simulation_; }
+
+  static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
 
   World& world(int index) {
     if (index < 0 || index >= simulation_.world_count()) throw nb::index_error("no world of that index");
@@ -104,9 +103,18 @@ class PythonSimulation {
     if (!complaint.empty()) throw nb::value_error(complaint.c_str());
   }
 
+  /// A world whose slots can be relied upon; one that stopped since they could not be is not read by them.
+  World& slotted(int index) {
+    World& from = world(index);
+    if (from.fault().status == Status::slots_inconsistent)
+      throw std::runtime_error("the world's slots are inconsistent");
+    return from;
+  }
+
   nb::dict take_rows(int index) {
     World& from = world(index);
-    std::vector<int64_t> rows(static_cast<size_t>(from.clock().event_count));
+    const int32_t waiting = std::clamp(from.clock().event_count, 0, from.shape->events);
+    std::vector<int64_t> rows(static_cast<size_t>(waiting));
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
     nb::dict out =
         columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
@@ -115,7 +123,7 @@ class PythonSimulation {
   }
 
   nb::dict living_rows(int index) {
-    const World& from = world(index);
+    const World& from = slotted(index);
     std::vector<int64_t> rows;
     for (int32_t i = 0; i < from.clock().living_count; ++i) rows.push_back(from.state.living[i]);
     return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
@@ -123,7 +131,7 @@ class PythonSimulation {
 
   /// Full observations of the living, in their order, from the state as it is now.
   nb::object observations(int index) {
-    World& from = world(index);
+    World& from = slotted(index);
     const ObservationShape& shape = from.shape->network.observation;
     const size_t count = static_cast<size_t>(from.clock().living_count), size = static_cast<size_t>(shape.size());
     std::vector<float> full(count * size);
@@ -164,12 +172,11 @@ class PythonSimulation {
         ("kernel '" + name + "' is unknown or not for this processor, which can run: " + known).c_str());
   }
 
-  static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
-
   /// Refuses what this machine cannot hold, before anything is reserved.
   static WorldConfig need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
-    const double needed = static_cast<double>(
-        Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads));
+    const MemoryNeed need =
+        Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
+    const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
     const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (needed > present) {
       char text[160];
@@ -179,6 +186,12 @@ class PythonSimulation {
                needed / 1e9, present / 1e9);
       throw nb::value_error(text);
     }
+    // A limit on addresses (ulimit -v) shows only when they are asked for.
+    const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
+    void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (probe == MAP_FAILED)
+      throw nb::value_error("the system gives the worlds no memory, though there is enough: look at `ulimit -v`");
+    munmap(probe, bytes);
     return config;
   }
 
@@ -189,15 +202,21 @@ class PythonSimulation {
     return segments;
   }
 
-  /// The one place that turns a world's status into an exception.
+  /// The one place that turns a world's status into an exception: the earliest, however many steps were run at once.
   void raise_faults() {
+    int first = -1;
     for (int i = 0; i < simulation_.world_count(); ++i) {
       const Fault& fault = simulation_.world(i).fault();
-      if (fault.status == Status::ok) continue;
+      if (fault.status != Status::ok && (first < 0 || fault.step < simulation_.world(first).fault().step)) first = i;
+    }
+    if (first >= 0) {
+      const Fault& fault = simulation_.world(first).fault();
       const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
-      std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(i) + ", step " +
-                            std::to_string(fault.step) + ", value " + std::to_string(fault.value);
+      std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) +
+                            ", step " + std::to_string(fault.step) + ", value " + std::to_string(fault.value);
       if (fault.agent_id >= 0) message += ", agent " + std::to_string(fault.agent_id);
+      if (fault.other_id >= 0) message += ", with agent " + std::to_string(fault.other_id);
+      message += ", windows completed: " + std::to_string(fault.step / simulation_.shape().steps);
       throw std::runtime_error(message + ". " + text.remedy);
     }
   }
@@ -247,6 +266,28 @@ nb::object view(nb::handle self, int index, const std::string& path) {
   return out;
 }
 
+/// Writes one number of the state, as a fault of the memory would: for tests of what finds it.
+void poke(PythonSimulation& self, int index, const std::string& path, int64_t at, double value) {
+  bool known = false;
+  const auto write = [&]<class T>(T& number) {
+    number = static_cast<T>(value);
+    known = true;
+  };
+  for_each_array(self.world(index).state, "", [&]<class T>(const std::string& name, Array<T>& array) {
+    if (at < 0 || at >= array.count) return;
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (name == path) write(array[at]);
+    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
+      T::for_each_field([&](const char* column, auto member) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(array[at].*member)>>) {
+          if (name + "." + column == path) write(array[at].*member);
+        }
+      });
+    }
+  });
+  if (!known) throw nb::key_error(("no number '" + path + "' of that index in the state").c_str());
+}
+
 nb::list view_names(PythonSimulation& self) {
   nb::list names;
   for_each_array(self.world(0).state, "", [&]<class T>(const std::string& name, Array<T>&) {
@@ -270,14 +311,22 @@ void bind_simulation(nb::module_& module) {
       "read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
       nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
       "What the engine understood of a config.");
+  module.def(
+      "memory_needed",
+      [](nb::dict config, int32_t walls, int64_t worlds, int threads) {
+        return to_dict(
+            Simulation::bytes_needed(to_config<WorldConfig>(config), walls, worlds, S::count_threads(threads)));
+      },
+      nb::arg("config"), nb::arg("walls"), nb::arg("worlds"), nb::arg("threads"),
+      nb::sig(
+          "def memory_needed(config: dict[str, typing.Any], walls: int, worlds: int, threads: int) -> dict[str, int]"),
+      "Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.");
   nb::class_<S>(module, "Simulation",
                 "Many worlds under one config. Views are read-only and valid until the next `run`.")
       .def(nb::init<nb::dict, WallsIn, int32_t, const std::vector<uint64_t>&, int, const std::string&,
                     const std::vector<int32_t>&>(),
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
            nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{})
-      .def_static("bytes_needed", &S::bytes_needed, nb::arg("config"), nb::arg("walls"), nb::arg("worlds"),
-                  nb::arg("threads") = 1, "Bytes that such a simulation would reserve; makes none.")
       .def("run", &S::run, nb::arg("steps"), "Advances every world that is not over; releases the interpreter lock.")
       .def("take_rows", &S::take_rows, nb::arg("world"),
            nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
@@ -291,7 +340,7 @@ void bind_simulation(nb::module_& module) {
       .def(
           "save",
           [](S& s, int world) {
-            s.world(world);
+            s.slotted(world);
             return to_arrays(s.get().save(world));
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
@@ -308,6 +357,8 @@ void bind_simulation(nb::module_& module) {
           nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"),
           "One array of a world's state, by slot.")
       .def("view_names", &view_names, "Paths that `view` knows.")
+      .def("poke", &poke, nb::arg("world"), nb::arg("path"), nb::arg("index"), nb::arg("value"),
+           "For tests: writes one number of a world's state, as a fault of the memory would.")
       .def(
           "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
       .def(
@@ -315,7 +366,7 @@ void bind_simulation(nb::module_& module) {
       .def(
           "digest",
           [](S& s, int world) {
-            s.world(world);
+            s.slotted(world);
             return s.get().digest(world);
           },
           nb::arg("world"))

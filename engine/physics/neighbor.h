@@ -33,7 +33,7 @@ HEDON_FN void for_each_circle_near(const PhysicsState& state, float x, float y, 
 HEDON_FN void raise_fault(Fault& fault, Status status, double value) {
   if (fault.status != Status::ok) return;
   fault.status = status;
-  fault.agent_id = -1;
+  fault.agent_id = fault.other_id = -1;
   fault.value = value;
 }
 

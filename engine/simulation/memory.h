@@ -64,15 +64,21 @@ class Memory {
   char* first_ = nullptr;
 };
 
+/// Bytes that an array takes, in whole cache lines.
+template <class T>
+int64_t laid_out_bytes(const Array<T>& array) {
+  // One spare line: vector loads may read, never use, up to 15 floats past the end.
+  const int64_t bytes = array.count * static_cast<int64_t>(sizeof(T)) + Memory::ALIGNMENT;
+  return (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
+}
+
 /// Bytes that the arrays of `fields` take, each rounded up to whole cache lines; points them into `at` unless null.
 template <class Struct>
 int64_t lay_out(Struct& fields, char* at) {
   int64_t offset = 0;
   for_each_array(fields, "", [&]<class T>(const std::string&, Array<T>& array) {
     if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
-    // One spare line: vector loads may read, never use, up to 15 floats past the end.
-    const int64_t bytes = array.count * static_cast<int64_t>(sizeof(T)) + Memory::ALIGNMENT;
-    offset += (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
+    offset += laid_out_bytes(array);
   });
   return offset;
 }

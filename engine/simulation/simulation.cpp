@@ -83,7 +83,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
 }
 
-int64_t Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
+MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
   const WorldShape shape = make_shape(config, walls, walls);
   const WorldConstants constants = make_constants(config);
   World world{};
@@ -91,8 +91,14 @@ int64_t Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64
   world.shape = &shape;
   world.constants = &constants;
   set_counts(world, threads);
-  return worlds * lay_out_world(world, nullptr) +
-         threads * learn_stride(shape, config) * static_cast<int64_t>(sizeof(float));
+  const auto bytes = [](const auto&... arrays) { return (laid_out_bytes(arrays) + ...); };
+  const WorldState& state = world.state;
+  const int64_t networks = bytes(state.params, state.folded_bias, state.first_moment, state.second_moment);
+  const int64_t rollouts = bytes(state.observation, state.action, state.log_prob, state.value, state.reward);
+  const int64_t physics = lay_out(world.state.physics, nullptr) + lay_out(world.physics_scratch, nullptr);
+  const int64_t rest = lay_out_world(world, nullptr) - networks - rollouts - physics;
+  const int64_t learning = threads * learn_stride(shape, config) * static_cast<int64_t>(sizeof(float));
+  return {worlds * networks, worlds * rollouts, worlds * physics, worlds * rest + learning};
 }
 
 /// Makes zeroed memory an empty world: all slots free, no agent, no food.

@@ -26,6 +26,16 @@ struct SceneInput {
   Array<const int32_t> food_kind;
 };
 
+/// Bytes that a simulation reserves, by what they are for. What nobody touches costs nothing.
+struct MemoryNeed {
+  int64_t networks;  ///< and the moments of their optimizers
+  int64_t rollouts;
+  int64_t physics;
+  int64_t rest;
+
+  HEDON_FIELDS(MemoryNeed, networks, rollouts, physics, rest)
+};
+
 class Simulation {
  public:
   /// walls   outer polygon first, clockwise, then inner walls
@@ -35,7 +45,7 @@ class Simulation {
              const std::vector<int32_t>& slot_order);
 
   /// Bytes that a simulation reserves: to be compared with what the machine has, before it is made.
-  static int64_t bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
+  static MemoryNeed bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
 
   /// Empties a world and puts these agents and foods into it, wherever they are: for looking at chosen scenes.
   /// False where they are more than the world can hold.

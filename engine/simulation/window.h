@@ -1,9 +1,10 @@
-/// A window: N steps, then learning. All agents share this clock.
+/// A window: N steps, then learning, then a look whether all is well. All agents share this clock.
 #pragma once
 
 #include <cstdint>
 
 #include "learning/ppo.h"
+#include "world/audit.h"
 #include "world/step.h"
 
 namespace hedon {
@@ -70,6 +71,8 @@ HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch,
     if (world.clock().step % window == 0 && !world.over()) {
       learn_window(group, world, scratch, stride);
       lap(Part::learning);
+      audit(group, world);
+      lap(Part::life);
     }
   }
 }

@@ -76,7 +76,8 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
                             static_cast<uint32_t>(world.clock().step)};
   const Random4 bits = random.draw(0);
-  scratch.breeds[slot] = to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(config.birth, life.energy);
+  scratch.breeds[slot] =
+      scratch.starved[slot] == 0 && to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(config.birth, life.energy);
   scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
   decide_death(world, slot);
 }

@@ -25,6 +25,13 @@ struct Scene {
   HEDON_FIELDS(Scene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, sighted)
 };
 
+/// What an audit found of one agent: `status` is ok where nothing is wrong.
+struct Finding {
+  Status status;
+  int32_t other_id;
+  double value;
+};
+
 /// What an agent does and meets within one step, by slot. Means nothing between steps.
 struct StepScratch {
   Array<float> force_left, force_right;       ///< applied by the motors
@@ -35,6 +42,7 @@ struct StepScratch {
   Array<double> death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
+  Array<Finding> finding;                ///< of the audit at the end of a window
   Array<int32_t> eater;                  ///< (foods) slot of the agent that gets the food, -1 for none
   Array<float> eater_distance;           ///< (foods) squared
   Array<int32_t> parent;                 ///< (slots)
@@ -42,7 +50,8 @@ struct StepScratch {
 
   HEDON_FIELDS(StepScratch, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine,
                start_angle, start_x, start_y, meal, death_draw, energy_eaten, energy_basic, energy_action,
-               energy_forgiven, energy_capped, starved, breeds, dies, eater, eater_distance, parent, parent_key)
+               energy_forgiven, energy_capped, starved, breeds, dies, finding, eater, eater_distance, parent,
+               parent_key)
 };
 
 struct World {
@@ -62,8 +71,8 @@ struct World {
   HEDON_FN bool over() const { return clock().extinct_step >= 0 || fault().status != Status::ok; }
 
   /// Keeps the first error; later ones are usually its consequences.
-  HEDON_FN void fail(Status status, int32_t agent_id, double value) const {
-    if (fault().status == Status::ok) fault() = {status, agent_id, clock().step, value};
+  HEDON_FN void fail(Status status, int32_t agent_id, double value, int32_t other_id = -1) const {
+    if (fault().status == Status::ok) fault() = {status, agent_id, clock().step, value, other_id, 0};
   }
 
   HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->network.size()]; }

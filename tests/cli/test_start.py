@@ -1,5 +1,12 @@
+import os
 import subprocess
 import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+from hedon.record.manifest import load_manifest
 
 HEAVY = ("numpy", "polars", "pydantic", "matplotlib", "scipy", "rich", "hedon._engine")
 
@@ -8,3 +15,63 @@ def test_importing_the_command_line_loads_nothing_heavy() -> None:
     code = f"import sys, hedon.cli.main; print([name for name in {HEAVY} if name in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("module", ["typer", "hedon.cli.main", "hedon.config", "pydantic", "hedon.config.check"])
+def test_ctrl_c_while_the_command_starts_leaves_no_traceback(module: str) -> None:
+    code = f"""
+import sys
+
+class Interrupt:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupt())
+sys.argv = ["hedon", "config", "check", "baseline"]
+from hedon.cli.start import main
+main()
+"""
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert answer.returncode == 130
+    assert answer.stderr.strip() in ("hedon: interrupted", "")  # by us, or by the parser of commands
+
+
+def test_the_installed_command_begins_there() -> None:
+    (script,) = entry_points(group="console_scripts", name="hedon")
+    assert script.value == "hedon.cli.start:main"
+
+
+@pytest.mark.parametrize("command", ["report", "resume", "branch", "check", "replay-fault"])
+def test_a_path_that_no_file_system_takes_is_a_message(command: str) -> None:
+    answer = subprocess.run(["hedon", command, "a" * 300], capture_output=True, text=True, check=False)
+    assert answer.returncode == 2
+    assert answer.stderr.strip().endswith("File name too long")
+    assert "Traceback" not in answer.stderr
+
+
+def test_a_folder_whose_name_is_no_unicode_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    name = os.fsdecode(b"run\xff")
+    for command in (
+        ["run", "small", "--steps", "3", "--out", name],
+        ["check", name],
+        ["report", name],
+        ["resume", name],
+    ):
+        answer = subprocess.run(["hedon", *command], cwd=tmp_path, capture_output=True, check=False)
+        assert answer.returncode == 2
+        assert b"must be UTF-8" in answer.stderr
+        assert b"Traceback" not in answer.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_arguments_that_are_no_unicode_leave_a_manifest_that_can_be_read(tmp_path: Path) -> None:
+    (tmp_path / os.fsdecode(b"in\xff")).mkdir()
+    config = tmp_path / os.fsdecode(b"in\xff") / "my.toml"
+    config.write_text('preset = "small"\npopulation.capacity = 8\npopulation.initial_count = 8\n')
+    out = tmp_path / "run"
+    command = ["hedon", "run", str(config), "--steps", "3", "--out", str(out)]
+    answer = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    assert str(load_manifest(out).command_line[2]).endswith("in\\udcff/my.toml")
+    assert subprocess.run(["hedon", "check", str(out)], check=False).returncode == 0

@@ -45,6 +45,23 @@ def test_starvation_can_kill():
     assert simulation.engine.take_rows(0)["death_step"][0] == 51
 
 
+def test_who_starves_bears_no_child_in_its_last_step():
+    fertile = ("birth.kappa=1", "birth.beta=100", *DEATHLESS, 'energy.starvation="death"', "energy.basic_cost=1")
+    simulation = make_simulation(*STILL, *fertile)
+    crowd = [
+        (x, y, 0.0) for x in range(60, 420, 60) for y in range(60, 300, 60)
+    ]  # at energy 0, half of them draw a child
+    set_scene(simulation, crowd, energy=0.5)
+    simulation.run(1)
+    counters = simulation.worlds[0].counters
+    assert simulation.worlds[0].extinct_step == 1
+    assert counters["births"] + counters["births_failed_space"] == 0
+    set_scene(simulation, crowd, energy=1.5)  # who can pay is not held back
+    simulation.run(1)
+    counters = simulation.worlds[0].counters
+    assert counters["births"] + counters["births_failed_space"] == len(crowd)
+
+
 def test_energy_above_the_capacity_is_destroyed():
     simulation = make_simulation(
         *STILL, *SAFE, "food.normal.energy=5", "energy.capacity=42", "food.normal.growth_rate=0"

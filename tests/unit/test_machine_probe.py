@@ -6,11 +6,8 @@ from itertools import pairwise
 
 import pytest
 from learning_case import KERNELS
-from worlds import make_simulation
 
 from hedon import _engine
-from hedon.config.arena import walls
-from hedon.config.native import engine_config
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
@@ -35,11 +32,3 @@ def test_other_threads_go_on_while_a_rate_is_measured(probe, arguments):
     worker.join()
     assert seen[-1] - seen[0] > 0.05
     assert max(after - before for before, after in pairwise(seen)) < 0.5 * (seen[-1] - seen[0])
-
-
-def test_the_memory_of_worlds_is_known_before_they_are_made():
-    simulation = make_simulation("learning.rollout_steps=256")
-    native, segments = engine_config(simulation.config), len(walls(simulation.config.arena))
-    one, three = (_engine.Simulation.bytes_needed(native, segments, worlds) for worlds in (1, 3))
-    assert three - one == 2 * simulation.engine.bytes_per_world
-    assert one > simulation.engine.bytes_per_world  # the rest is scratch for learning

@@ -18,16 +18,17 @@ from hedon._engine import (
 def read_config(config: dict[str, Any]) -> dict[str, Any]:
     """What the engine understood of a config."""
 
+def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int) -> dict[str, int]:
+    """
+    Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.
+    """
+
 class Simulation:
     """
     Many worlds under one config. Views are read-only and valid until the next `run`.
     """
 
     def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = []) -> None: ...
-
-    @staticmethod
-    def bytes_needed(config: dict, walls: int, worlds: int, threads: int = 1) -> int:
-        """Bytes that such a simulation would reserve; makes none."""
 
     def run(self, steps: int) -> None:
         """Advances every world that is not over; releases the interpreter lock."""
@@ -57,6 +58,11 @@ class Simulation:
 
     def view_names(self) -> list:
         """Paths that `view` knows."""
+
+    def poke(self, world: int, path: str, index: int, value: float) -> None:
+        """
+        For tests: writes one number of a world's state, as a fault of the memory would.
+        """
 
     def counters(self, world: int) -> dict: ...
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 _INFLOW = ("energy_eaten", "energy_forgiven")
 _OUTFLOW = ("energy_basic", "energy_action", "energy_capped", "energy_lost")
@@ -42,14 +43,10 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
         population: rows of one world, by step.
         agents: rows of the same world.
     """
-    founders = agents.filter(pl.col("parent_id").is_null())
-    from_founders = founders.height and (population.height == 0 or population["step"][0] == population["steps"][0])
-    initial = float(founders["birth_energy"].cast(pl.Float64).sum()) if from_founders else None
+    initial = _initial(population, agents)
     sums = {name: float(population[f"energy_{name}"].sum()) for name in _names()}
     total = population["energy_total"].to_numpy()
-    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
-    before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
-    residuals = np.abs(total - before - flow)
+    residuals = interval_residuals(population, agents)
     residuals = residuals[np.isfinite(residuals)]
     return Ledger(
         initial=initial,
@@ -57,6 +54,30 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
         residual=float(residuals.max()) if len(residuals) else None,
         **sums,
     )
+
+
+def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) -> NDArray[np.float64]:
+    """By how much each interval of one world leaves its ledger open, (rows,) [energy]; see `world_ledger`.
+
+    Args:
+        population: rows of one world, by step.
+        agents: rows of the same world; None where they are not known.
+
+    Returns:
+        NaN for the first interval where the energy held before it is not known.
+    """
+    initial = None if agents is None else _initial(population, agents)
+    total = population["energy_total"].to_numpy()
+    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
+    before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
+    return np.abs(total - before - flow)
+
+
+def _initial(population: pl.DataFrame, agents: pl.DataFrame) -> float | None:
+    """What the founders held at birth; None where their rows are missing."""
+    founders = agents.filter(pl.col("parent_id").is_null())
+    from_founders = founders.height and (population.height == 0 or population["step"][0] == population["steps"][0])
+    return float(founders["birth_energy"].cast(pl.Float64).sum()) if from_founders else None
 
 
 def _names() -> list[str]:

@@ -139,7 +139,7 @@ def _measure_one(plan: Plan, config: Config, tiles: tuple[int, int], threads: in
 
 def bytes_needed(config: Config, threads: int) -> int:
     """What one world reserves [byte]."""
-    return _engine.Simulation.bytes_needed(engine_config(config), len(walls(config.arena)), 1, threads)
+    return sum(_engine.memory_needed(engine_config(config), len(walls(config.arena)), 1, threads).values())
 
 
 def table(rows: list[Row], _: Calibration) -> Table:

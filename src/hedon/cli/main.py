@@ -9,7 +9,9 @@ from hedon.cli import config
 from hedon.cli.analyze import analyze
 from hedon.cli.bench import bench
 from hedon.cli.branch import branch
+from hedon.cli.check import check
 from hedon.cli.demography import demography
+from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
@@ -30,6 +32,8 @@ app.command()(branch)
 app.command()(report)
 app.command()(analyze)
 app.command()(demography)
+app.command()(check)
+app.command()(replay_fault)
 app.command()(config.presets)
 app.command()(bench)
 app.add_typer(config.app, name="config")
@@ -71,4 +75,10 @@ def main() -> None:
         app()
     except HedonError as error:
         typer.echo(f"hedon: {error}", err=True)
+        sys.exit(2)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        # A path that the file system does not take, or may not be read: anywhere that a path is looked at.
+        typer.echo(f"hedon: {error.filename}: {error.strerror}", err=True)
         sys.exit(2)

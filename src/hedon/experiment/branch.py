@@ -9,6 +9,7 @@ from hedon.config.dump import diff, digest
 from hedon.config.load import load_config
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
+from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan, free_folder
 from hedon.experiment.run import begin
 from hedon.experiment.session import first_manifest
@@ -17,6 +18,7 @@ from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
 from hedon.record.manifest import Manifest, Parent
+from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 
@@ -75,8 +77,8 @@ def plan_branch(
             f"{name} is at step {step:,}: a branch needs more steps in all than that, and {total:,} were asked for; "
             "say by --steps how many"
         )
-    parent = Parent(folder.resolve().name, digest(config), step)
-    place = out or free_folder(folder.parent / f"{parent.folder}-branch{step}")
+    parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
+    place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
     plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds)
     return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
@@ -85,6 +87,7 @@ def plan_branch(
 def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
     """Begins a branch that `plan_branch` has planned; see `branch`."""
     with count_interrupts() as interrupted:
+        require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel)
         start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}")
         manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
@@ -125,6 +128,7 @@ def branch(
         RecordError: The checkpoint is not there or does not fit, or a changed setting would change the shape of a
             world's arrays; the message names it.
         ConfigError: An override is wrong.
+        MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """
     plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds)

@@ -1,8 +1,12 @@
 """Moves what the engine knows into the records: deaths, intervals, frames, the living, checkpoints."""
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import Any
+
+from numpy.typing import NDArray
 
 from hedon.config.dump import dump_toml
 from hedon.experiment.plan import Moment
@@ -75,8 +79,11 @@ class Recorder:
     def living(self) -> None:
         """Replaces the file of the living agents."""
         self.living_due = time.perf_counter() + LIVING_SECONDS
-        engine = self.simulation.engine
-        self.writer.replace_living(*(agent_rows(w, engine.living_rows(w.index)) for w in self.simulation.worlds))
+        rows = []
+        for world in self.simulation.worlds:
+            with suppress(RuntimeError):  # a world that stopped since its slots are inconsistent
+                rows.append(agent_rows(world, self.simulation.engine.living_rows(world.index)))
+        self.writer.replace_living(*rows)
 
     def frame(self) -> None:
         """Writes every agent and food of every living world as they are now."""
@@ -87,12 +94,22 @@ class Recorder:
 
     def checkpoint(self, step: int, seconds: float) -> None:
         """Keeps all that it takes to go on from here. Deaths and frames of this step must have been written."""
+        self.writer.save_checkpoint(*self._saved(step, seconds))
+
+    def fault(self, seconds: float) -> None:
+        """Keeps the worlds as they are now that one of them has stopped at a fault, and who died before it."""
+        self.deaths()
+        step = max(world.step for world in self.simulation.worlds)
+        self.writer.save_fault(*self._saved(step, seconds))
+
+    def _saved(self, step: int, seconds: float) -> tuple[CheckpointHead, dict[str, NDArray[Any]]]:
         simulation = self.simulation
-        arrays = {
-            f"{world.index}/{name}": array
-            for world in simulation.worlds
-            for name, array in simulation.engine.save(world.index).items()
-        }
+        arrays: dict[str, NDArray[Any]] = {}
+        digests = [""] * len(simulation.worlds)
+        for i, world in enumerate(simulation.worlds):
+            with suppress(RuntimeError):  # a world that stopped since its slots are inconsistent
+                arrays |= {f"{i}/{name}": array for name, array in simulation.engine.save(i).items()}
+                digests[i] = world.digest()
         head = CheckpointHead(
             step=step,
             config=dump_toml(simulation.config),
@@ -102,9 +119,9 @@ class Recorder:
             frames=self.frames,
             run_seconds=seconds,
             sampled=tuple(sampler.since for sampler in self.samplers),
-            digests=tuple(world.digest() for world in simulation.worlds),
+            digests=tuple(digests),
         )
-        self.writer.save_checkpoint(head, arrays)
+        return head, arrays
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows after `step` of `steps` steps, `seconds` into the session."""

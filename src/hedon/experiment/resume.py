@@ -8,6 +8,7 @@ from pathlib import Path
 from hedon.config.load import load_config
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
+from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
 from hedon.experiment.run import drive
@@ -100,6 +101,7 @@ def resume(
 
     Raises:
         RecordError: As `hold`; or the folder cannot be written.
+        MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """
     with hold(folder, steps, threads, checkpoint_seconds) as found:
@@ -110,6 +112,7 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
     """Goes on with a run that `hold` holds; see `resume`."""
     plan, checkpoint = found.plan, found.checkpoint
     with count_interrupts() as interrupted:
+        require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads, same_kernel(found.manifest.kernel))
         start = Start()
         if checkpoint is not None:

@@ -2,14 +2,17 @@
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 from hedon.config.dump import dump_toml
 from hedon.experiment.interrupt import Interrupts, count_interrupts
+from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
-from hedon.experiment.simulation import Simulation
+from hedon.experiment.simulation import EngineError, Simulation
+from hedon.record.error import RecordError
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.snapshot import save_snapshot
@@ -30,9 +33,11 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
 
     Raises:
         RecordError: The folder holds a run already, is in use, or cannot be written.
+        MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
     with count_interrupts() as interrupted:
+        require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 
@@ -82,6 +87,13 @@ def drive(
         recorder.checkpoint(step, seconds)
         recorder.interval()
         status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
+    except EngineError as error:
+        manifest = replace(manifest, fault=str(error))
+        try:
+            recorder.fault(seconds)
+        except RecordError as lost:
+            raise EngineError(f"{error} The state of its worlds could not be kept: {lost}") from error
+        raise
     finally:
         recorder.living()
         manifest = last_manifest(manifest, simulation, status, seconds, writer)

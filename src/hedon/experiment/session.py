@@ -51,6 +51,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
         steps_asked=plan.steps,
         world_digests=(),
         records_digest=None,
+        fault=None,
         sessions=(*manifest.sessions, _session(here, from_step)),
     )
 

@@ -83,14 +83,22 @@ def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
     Raises:
         OSError: as the file system raises it; the earlier checkpoints are then as they were.
     """
-    path = checkpoint_path(folder, checkpoint.head.step)
+    write_checkpoint(checkpoint_path(folder, checkpoint.head.step), checkpoint)
+    for old in checkpoint_paths(folder)[:-KEPT]:
+        old.unlink(missing_ok=True)
+
+
+def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Writes one checkpoint atomically, and its folder where it is missing.
+
+    Raises:
+        OSError: as the file system raises it.
+    """
     path.parent.mkdir(exist_ok=True)
     head = np.frombuffer(json.dumps(asdict(checkpoint.head)).encode(), np.uint8)
     members = {_HEAD: head, **checkpoint.arrays}
     members[_DIGEST] = np.frombuffer(_digest(members).encode(), np.uint8)
     write_atomically(path, lambda file: np.savez(file, **members))
-    for old in checkpoint_paths(folder)[:-KEPT]:
-        old.unlink(missing_ok=True)
 
 
 def load_checkpoint(path: Path) -> Checkpoint:

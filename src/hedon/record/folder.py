@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from hedon.record.error import RecordError
+
 CONFIG = "config.toml"
 MANIFEST = "manifest.json"
 SNAPSHOT = "final.npz"
@@ -9,10 +11,24 @@ SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
 CHECKPOINTS = "checkpoints"
+FAULT = "fault"
 LOCK = ".lock"
 CHECKPOINT_SECONDS = 180.0
 """Time after which a run keeps a checkpoint, unless told otherwise [s]."""
 TABLE_FOLDERS = ("agents", "population", "frames")
+
+
+def require_unicode(folder: Path) -> None:
+    """Refuses a folder whose name has bytes that are no UTF-8: tables could be written there, and never read.
+
+    Raises:
+        RecordError: it has.
+    """
+    try:
+        str(folder).encode()
+    except UnicodeEncodeError:
+        name = str(folder).encode("utf-8", "backslashreplace").decode()
+        raise RecordError(f"{name}: the name of a run's folder must be UTF-8: choose or give it another") from None
 
 
 def holds_run(folder: Path) -> bool:
@@ -42,6 +58,16 @@ def part_paths(folder: Path, table: str) -> list[Path]:
 def checkpoint_path(folder: Path, step: int) -> Path:
     """The path of the checkpoint that was taken after so many steps."""
     return folder / CHECKPOINTS / f"step-{step:010d}.npz"
+
+
+def fault_path(folder: Path, step: int) -> Path:
+    """The path of the checkpoint of a run that stopped at a fault after so many steps."""
+    return folder / FAULT / f"step-{step:010d}.npz"
+
+
+def fault_paths(folder: Path) -> list[Path]:
+    """The checkpoint of a run that stopped at a fault, or nothing."""
+    return sorted((folder / FAULT).glob("step-??????????.npz"))
 
 
 def checkpoint_paths(folder: Path) -> list[Path]:

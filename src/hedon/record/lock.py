@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 
 from hedon.record.error import RecordError
-from hedon.record.folder import LOCK
+from hedon.record.folder import LOCK, require_unicode
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """What file systems answer that know no locks: there the user alone keeps two runs apart."""
@@ -24,10 +24,11 @@ class FolderLock:
         folder: made where it does not exist.
 
     Raises:
-        RecordError: another process holds it, or the folder cannot be written.
+        RecordError: another process holds it, the folder cannot be written, or its name is no UTF-8.
     """
 
     def __init__(self, folder: Path) -> None:
+        require_unicode(folder)
         path = folder / LOCK
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -81,6 +81,7 @@ class Manifest:
         parent: of a branch, the run that it branched off from; its folder, config_digest and step.
         world_digests: per world the digest of its last state, as `World.digest()` gives it; empty until the end.
         records_digest: digest of all rows of all tables, whatever parts they stand in; None until the end.
+        fault: what the engine said where the run stopped at a fault; None otherwise.
         format_version: of the run folder.
     """
 
@@ -114,6 +115,7 @@ class Manifest:
     parent: Parent | None = None
     world_digests: tuple[str, ...] = ()
     records_digest: str | None = None
+    fault: str | None = None
     format_version: int = FORMAT_VERSION
 
     def __post_init__(self) -> None:

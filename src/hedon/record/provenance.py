@@ -23,9 +23,14 @@ def collect_provenance() -> dict[str, Any]:
         "cpu_count": usable_cpus(),
         "git_revision": revision,
         "git_modified": modified,
-        "command_line": (Path(sys.argv[0]).name, *sys.argv[1:]),
+        "command_line": tuple(map(to_unicode, (Path(sys.argv[0]).name, *sys.argv[1:]))),
         "started": utc_now(),
     }
+
+
+def to_unicode(text: str) -> str:
+    r"""An argument or a file's name as text that every encoding of Unicode takes: bytes that are none as \udcff."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def utc_now() -> str:

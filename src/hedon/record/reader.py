@@ -8,7 +8,7 @@ import polars as pl
 
 from hedon.record.column import Table
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, LIVING, MANIFEST, holds_run, part_paths
+from hedon.record.folder import CONFIG, LIVING, MANIFEST, holds_run, part_paths, require_unicode
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.schema import food_weight_names, neutral_names, run_tables, weight_names
 
@@ -93,6 +93,7 @@ def open_run(path: Path | str) -> Run:
         RecordError: it is no run folder, or its manifest or config cannot be read.
     """
     folder = Path(path)
+    require_unicode(folder)
     if not (folder / MANIFEST).is_file():
         raise RecordError(f"{folder} is not a run folder: it has no {MANIFEST}{_nearest(folder)}")
     try:

@@ -7,7 +7,16 @@ from pathlib import Path
 
 from hedon.record.checkpoint import Checkpoint, load_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CHECKPOINTS, TABLE_FOLDERS, checkpoint_path, checkpoint_paths, part_path, part_paths
+from hedon.record.folder import (
+    CHECKPOINTS,
+    FAULT,
+    TABLE_FOLDERS,
+    checkpoint_path,
+    checkpoint_paths,
+    fault_paths,
+    part_path,
+    part_paths,
+)
 
 
 def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
@@ -64,16 +73,17 @@ def _remedy(folder: Path) -> str:
 
 
 def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> None:
-    """Removes what was written after a checkpoint: later parts, later checkpoints, and files that never got finished.
+    """Removes what came after a checkpoint: later parts and checkpoints, a fault, and files that never got finished.
 
     Raises:
         RecordError: a file cannot be removed.
     """
     later = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
+    later += fault_paths(folder)
     for table in TABLE_FOLDERS:
         last = part_path(folder, table, len(parts.get(table, ())))
         later += [path for path in part_paths(folder, table) if path >= last]
-    for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS))):
+    for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS, FAULT))):
         later += place.glob(".*.tmp")
     try:
         for path in reversed(later):

@@ -13,15 +13,18 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from hedon.record.atomic import write_atomically
-from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, holds_run
+from hedon.record.folder import CONFIG, fault_path, holds_run
 from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
 from hedon.record.schema import run_tables
 
 Rows = Mapping[str, ArrayLike]
+
+PART_ROWS = 20_000
+"""Rows after which a part is written at once, unless told otherwise."""
 
 _CLOSE = object()
 
@@ -54,7 +57,7 @@ class Writer:
         config_text: str,
         manifest: Manifest,
         *,
-        part_rows: int = 20_000,
+        part_rows: int = PART_ROWS,
         flush_seconds: float = 30.0,
         queue_size: int = 64,
         parts: Mapping[str, Sequence[str]] | None = None,
@@ -109,6 +112,19 @@ class Writer:
         """
         self._saving.set()
         self._put(Checkpoint(head, dict(arrays)))
+
+    def save_fault(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Keeps the state of a run that stopped at a fault, beside its checkpoints, once all rows are on disk.
+
+        Raises:
+            RecordError: as `append`.
+        """
+        self.flush()
+        path = fault_path(self.folder, head.step)
+        try:
+            write_checkpoint(path, Checkpoint(head, dict(arrays)))
+        except OSError as error:
+            raise RecordError(f"cannot write {path}: {error}") from error
 
     @property
     def saving(self) -> bool:

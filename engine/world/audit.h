@@ -1,0 +1,179 @@
+/// What must hold of every world, looked over at the end of each window: a run that has gone wrong stops, by name.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "base/device.h"
+#include "base/vec2.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Whether all of `count` numbers are finite, told by the bits of their exponents, many at a time.
+HEDON_FN bool all_finite(const float* values, int64_t count) {
+  constexpr uint32_t EXPONENT = 0x7F800000u;
+  uint32_t wild = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    uint32_t bits;
+    memcpy(&bits, &values[i], sizeof bits);
+    wild |= (bits & EXPONENT) == EXPONENT;
+  }
+  return wild == 0;
+}
+
+HEDON_FN bool is_finite(double value) { return value - value == 0.0; }
+
+/// Every slot is either held by one of the living or free, and its flag says which.
+HEDON_FN void audit_slots(const World& world) {
+  const Clock& clock = world.clock();
+  const WorldState& state = world.state;
+  const int32_t slots = world.shape->slots;
+  const bool sane = clock.living_count >= 0 && clock.free_count >= 0 && clock.living_count <= slots;
+  if (!sane || clock.living_count + clock.free_count != slots) {
+    return world.fail(Status::slots_inconsistent, -1, clock.living_count);
+  }
+  const Array<uint8_t>& seen = world.scratch.starved;
+  for (int32_t slot = 0; slot < slots; ++slot) seen[slot] = 0;
+  const auto look = [&](int32_t slot, uint8_t alive) {
+    if (slot < 0 || slot >= slots || seen[slot] != 0 || state.alive[slot] != alive) {
+      return world.fail(Status::slots_inconsistent, -1, slot);
+    }
+    seen[slot] = 1;
+  };
+  for (int32_t i = 0; i < clock.living_count; ++i) look(state.living[i], 1);
+  for (int32_t i = 0; i < clock.free_count; ++i) look(state.free[i], 0);
+}
+
+/// Ids rise in the order of the living and none is newer than the newest; births, deaths and foods add up.
+HEDON_FN void audit_counts(const World& world) {
+  const Clock& clock = world.clock();
+  const Counters& counters = world.counters();
+  int32_t before = -1;
+  for (int32_t i = 0; i < clock.living_count; ++i) {
+    const Life& life = world.state.life[world.state.living[i]];
+    const bool good = life.agent_id > before && life.agent_id < clock.next_agent_id && life.parent_id < life.agent_id &&
+                      life.birth_step <= clock.step && life.death_step == -1;
+    if (!good) return world.fail(Status::ids_inconsistent, life.agent_id, before, life.parent_id);
+    before = life.agent_id;
+  }
+  // Every id was given once, to a founder or to a child.
+  if (clock.next_agent_id - counters.deaths != clock.living_count || counters.births > clock.next_agent_id) {
+    return world.fail(Status::counts_inconsistent, -1, static_cast<double>(counters.deaths));
+  }
+  for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    const FoodStock& stock = world.state.food_stock[k];
+    int32_t present = 0;
+    for (int32_t f = world.shape->food_offset[k]; f < world.shape->food_offset[k + 1]; ++f)
+      present += world.state.physics.circles.present[f];
+    if (present != stock.present) return world.fail(Status::counts_inconsistent, -1, present);
+    if (!is_finite(stock.number)) return world.fail(Status::not_finite, -1, stock.number);
+  }
+}
+
+/// No list holds more than it has room for.
+HEDON_FN void audit_capacity(const World& world) {
+  const NeighborList& list = world.state.physics.neighbors;
+  const int32_t bodies = list.head[0].bodies;
+  if (bodies < 0 || bodies > world.shape->slots) return world.fail(Status::neighbor_overflow, -1, bodies);
+  for (const PairList* pairs : {&list.bodies, &list.circles, &list.walls}) {
+    const int32_t count = pairs->start[bodies];
+    if (count < 0 || count > pairs->first.count) return world.fail(Status::neighbor_overflow, -1, count);
+  }
+  const int32_t events = world.clock().event_count;
+  if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
+}
+
+/// Energy held = initial + eaten + forgiven − basic − action − capped − lost, to rounding: an agent's step rounds at
+/// most eight sums, each by at most 2^-53 of the largest that it can be.
+HEDON_FN void audit_ledger(const World& world) {
+  constexpr double ROUNDING = 8.0 * 0x1p-53;
+  const Counters& c = world.counters();
+  double held = 0.0;
+  for (int32_t i = 0; i < world.clock().living_count; ++i) held += world.state.life[world.state.living[i]].energy;
+  const double eaten = c.energy_eaten < 0.0 ? -c.energy_eaten : c.energy_eaten;
+  const double moved = c.energy_initial + eaten + c.energy_forgiven + c.energy_basic + c.energy_action +
+                       c.energy_capped + c.energy_lost + c.energy_shared + world.config->energy.capacity;
+  const double due = c.energy_initial + c.energy_eaten + c.energy_forgiven - c.energy_basic - c.energy_action -
+                     c.energy_capped - c.energy_lost;
+  const double gap = held > due ? held - due : due - held;
+  const double steps = static_cast<double>(c.agent_steps + c.births + world.clock().next_agent_id);
+  if (!(gap <= ROUNDING * steps * moved)) world.fail(Status::ledger_open, -1, held - due);
+}
+
+/// How deep two discs may overlap: by the radius of a body. What contacts leave is far less: motors close a gap by some
+/// 0.3 u per substep at most, of which the corrections of the next take a third. Beyond it a contact is ill-defined,
+/// since a body's center lies in what it touches, and the two may pass through each other: a pair was missed.
+HEDON_FN Finding audit_overlap(const World& world, int32_t i) {
+  const PhysicsState& physics = world.state.physics;
+  const BodyState& body = physics.bodies;
+  const int32_t slot = world.state.living[i];
+  const float x = body.x[slot], y = body.y[slot], radius = world.config->body.radius;
+  // All pairs are looked at, not the listed ones alone: the neighbor list is among what is judged.
+  for (int32_t j = 0; j < i; ++j) {
+    const int32_t other = world.state.living[j];
+    const Vec2 apart{body.x[other] - x, body.y[other] - y};
+    if (squared_length(apart) < radius * radius) {
+      return {Status::overlap_too_deep, world.state.life[other].agent_id, 2.0f * radius - length(apart)};
+    }
+  }
+  const float food_radius = world.config->body.food_radius;
+  for (int32_t f = 0; f < world.shape->foods; ++f) {
+    const Vec2 apart{physics.circles.x[f] - x, physics.circles.y[f] - y};
+    if (physics.circles.present[f] != 0 && squared_length(apart) < food_radius * food_radius) {
+      return {Status::overlap_too_deep, -1, radius + food_radius - length(apart)};
+    }
+  }
+  return {Status::ok, -1, 0.0};
+}
+
+/// One agent: its numbers are finite, its center lies in the arena and in nothing else.
+HEDON_FN Finding audit_agent(const World& world, int32_t i) {
+  const WorldState& state = world.state;
+  const int32_t slot = state.living[i];
+  const BodyState& body = state.physics.bodies;
+  const float numbers[] = {body.x[slot],          body.y[slot],          body.angle[slot],
+                           body.velocity_x[slot], body.velocity_y[slot], body.angular_velocity[slot]};
+  for (const float number : numbers) {
+    if (!is_finite(number)) return {Status::not_finite, -1, number};
+  }
+  const int64_t size = world.shape->network.size(), first = slot * size;
+  const bool network_finite = all_finite(world.params(slot), size) && all_finite(&state.first_moment[first], size) &&
+                              all_finite(&state.second_moment[first], size) &&
+                              all_finite(world.genome(slot), world.shape->genome.size());
+  if (!network_finite) return {Status::not_finite, -1, static_cast<double>(state.updates[slot])};
+  const double energy = state.life[slot].energy;
+  if (!is_finite(energy)) return {Status::not_finite, -1, energy};
+
+  const Array<Segment>& walls = state.physics.walls;
+  for (int32_t w = 0; w < world.shape->outer_walls; ++w) {
+    // The outer walls run clockwise, so the inside is to their right.
+    const Vec2 along = walls[w].b - walls[w].a;
+    const float inside = cross(Vec2{body.x[slot], body.y[slot]} - walls[w].a, along);
+    if (inside < 0.0f) return {Status::outside_arena, -1, inside / length(along)};
+  }
+  return audit_overlap(world, i);
+}
+
+/// Looks a world over. All members of the group call it; the first thing wrong, in canonical order, becomes the fault.
+template <class Group>
+HEDON_FN void audit(Group& group, World& world) {
+  group.once([&] {
+    audit_slots(world);
+    audit_capacity(world);
+  });
+  if (world.fault().status != Status::ok) return;
+  const int32_t living = world.clock().living_count;
+  group.for_each(living, [&](int32_t i) { world.scratch.finding[i] = audit_agent(world, i); });
+  group.once([&] {
+    for (int32_t i = 0; i < living; ++i) {
+      const Finding& found = world.scratch.finding[i];
+      if (found.status == Status::ok) continue;
+      world.fail(found.status, world.state.life[world.state.living[i]].agent_id, found.value, found.other_id);
+    }
+    audit_counts(world);
+    audit_ledger(world);
+  });
+}
+
+}  // namespace hedon

@@ -1,0 +1,63 @@
+"""What a check says: what is wrong, what is worth knowing, what can still be used."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import polars as pl
+
+SHOWN = 3
+"""Rows that a finding names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that is wrong.
+
+    Attributes:
+        where: A file, by its path within the run's folder, or a table.
+        what: What is wrong with it.
+    """
+
+    where: str
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a check of a run found.
+
+    Attributes:
+        findings: What is wrong; empty where all is well.
+        notes: What is worth knowing and not wrong: what was not looked at, and why.
+        usable: What the folder is still good for.
+    """
+
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...]
+    usable: tuple[str, ...]
+
+
+def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapping[str, pl.Expr]) -> Iterator[Finding]:
+    """One finding for each rule that some rows break.
+
+    Args:
+        rows: With the columns that the rules speak of.
+        table: What to call it.
+        keys: Columns that tell which row it is.
+        rules: What is wrong with a row, by an expression that is true for such rows; null counts as false.
+    """
+    for what, wrong in rules.items():
+        found = rows.filter(wrong)
+        if found.height:
+            yield Finding(table, f"{name_rows(found, keys)} {what}")
+
+
+def name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
+    """The first rows by their keys, and how many more there are."""
+    words = [key.removesuffix("_id") for key in keys]
+    names = [
+        " ".join(f"{word} {value}" for word, value in zip(words, row, strict=True))
+        for row in rows.select(keys).head(SHOWN).iter_rows()
+    ]
+    more = f" and {rows.height - SHOWN:,} more" if rows.height > SHOWN else ""
+    return "; ".join(names) + more + ":"

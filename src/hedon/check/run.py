@@ -1,0 +1,269 @@
+"""Checks a run's folder: everything that it says of itself, against everything else."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from hedon.check.finding import Finding, Verdict
+from hedon.check.genealogy import check_agents
+from hedon.check.population import check_population
+from hedon.check.table import check_digests, check_numbering, read_parts
+from hedon.config.config import Config
+from hedon.config.dump import digest
+from hedon.config.load import load_config, parse_config
+from hedon.config.problem import ConfigError
+from hedon.record.checkpoint import Checkpoint, load_checkpoint
+from hedon.record.digest import records_digest
+from hedon.record.error import RecordError
+from hedon.record.folder import (
+    CHECKPOINTS,
+    CONFIG,
+    LIVING,
+    MANIFEST,
+    TABLE_FOLDERS,
+    checkpoint_paths,
+    fault_paths,
+    holds_run,
+    part_path,
+    require_unicode,
+)
+from hedon.record.manifest import Manifest, load_manifest
+from hedon.record.reader import open_run
+from hedon.record.schema import run_tables
+from hedon.record.snapshot import load_snapshot
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+
+@dataclass
+class _Folder:
+    """A run's folder as far as it can be read, and what was found on the way."""
+
+    path: Path
+    findings: list[Finding] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    manifest: Manifest | None = None
+    config: Config | None = None
+    checkpoints: list[Checkpoint] = field(default_factory=list)
+    """Those that can be used, by step."""
+    tables: dict[str, pl.DataFrame] = field(default_factory=dict)
+    """Rows of `agents` and `population` that can be read."""
+    whole: bool = True
+    """Whether no part is missing or unreadable."""
+
+    def add(self, findings: Iterator[Finding]) -> int:
+        before = len(self.findings)
+        self.findings += findings
+        return len(self.findings) - before
+
+
+def check_run(path: Path) -> Verdict:
+    """Checks a run's folder; reads it only, and needs no engine.
+
+    Args:
+        path: Of the folder; the run may be finished or interrupted, killed or going on.
+
+    Returns:
+        What is wrong, what is worth knowing, and what can still be used.
+
+    Raises:
+        RecordError: It is not the folder of a run.
+    """
+    require_unicode(path)
+    if not holds_run(path):
+        open_run(path)  # says what it is instead, and which may have been meant
+    folder = _Folder(path)
+    _check_manifest(folder)
+    _check_config(folder)
+    _check_checkpoints(folder)
+    _check_tables(folder)
+    _check_rows(folder)
+    _check_end(folder)
+    return Verdict(tuple(dict.fromkeys(folder.findings)), tuple(folder.notes), tuple(_usable(folder)))
+
+
+def _check_manifest(folder: _Folder) -> None:
+    try:
+        manifest = load_manifest(folder.path)
+        _manifests().validate_json((folder.path / MANIFEST).read_bytes(), strict=True)
+    except (RecordError, ValueError) as error:
+        text = str(error).removeprefix(f"damaged manifest {folder.path / MANIFEST}: ")
+        folder.findings.append(Finding(MANIFEST, "cannot be used: " + " ".join(text.split())))
+        return
+    folder.manifest = manifest
+    worlds = len(manifest.seeds)
+    lists = [("steps_done", manifest.steps_done), ("extinct_steps", manifest.extinct_steps)]
+    if manifest.world_digests:
+        lists.append(("world_digests", manifest.world_digests))
+    for name, values in lists:
+        if len(values) != worlds:
+            what = f"{name} has {len(values)} entries, and there are {worlds} seeds"
+            folder.findings.append(Finding(MANIFEST, what))
+            folder.manifest = None
+    for step in manifest.steps_done:
+        if not 0 <= step <= manifest.steps_asked:
+            what = f"steps_done is {step:,}, and {manifest.steps_asked:,} were asked for"
+            folder.findings.append(Finding(MANIFEST, what))
+    if manifest.status == "running":
+        folder.notes.append(
+            "the run goes on, or was killed: what was recorded last may be incomplete, and whether agents are missing "
+            f"is not checked (`hedon resume {folder.path}` goes on with a killed run)"
+        )
+    if manifest.status == "failed":
+        folder.notes.append("the run stopped at a fault" + (f": {manifest.fault}" if manifest.fault else ""))
+
+
+def _check_config(folder: _Folder) -> None:
+    try:
+        config = load_config(folder.path / CONFIG)
+    except ConfigError as error:
+        folder.findings.append(Finding(CONFIG, f"cannot be used: {error}"))
+        return
+    manifest = folder.manifest
+    if manifest is None:
+        folder.config = config
+        return
+    if manifest.config_digest is not None and digest(config) != manifest.config_digest:
+        folder.findings.append(Finding(CONFIG, "was changed: its digest is not the one in the manifest"))
+    elif (tuple(config.food), config.genome.neutral_count) != (manifest.food_kinds, manifest.neutral_count):
+        what = "the kinds of food or the neutral markers are not those of the config"
+        folder.findings.append(Finding(MANIFEST, what))
+    else:
+        folder.config = config
+
+
+def _check_checkpoints(folder: _Folder) -> None:
+    manifest = folder.manifest
+    for path in checkpoint_paths(folder.path):
+        name = str(path.relative_to(folder.path))
+        try:
+            checkpoint = load_checkpoint(path)
+            config = parse_config(checkpoint.head.config, name)
+        except (RecordError, ConfigError) as error:
+            text = str(error).removeprefix(f"damaged checkpoint {path}: ")
+            folder.findings.append(Finding(name, f"cannot be used: {text}"))
+            continue
+        if manifest is not None and manifest.config_digest not in (None, digest(config)):
+            folder.findings.append(Finding(name, "is of another config than the manifest says"))
+        elif manifest is not None and checkpoint.head.seeds != manifest.seeds:
+            folder.findings.append(Finding(name, "is of other seeds than the manifest says"))
+        else:
+            folder.checkpoints.append(checkpoint)
+    for path in fault_paths(folder.path):
+        try:
+            load_checkpoint(path)
+        except RecordError as error:
+            folder.findings.append(Finding(str(path.relative_to(folder.path)), f"cannot be used: {error}"))
+    if not checkpoint_paths(folder.path):
+        folder.notes.append(f"nothing in {CHECKPOINTS}: the run cannot be gone on with")
+
+
+def _check_tables(folder: _Folder) -> None:
+    source = folder.manifest or folder.config
+    if source is None:
+        folder.notes.append("the tables were not checked: neither manifest nor config says which columns they have")
+        return
+    kinds = source.food_kinds if isinstance(source, Manifest) else tuple(source.food)
+    neutral = source.neutral_count if isinstance(source, Manifest) else source.genome.neutral_count
+    wrong = 0
+    if folder.checkpoints:
+        parts = folder.checkpoints[-1].head.parts
+        wrong += sum(
+            not part_path(folder.path, table, len(each) - 1).is_file() for table, each in parts.items() if each
+        )
+        folder.add(check_digests(folder.path, parts))
+    for name, table in run_tables(kinds, neutral).items():
+        wrong += folder.add(check_numbering(folder.path, name))
+        if name == "agents" and not (folder.path / LIVING).exists():
+            wrong += folder.add(iter([Finding(LIVING, "is missing: those who live are not known")]))
+        parts = [pl.DataFrame(schema=table.polars_schema)]
+        latest: dict[int, int] = {}
+        for part, rows, faults in read_parts(folder.path, table):
+            wrong += folder.add(iter(faults))
+            if rows is None:
+                continue
+            if name == "frames":  # may be larger than memory: each part by itself
+                folder.add(_check_frames(part, rows, latest))
+            else:
+                parts.append(rows)
+        if name != "frames":
+            folder.tables[name] = pl.concat(parts)
+    folder.whole = not wrong
+
+
+def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iterator[Finding]:
+    """Frames of a world follow one another; `latest` is the last step seen so far, by world."""
+    for (world,), mine in rows.group_by("world", maintain_order=True):
+        steps = mine["step"]
+        if not steps.is_sorted() or steps[0] < latest.get(world, 0):
+            yield Finding(name, f"frames of world {world} are out of order")
+        latest[world] = max(steps[-1], latest.get(world, 0))
+
+
+def _check_rows(folder: _Folder) -> None:
+    """The rows against one another; where parts are missing, only what each row says by itself."""
+    manifest = folder.manifest
+    if manifest is None or not folder.tables:
+        return
+    ended = manifest.status in ("finished", "interrupted")
+    agents = folder.tables["agents"]
+    if manifest.status == "running":  # who died since the living were last written stands in both
+        agents = agents.unique(["world", "agent_id"], keep="first", maintain_order=True)
+    complete = ended and folder.whole
+    broken = folder.add(check_agents(agents, manifest, complete=complete))
+    compared = agents if complete and not broken else None
+    folder.add(check_population(folder.tables["population"], compared, manifest, ended=ended))
+
+
+def _check_end(folder: _Folder) -> None:
+    """What the manifest says of the end: digests of the records and of the worlds."""
+    manifest = folder.manifest
+    try:
+        load_snapshot(folder.path)
+    except RecordError as error:
+        folder.findings.append(Finding("final.npz", f"cannot be used: {error}"))
+    if manifest is None:
+        return
+    if manifest.status in ("finished", "interrupted") and not manifest.records_digest:
+        folder.findings.append(Finding(MANIFEST, "lacks the digest of the records, which every ended run has"))
+    if manifest.records_digest and folder.whole:
+        found = records_digest(folder.path, manifest.food_kinds, manifest.neutral_count)
+        if found != manifest.records_digest:
+            folder.findings.append(Finding("records", "their digest is not the one in the manifest: rows were changed"))
+    if manifest.world_digests and folder.checkpoints:
+        head = folder.checkpoints[-1].head
+        if head.step == max(manifest.steps_done) and head.digests != manifest.world_digests:
+            what = "the digests of the worlds are not those of the checkpoint of the last step"
+            folder.findings.append(Finding(MANIFEST, what))
+
+
+def _usable(folder: _Folder) -> Iterator[str]:
+    names = {finding.where for finding in folder.findings}
+    if not names:
+        return
+    for table in TABLE_FOLDERS:
+        parts = len(list((folder.path / table).glob("*.parquet")))
+        bad = sum(name.startswith(f"{table}/") for name in names)
+        if parts:
+            yield f"{table}: {max(parts - bad, 0)} of {parts} files are whole"
+    for checkpoint in reversed(folder.checkpoints):
+        step, parts = checkpoint.head.step, checkpoint.head.parts
+        if folder.manifest is None or CONFIG in names:
+            yield f"checkpoint of step {step:,}: whole, and usable once the manifest and config are put back"
+        elif not any(check_digests(folder.path, parts)):
+            yield f"checkpoint of step {step:,}: `hedon resume` can go on from it, and makes what came later again"
+            break
+        else:
+            yield f"checkpoint of step {step:,}: `hedon branch --at {step}` can go on from it in a new folder"
+
+
+@cache
+def _manifests() -> "TypeAdapter[Manifest]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Manifest)

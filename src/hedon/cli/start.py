@@ -1,0 +1,14 @@
+"""The first lines of the command `hedon`: so light that Ctrl-C finds them ready while all else is being imported."""
+
+import sys
+
+
+def main() -> None:
+    """Runs the command line; Ctrl-C before it has begun ends it without a traceback, with exit code 130."""
+    try:
+        from hedon.cli.main import main as run_command
+
+        run_command()
+    except KeyboardInterrupt:
+        sys.stderr.write("hedon: interrupted\n")
+        sys.exit(130)  # 128 and the number of SIGINT, as shells have it

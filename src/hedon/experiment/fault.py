@@ -1,0 +1,64 @@
+"""Computes the way to a run's fault again."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from hedon.config.load import load_config
+from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.simulation import EngineError, Simulation
+from hedon.record.error import RecordError
+from hedon.record.folder import CONFIG
+from hedon.record.reader import open_run
+from hedon.record.rollback import find_checkpoint
+
+PIECE = 64
+"""Steps at a time: few enough that the deaths of a piece find room until they are read [step]."""
+
+
+@dataclass(frozen=True, slots=True)
+class FaultReplay:
+    """A fault that was recorded, and what came of computing it again.
+
+    Attributes:
+        recorded: What the engine said then.
+        recurred: What it says now; None where nothing is wrong.
+        start: Step of the checkpoint that was gone on from [step].
+    """
+
+    recorded: str
+    recurred: str | None
+    start: int
+
+
+def replay_fault(folder: Path, threads: int = 0) -> FaultReplay:
+    """Goes on from the newest checkpoint of a run that stopped at a fault, to the fault. Changes nothing.
+
+    Args:
+        folder: Of the run.
+        threads: Threads to use; 0 for all processors. Changes no result.
+
+    Raises:
+        RecordError: The run recorded no fault, or its checkpoint does not fit.
+        ConfigError: Its config cannot be read.
+    """
+    manifest = open_run(folder).manifest
+    if manifest.fault is None:
+        raise RecordError(f"{folder} recorded no fault: it is {manifest.status}")
+    config = load_config(folder / CONFIG)
+    checkpoint, _ = find_checkpoint(folder)
+    simulation = Simulation(config, manifest.seeds, threads, same_kernel(manifest.kernel))
+    step = start = 0
+    if checkpoint is not None:
+        name = f"the checkpoint of {folder}"
+        check_head(checkpoint.head, config, manifest.seeds, name)
+        step = start = restore(simulation, checkpoint, name).step
+    end = max(manifest.steps_done) + 1  # a fault within a step is found before that step counts as done
+    try:
+        while step < end:
+            simulation.run(min(PIECE, end - step))
+            step += PIECE
+            for world in simulation.worlds:
+                simulation.engine.take_rows(world.index)
+    except EngineError as error:
+        return FaultReplay(manifest.fault, str(error), start)
+    return FaultReplay(manifest.fault, None, start)

@@ -1,0 +1,73 @@
+"""Whether a run fits into the memory of this machine: asked before it begins."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from hedon import _engine
+from hedon.config.arena import walls
+from hedon.config.config import Config
+from hedon.config.native import engine_config
+from hedon.error import HedonError
+from hedon.record.schema import run_tables
+from hedon.record.writer import PART_ROWS
+
+CONTROL_GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+"""Where a container says how much memory it gives, in version 2 and 1 of control groups."""
+LARGEST_VALUE = 8
+"""Bytes of the largest value of a column."""
+
+
+class MemoryNeedError(HedonError):
+    """A run that needs more memory than there is."""
+
+
+def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, int]:
+    """Bytes that a run needs at most, by what they are for.
+
+    Args:
+        config: What the worlds are.
+        worlds: How many of them.
+        threads: Threads to use; 0 for all processors.
+    """
+    need = _engine.memory_needed(engine_config(config), len(walls(config.arena)), worlds, threads)
+    tables = run_tables(tuple(config.food), config.genome.neutral_count).values()
+    # A checkpoint waits for the disk as a copy of all worlds, while one of them may be copied for its digest.
+    learned = need["networks"] + need["rollouts"]
+    return {
+        "networks and moments": need["networks"],
+        "rollouts": need["rollouts"],
+        "physics": need["physics"],
+        "rest of the worlds": need["rest"],
+        "a checkpoint": learned + learned // worlds,
+        # Rows wait for their part; it is put together, and then written, from copies.
+        "records": 3 * PART_ROWS * LARGEST_VALUE * sum(len(table.columns) for table in tables),
+    }
+
+
+def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
+    """Bytes of memory that this process may come to use: of the machine, or of its container."""
+    present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    for path in limits:
+        try:
+            present = min(present, int(Path(path).read_text()))
+        except (OSError, ValueError):  # not this version, or "max"
+            continue
+    return present
+
+
+def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
+    """Refuses a run that does not fit.
+
+    Raises:
+        MemoryNeedError: It needs more than there is; the message says for what.
+    """
+    need, present = memory_needed(config, worlds, threads), memory_present()
+    total = sum(need.values())
+    if total > present:
+        parts = ", ".join(f"{name} {size / 1e9:.1f}" for name, size in need.items())
+        raise MemoryNeedError(
+            f"the run may need {total / 1e9:.1f} GB of memory, and there are {present / 1e9:.1f} GB ({parts}): lower "
+            f"population.capacity ({config.population.capacity:,}), learning.rollout_steps "
+            f"({config.learning.rollout_steps:,}) or the number of seeds ({worlds:,})"
+        )

@@ -1,0 +1,76 @@
+"""A run that does not fit into memory is refused before it begins."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+from worlds import make_simulation
+
+from hedon.cli.main import app
+from hedon.config.load import load_config
+from hedon.error import HedonError
+from hedon.experiment import memory
+from hedon.experiment.memory import memory_needed, memory_present, require_memory
+
+WORLD = ("networks and moments", "rollouts", "physics", "rest of the worlds")
+
+
+def test_the_estimate_is_what_is_reserved():
+    config, simulation = load_config("poison"), make_simulation(preset="poison", threads=2)
+    need = memory_needed(config, 1, 2)
+    assert sum(need[name] for name in WORLD) >= simulation.engine.bytes_per_world
+    alone, five = (sum(memory_needed(config, worlds, 2)[name] for name in WORLD) for worlds in (1, 5))
+    assert five - alone == pytest.approx(4 * simulation.engine.bytes_per_world)
+
+
+def test_each_part_is_of_the_size_that_its_arrays_have():
+    simulation, need = make_simulation(), memory_needed(load_config("baseline"), 1, 1)
+    view = simulation.worlds[0].view
+    networks = sum(view(name).nbytes for name in ("params", "first_moment", "second_moment", "folded_bias"))
+    rollouts = sum(view(name).nbytes for name in ("observation", "action", "log_prob", "value", "reward"))
+    assert need["networks and moments"] == pytest.approx(networks, rel=1e-3)
+    assert need["rollouts"] == pytest.approx(rollouts, rel=1e-3)
+
+
+def test_a_run_that_does_not_fit_is_refused_by_its_parts(tmp_path, monkeypatch):
+    monkeypatch.setattr(memory, "memory_present", lambda: 10**8)
+    with pytest.raises(HedonError, match=r"\d GB.*networks and moments \d.*rollouts .*physics .*checkpoint .*records"):
+        require_memory(load_config("baseline"), 3)
+    folder = tmp_path / "run"
+    answer = CliRunner().invoke(app, ["run", "baseline", "--seeds", "1-3", "--out", str(folder)])
+    assert isinstance(answer.exception, HedonError)
+    assert not folder.exists()
+
+
+def test_the_command_ends_with_code_2(tmp_path):
+    huge = ("--seeds", "1-10000", "--set", "population.capacity=10000", "--out", tmp_path / "run")
+    answer = subprocess.run(["hedon", "run", "baseline", *map(str, huge)], capture_output=True, text=True, check=False)
+    assert answer.returncode == 2
+    assert "population.capacity (10,000)" in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_container_says_how_much_there_is(tmp_path: Path):
+    for name, text in (("two", "123456\n"), ("none", "max\n"), ("other", "")):
+        (tmp_path / name).write_text(text)
+    files = [str(tmp_path / name) for name in ("none", "other", "missing", "two")]
+    assert memory_present(files) == 123456
+    assert memory_present(files[:3]) > 123456
+
+
+def test_memory_that_the_system_refuses_is_an_error_not_a_crash():
+    code = """
+import resource
+from hedon.config.load import load_config
+from hedon.experiment.simulation import EngineError, Simulation
+resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
+try:
+    Simulation(load_config("baseline"), range(100), 1)
+except EngineError as error:
+    print(error)
+"""
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "gives the worlds no memory" in answer.stdout, answer.stderr
