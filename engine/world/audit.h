@@ -6,6 +6,7 @@
 
 #include "base/device.h"
 #include "base/vec2.h"
+#include "physics/grid.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -101,27 +102,35 @@ HEDON_FN void audit_ledger(const World& world) {
   if (!(gap <= ROUNDING * steps * moved)) world.fail(Status::ledger_open, -1, held - due);
 }
 
+/// Id of the agent whose circle stands at an index of the scene; -1 for a food.
+HEDON_FN int32_t agent_at(const World& world, int32_t index) {
+  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+    if (world.scene.own[i] == index) return world.state.life[world.state.living[i]].agent_id;
+  }
+  return -1;
+}
+
 /// How deep two discs may overlap: by the radius of a body. What contacts leave is far less: motors close a gap by some
 /// 0.3 u per substep at most, of which the corrections of the next take a third. Beyond it a contact is ill-defined,
 /// since a body's center lies in what it touches, and the two may pass through each other: a pair was missed.
 HEDON_FN Finding audit_overlap(const World& world, int32_t i) {
-  const PhysicsState& physics = world.state.physics;
-  const BodyState& body = physics.bodies;
-  const int32_t slot = world.state.living[i];
-  const float x = body.x[slot], y = body.y[slot], radius = world.config->body.radius;
-  // All pairs are looked at, not the listed ones alone: the neighbor list is among what is judged.
-  for (int32_t j = 0; j < i; ++j) {
-    const int32_t other = world.state.living[j];
-    const Vec2 apart{body.x[other] - x, body.y[other] - y};
-    if (squared_length(apart) < radius * radius) {
-      return {Status::overlap_too_deep, world.state.life[other].agent_id, 2.0f * radius - length(apart)};
-    }
-  }
-  const float food_radius = world.config->body.food_radius;
-  for (int32_t f = 0; f < world.shape->foods; ++f) {
-    const Vec2 apart{physics.circles.x[f] - x, physics.circles.y[f] - y};
-    if (physics.circles.present[f] != 0 && squared_length(apart) < food_radius * food_radius) {
-      return {Status::overlap_too_deep, -1, radius + food_radius - length(apart)};
+  const Scene& scene = world.scene;
+  const SceneGrid& grid = world.shape->scene;
+  const BodyConfig& config = world.config->body;
+  const int32_t own = scene.own[i];
+  const float x = scene.x[own], y = scene.y[own];
+  const float reach = config.radius > config.food_radius ? config.radius : config.food_radius;
+  const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
+  const int32_t last_column = cell_along(x + reach, grid.inverse_cell, grid.columns);
+  const int32_t last_row = cell_along(y + reach, grid.inverse_cell, grid.rows);
+  // All that is near is looked at, not the listed pairs alone: the neighbor list is among what is judged.
+  for (int32_t row = cell_along(y - reach, grid.inverse_cell, grid.rows); row <= last_row; ++row) {
+    const int32_t* start = scene.start.data + int64_t{row} * grid.columns;
+    for (int32_t at = start[first_column]; at < start[last_column + 1]; ++at) {
+      const Vec2 apart{scene.x[at] - x, scene.y[at] - y};
+      const float limit = scene.radius[at];
+      if (at == own || !(squared_length(apart) < limit * limit)) continue;
+      return {Status::overlap_too_deep, agent_at(world, at), config.radius + limit - length(apart)};
     }
   }
   return {Status::ok, -1, 0.0};

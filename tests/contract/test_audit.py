@@ -35,7 +35,7 @@ def test_a_sound_world_passes(world):
 def test_a_body_in_another_is_named(world):
     for axis, value in (("x", 200.0), ("y", 106.0)):
         poke(world, f"physics.bodies.{axis}", slot_of(world, 4), value)
-    with pytest.raises(EngineError, match=r"overlap_too_deep.*World 0, step 64, value 1\d\.\d+, agent 4, with agent 1"):
+    with pytest.raises(EngineError, match=r"overlap_too_deep.*World 0, step 64, value 1\d\.\d+, agent 1, with agent 4"):
         world.run(1)
 
 
