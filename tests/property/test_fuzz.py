@@ -89,7 +89,7 @@ override = st.one_of(st.builds("{}={}".format, st.one_of(st.sampled_from(PATHS),
 @given(content=document, overrides=st.lists(override, max_size=2), fidelity=st.sampled_from([None, "text", "x"]))
 def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path_factory, content, overrides, fidelity):
     path = tmp_path_factory.getbasetemp() / "fuzz.toml"
-    path.write_text(content, encoding="utf-8", errors="surrogateescape")
+    path.write_text(content, encoding="utf-8", errors="surrogatepass")
     said, config = outcome(lambda: load_config(path, fidelity, overrides), ConfigError)
     if config is None:
         assert "fuzz.toml" in said or "--set" in said

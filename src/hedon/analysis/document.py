@@ -25,6 +25,7 @@ RUN/
   population/part-….parquet      one row per world and interval
   frames/part-….parquet          positions, only where frames were asked for
   checkpoints/step-….npz         the newest two, for `hedon resume` and `hedon branch`
+  fault/step-….npz               where a run stopped at a fault: the worlds as they were found
   final.npz                      last state of one world, for a picture
   summary.json, figures/*.png    made at the end of the run, and again by `hedon report RUN`
   report.html, report.md         likewise: everything on one page
