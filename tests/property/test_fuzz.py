@@ -139,7 +139,9 @@ OPTIONS = {
     "branch": ["--out", "--at", "--steps", "--set", "--threads", "--frames", "--checkpoint"],
     "check": ["--replay"],
     "replay-fault": ["--threads"],
-    "report": [],
+    "report": ["--out"],
+    "analyze": ["--only", "--out"],
+    "demography": ["--fidelity", "--set"],
     "presets": [],
     "config show": ["--fidelity", "--set", "--path"],
     "config check": ["--fidelity", "--set"],
@@ -170,7 +172,7 @@ def command_lines(draw: st.DrawFn) -> list[str]:
 def test_any_command_line_does_what_it_says_or_ends_with_a_message(place, monkeypatch, words):
     monkeypatch.chdir(place)
     monkeypatch.setattr("hedon.cli.run.show_report", lambda run, console: None)
-    monkeypatch.setattr("hedon.cli.report.show_report", lambda run, console: None)
+    monkeypatch.setattr("hedon.cli.report.show_report", lambda *runs, **options: None)
     if words[:1] == ["run"]:  # short and small, whatever else is asked for
         small = [word for setting in SMALL for word in ("--set", setting)]
         words = [*words, "--steps", "3", *small]
