@@ -113,9 +113,9 @@ HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scr
 
 /// Tries all substeps of one batch in the scratch memory. Stops early where a body outran the skin.
 template <class Visitor>
-HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
-                        const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
-                        float squared_limit, int32_t batch, Visitor& visitor) {
+HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
+                                     const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
+                                     float squared_limit, int32_t batch, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
   const BatchRange range = batch_range(list, batch);
   BatchReport report{};

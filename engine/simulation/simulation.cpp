@@ -7,14 +7,6 @@
 
 #include "world/population.h"
 
-// What a step does outside of the kernels, physics above all, is compiled twice, with all that it calls: once for any
-// processor and once for AVX2, where physics takes a fifth less time with the same bits.
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HEDON_CLONED __attribute__((flatten, target_clones("avx2", "default")))
-#else
-#define HEDON_CLONED
-#endif
-
 namespace hedon {
 namespace {
 
@@ -150,7 +142,7 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
   return true;
 }
 
-HEDON_CLONED void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
+void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
   // A team's members use scratch next to one another, from its first member's place on.
   float* scratch = reinterpret_cast<float*>(learn_scratch_.data()) + (thread - team.rank()) * learn_stride_;
   Stopwatch lap(team.rank() == 0 ? &seconds_[static_cast<size_t>(world)] : nullptr);
