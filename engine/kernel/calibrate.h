@@ -27,7 +27,7 @@ HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
 }
 
 /// See `Kernel::sum_floats`. Four sums, so that additions do not wait for one another.
-float sum_floats(const float* values, int64_t count) {
+HEDON_FN float sum_floats(const float* values, int64_t count) {
   constexpr int sums = 4, stride = sums * 16;
   Lanes total[sums];
   unroll<sums>([&](auto i) HEDON_INLINED { total[i] = broadcast(0.0f); });
