@@ -32,6 +32,10 @@ WIDELY = 1.0
 Measure = Callable[[WorldRecord], float | None]
 
 
+OverWorlds = Literal["mean", "ratio", "spread", "share", "modes"]
+"""How the figures of several worlds are summed up."""
+
+
 @dataclass(frozen=True)
 class Claim:
     """One claim about one setting.
@@ -55,7 +59,7 @@ class Claim:
     preset: str
     text: str
     measure: Measure
-    over_worlds: Literal["mean", "ratio", "spread", "share", "modes"]
+    over_worlds: OverWorlds
     paper: str
     low: float = -math.inf
     high: float = math.inf

@@ -38,10 +38,10 @@ class Moment:
     """Where a run is: what a progress display shows.
 
     Attributes:
-        first: Step at which this session began.
+        first: Step at which the run began, or was last gone on with.
         step: Steps completed.
         steps: Steps asked for.
-        seconds: Time since the first step of this session [s].
+        seconds: Time since the first step after `first` [s].
         rows: The last row of the table `population` of each world.
         extinct: The step at which each world died out, or None.
     """

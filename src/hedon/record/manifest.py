@@ -20,7 +20,7 @@ class Session:
     Attributes:
         started, ended: ISO 8601, UTC; `ended` is None where the session goes on, or was killed.
         from_step: step that it began at [step].
-        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, of this session.
+        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, while it lasted.
     """
 
     started: str | None

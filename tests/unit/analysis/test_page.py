@@ -152,5 +152,5 @@ def test_regimes_are_drawn_where_they_were() -> None:
     bars = draw_regimes(rows).axes[0].collections[0]
     spans = [(path.get_extents().x0, path.get_extents().x1) for path in bars.get_paths()]
     assert spans == [(0, 10), (10, 30), (30, 40)]
-    shown = [mpl_colors.to_hex(color) for color in bars.get_facecolors()]  # type: ignore[attr-defined]
+    shown = [mpl_colors.to_hex(color) for color in np.asarray(bars.get_facecolor())]
     assert shown == [REGIME_COLORS[name].lower() for name in (names[0], names[1], names[3])]

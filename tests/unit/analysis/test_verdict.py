@@ -1,12 +1,13 @@
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.claim import CLAIMS, Claim
+from hedon.analysis.claim import CLAIMS, Claim, OverWorlds
 from hedon.analysis.verdict import judge, place, share_interval, spread_interval, verdicts
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.record.reader import open_run
@@ -18,10 +19,10 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
     return read_worlds([open_run(write_run(folder, worlds=12, intervals=5, snapshot=False))])
 
 
-def claim(figures: list[float], over_worlds: str, **region: float) -> Claim:
+def claim(figures: list[float], over_worlds: OverWorlds, **region: float) -> Claim:
     """A claim whose figure of the world with seed i + 1 is figures[i]."""
-    options = {"steps": 0} | region
-    return Claim("a", "baseline", "text", lambda w: figures[w.seed - 1], over_worlds, "0", **options)  # type: ignore[arg-type]
+    options: dict[str, Any] = {"steps": 0} | region
+    return Claim("a", "baseline", "text", lambda w: figures[w.seed - 1], over_worlds, "0", **options)
 
 
 def test_where_an_interval_lies() -> None:
