@@ -1,7 +1,7 @@
 """The worlds of some runs, one by one, with the condition that each of them repeats."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import polars as pl
 
@@ -43,6 +43,29 @@ class WorldRecord:
     def weight_names(self) -> tuple[str, ...]:
         """All genome columns, in order: those that enter the reward, then the neutral markers."""
         return (*self.reward_names, *self.neutral_names)
+
+    def until(self, step: int) -> "WorldRecord":
+        """The world as its records would be if it had ended earlier, but for what the living had done by then.
+
+        Who dies later lives on, with `death_step` missing. What such agents had eaten, spent, borne and so on by that
+        step was not recorded, so it is missing too.
+
+        Args:
+            step: the end [step]; at the end of an interval, or the last one is lost.
+        """
+        if step >= self.last_step:
+            return self
+        died_later = pl.col("death_step").is_null() | (pl.col("death_step") > step)
+        known = {"world", "seed", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
+        later = [name for name in self.agents.columns if name not in known | set(self.weight_names)]
+        born = self.agents.filter(pl.col("birth_step") <= step)
+        return replace(
+            self,
+            agents=born.with_columns(pl.when(~died_later).then(pl.col(later))),
+            population=self.population.filter(pl.col("step") <= step),
+            last_step=step,
+            extinct_step=None if self.extinct_step is None or self.extinct_step > step else self.extinct_step,
+        )
 
 
 def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
