@@ -18,6 +18,7 @@ from hedon.config import dump_toml, load_config
 from hedon.config.dump import diff
 from hedon.config.load import PRESETS
 from hedon.config.problem import format_value
+from hedon.record.reader import Run
 
 
 @dataclass(frozen=True)
@@ -44,15 +45,16 @@ class FigureFile:
 
 def html_page(analysis: Analysis, figures: Sequence[FigureFile]) -> str:
     """The report as HTML that needs no other file."""
-    return _render("report.html.j2", analysis, figures)
+    return render("report.html.j2", _context(analysis, figures))
 
 
 def markdown_page(analysis: Analysis, figures: Sequence[FigureFile]) -> str:
     """The report as Markdown, with the figures as files beside it."""
-    return _render("report.md.j2", analysis, figures)
+    return render("report.md.j2", _context(analysis, figures))
 
 
-def _render(template: str, analysis: Analysis, figures: Sequence[FigureFile]) -> str:
+def render(template: str, context: Mapping[str, Any]) -> str:
+    """A page from one of the templates."""
     environment = Environment(
         loader=PackageLoader("hedon.analysis", "template"),
         autoescape=template.endswith(".html.j2"),
@@ -61,17 +63,31 @@ def _render(template: str, analysis: Analysis, figures: Sequence[FigureFile]) ->
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    return environment.get_template(template).render(_context(analysis, figures))
+    return environment.get_template(template).render(context)
 
 
 def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any]:
-    shown = {name: _table(table) for name, table in analysis.tables.items() if table.shown}
-    conditions = [_condition(name, worlds, figures) for name, worlds in analysis.conditions.items()]
+    shown = {name: table_context(table) for name, table in analysis.tables.items() if table.shown}
+    conditions = [
+        condition_context(name, worlds)
+        | {
+            "warnings": forecast(worlds[0].config).warnings,
+            "figures": [figure for figure in figures if figure.condition == name],
+        }
+        for name, worlds in analysis.conditions.items()
+    ]
     return {
         "title": " · ".join(condition["name"] for condition in conditions),
         "verdict": shown.pop("verdict", None),
         "conditions": conditions,
         "tables": list(shown.values()),
+        **runs_context(analysis.runs),
+    }
+
+
+def runs_context(runs: Sequence[Run]) -> dict[str, Any]:
+    """What a page says of the runs behind it: their manifests, and the versions that made them."""
+    return {
         "runs": [
             {
                 "path": run.path.name,
@@ -79,13 +95,14 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
                 "damaged": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
                 "manifest": json.dumps(plain(asdict(run.manifest)), indent=2, ensure_ascii=False),
             }
-            for run in analysis.runs
+            for run in runs
         ],
-        "versions": sorted({run.manifest.hedon_version or "unknown" for run in analysis.runs}),
+        "versions": sorted({run.manifest.hedon_version or "unknown" for run in runs}),
     }
 
 
-def _condition(name: str, worlds: Sequence[WorldRecord], figures: Sequence[FigureFile]) -> dict[str, Any]:
+def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any]:
+    """What a page says of some worlds of one setting, and of the setting."""
     config = worlds[0].config
     changes: list[tuple[str, Any, Any]] = []
     if config.preset in PRESETS:
@@ -97,15 +114,14 @@ def _condition(name: str, worlds: Sequence[WorldRecord], figures: Sequence[Figur
         "steps": f"{max(world.last_step for world in worlds):,}",
         "agents": f"{sum(world.agents.height for world in worlds):,}",
         "extinct": [(world.seed, f"{world.extinct_step:,}") for world in worlds if world.extinct_step is not None],
-        "warnings": forecast(config).warnings,
         "preset": f"{config.preset} ({config.fidelity})",
         "changes": [(path, _text(old), _text(new)) for path, old, new in changes],
         "toml": dump_toml(config),
-        "figures": [figure for figure in figures if figure.condition == name],
     }
 
 
-def _table(table: ResultTable) -> Mapping[str, Any]:
+def table_context(table: ResultTable) -> Mapping[str, Any]:
+    """What a page needs of a table."""
     headers, rows = cells(table)
     return {
         "name": table.name,

@@ -13,6 +13,7 @@ from hedon.cli.check import check
 from hedon.cli.demography import demography
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
+from hedon.cli.reproduce import reproduce
 from hedon.cli.resume import resume
 from hedon.cli.run import run
 from hedon.error import HedonError
@@ -30,6 +31,7 @@ app.command()(run)
 app.command()(resume)
 app.command()(branch)
 app.command()(report)
+app.command()(reproduce)
 app.command()(analyze)
 app.command()(demography)
 app.command()(check)

@@ -1,6 +1,6 @@
 """What a run is asked to do, where its records go, and what it tells while it goes on."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -64,19 +64,21 @@ class Display(Protocol):
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:
     """A folder of its own for a run that names none: runs/NAME-FIDELITY-sSEEDS, with a number where it is taken."""
+    return free_folder(Path("runs") / "-".join((config.name, config.fidelity, seed_span(seeds))))
+
+
+def seed_span(seeds: Sequence[int]) -> str:
+    """Some seeds in a folder's name: "s3", "s1-5", or their number where they do not follow each other."""
     if len(seeds) == 1:
-        span = f"s{seeds[0]}"
-    elif tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
-        span = f"s{seeds[0]}-{seeds[-1]}"
-    else:
-        span = f"{len(seeds)}seeds"
-    stem = "-".join((config.name, config.fidelity, span))
-    return free_folder(Path("runs") / stem)
+        return f"s{seeds[0]}"
+    if tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
+        return f"s{seeds[0]}-{seeds[-1]}"
+    return f"{len(seeds)}seeds"
 
 
-def free_folder(path: Path) -> Path:
-    """A path that is not taken: this one, or with a number after it."""
+def free_folder(path: Path, taken: Collection[Path] = ()) -> Path:
+    """A path that is not there, nor taken otherwise: this one, or with a number after it."""
     folder, number = path, 2
-    while folder.exists():
+    while folder.exists() or folder in taken:
         folder, number = path.with_name(f"{path.name}-run{number}"), number + 1
     return folder

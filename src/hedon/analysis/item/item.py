@@ -78,6 +78,7 @@ class Item:
         make: makes its figures and tables, in the order in which they are shown.
         arms: the settings that it needs worlds of; none where settings alone are enough.
         scale: how much is run of each arm unless asked otherwise; for an item of the paper, the paper's.
+        pictures: whether it only shows the last state of a world of each arm, for which any run is long enough.
     """
 
     name: str
@@ -87,3 +88,4 @@ class Item:
     make: Callable[[Material], Iterable[NamedFigure | ResultTable]]
     arms: tuple[Arm, ...] = ()
     scale: Scale = Scale((), 0)
+    pictures: bool = False

@@ -1,0 +1,65 @@
+"""What is asked of a reproduction: which items, at which scale, and hence which worlds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from hedon.analysis.item.item import Arm, Item, Scale
+from hedon.config import Config, digest
+
+
+@dataclass(frozen=True)
+class Request:
+    """The items that are wanted, and how much is to be run for them.
+
+    Attributes:
+        items: in the order in which they are shown.
+        fidelity: of the arms that have none of their own.
+        seeds: one world each, in the place of the items' own; None for those.
+        steps: of each world, in the place of the items' own [step]; None for those.
+    """
+
+    items: tuple[Item, ...]
+    fidelity: str
+    seeds: tuple[int, ...] | None = None
+    steps: int | None = None
+
+    def scale(self, item: Item) -> Scale:
+        """How much is run of each arm of an item. A picture needs no more than it says itself."""
+        if item.pictures:
+            return item.scale
+        return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
+
+
+@dataclass(frozen=True)
+class Need:
+    """A setting that worlds are needed of, by one item or several.
+
+    Attributes:
+        arm: the first that asks for it.
+        config: the setting.
+        digest: of the config: settings of equal digest share their worlds.
+        steps: of each seed [step].
+    """
+
+    arm: Arm
+    config: Config
+    digest: str
+    steps: dict[int, int] = field(default_factory=dict)
+
+
+def needs(request: Request) -> list[Need]:
+    """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
+    found: dict[str, Need] = {}
+    for item, arm, config in _arms(request):
+        key = digest(config)
+        need = found.setdefault(key, Need(arm, config, key))
+        scale = request.scale(item)
+        for seed in scale.seeds:
+            need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
+    return list(found.values())
+
+
+def _arms(request: Request) -> Iterator[tuple[Item, Arm, Config]]:
+    for item in request.items:
+        for arm in item.arms:
+            yield item, arm, arm.config(request.fidelity)

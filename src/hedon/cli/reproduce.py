@@ -1,0 +1,130 @@
+"""`hedon reproduce`: the paper's figures and tables, each from one command."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hedon.cli.console import make_console
+from hedon.cli.run import MAX_STEPS, Threads, parse_seeds
+from hedon.error import HedonError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hedon.analysis.item.request import Request
+    from hedon.reproduce.plan import Job
+
+LIST = "list"
+
+
+class ReproduceError(HedonError):
+    """Runs that could not be made; what could be made from the others is there."""
+
+
+def reproduce(
+    items: Annotated[
+        list[str] | None, typer.Argument(metavar="[ITEM]...", help="Items or groups; list ITEM... tells of them only.")
+    ] = None,
+    seeds: Annotated[
+        str | None, typer.Option(help="One world per seed and setting, as in 1-5; by default the item's own.")
+    ] = None,
+    steps: Annotated[
+        int | None, typer.Option(help="Steps of each world; by default the item's own.", min=1, max=MAX_STEPS)
+    ] = None,
+    fidelity: Annotated[str, typer.Option(help="corrected, released or text.")] = "corrected",
+    threads: Threads = 0,
+    runs: Annotated[Path, typer.Option(help="Folder of the runs: what is there is used, the rest is added.")] = Path(
+        "runs"
+    ),
+    out: Annotated[Path, typer.Option(help="Folder of the page, the figures and the tables.")] = Path("reproduction"),
+) -> None:
+    """Make the paper's figures and tables, and the studies of what it leaves open.
+
+    `hedon reproduce list` names the items, with what each needs and how long it takes on this machine. Runs that are
+    there already are used, also longer ones and those of `hedon run`; those too short are gone on with. Worlds that die
+    out count and are never replaced. Ctrl-C ends all runs after their windows, a second one at once; the same command
+    goes on. Without an ITEM it makes all of the paper, at its own scale: see first how long that takes.
+
+    Groups: paper (all figures and tables of the paper), studies, all.
+
+    \b
+    Examples:
+      hedon reproduce list
+      hedon reproduce hazard birth walk body parameters
+      hedon reproduce weights-baseline --seeds 1-2 --steps 1024000
+      hedon reproduce list paper --seeds 1-2 --steps 1024000
+      hedon reproduce faults
+    """
+    # Imported here: it takes seconds, for which no other command should wait.
+    from hedon.analysis.item.request import Request
+    from hedon.config import FIDELITIES
+    from hedon.config.problem import nearest
+    from hedon.reproduce.choice import choose_items
+
+    names = items or []
+    if fidelity not in FIDELITIES:
+        near = nearest(fidelity, FIDELITIES)
+        hint = f"; did you mean {near}?" if near else ""
+        raise ReproduceError(f"--fidelity: {fidelity!r} is not one of {', '.join(FIDELITIES)}{hint}")
+    listed = names[:1] == [LIST]
+    chosen = choose_items(names[1:] or ["all"] if listed else names)
+    request = Request(chosen, fidelity, parse_seeds(seeds) if seeds is not None else None, steps)
+    console = make_console()
+    if listed:
+        _list(request, runs, threads, console)
+    else:
+        _make(request, runs, out, threads, console)
+
+
+def _list(request: "Request", runs: Path, threads: int, console: "Console") -> None:
+    from hedon.reproduce.listing import listing
+
+    console.print(listing(request, runs, threads))
+
+
+def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
+    from hedon.analysis.item.gather import find_runs, gather
+    from hedon.analysis.item.request import needs
+    from hedon.analysis.item.result import write_items
+    from hedon.record.provenance import usable_cpus
+    from hedon.reproduce.conduct import conduct
+    from hedon.reproduce.plan import plan_jobs
+    from hedon.reproduce.progress import PlanDisplay
+
+    wanted = needs(request)
+    found, faults = find_runs(runs, wanted)
+    for fault in faults:
+        typer.echo(f"hedon: note: left out: {fault}", err=True)
+    jobs = plan_jobs(wanted, found, runs)
+    worlds = sum(len(need.steps) for need in wanted)
+    console.print(
+        f"hedon: {len(request.items)} items ({request.fidelity}) from {worlds} worlds: {len(jobs)} runs to make"
+        f" in {runs}, {sum(job.world_steps for job in jobs):,} world-steps",
+        soft_wrap=True,
+    )
+    with PlanDisplay(console, jobs) as display:
+        outcomes = conduct(jobs, threads or usable_cpus(), display)
+    page, made = write_items(gather(request, runs), out)
+    for one in made:
+        console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
+    console.print(f"wrote {page}, with all figures and tables beside it", soft_wrap=True)
+    _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
+
+
+def _say_what_is_missing(jobs: "list[Job]", ends: dict[Path, str], console: "Console") -> None:
+    """Says what was not run to its end.
+
+    Raises:
+        ReproduceError: a run failed.
+    """
+    failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
+    open_jobs = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
+    if open_jobs:
+        console.print(
+            f"Interrupted: {len(open_jobs)} of {len(jobs)} runs are not at their end. The same command goes on."
+        )
+    if failed:
+        raise ReproduceError(
+            f"{len(failed)} of {len(jobs)} runs failed (their reasons stand above): {', '.join(failed)}"
+        )

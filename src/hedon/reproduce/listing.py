@@ -1,0 +1,78 @@
+"""What each item needs, what of it is there, and how long the rest takes on this machine."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from hedon.analysis.item.gather import find_runs
+from hedon.analysis.item.request import Request, needs
+from hedon.experiment.progress import duration
+from hedon.record.provenance import usable_cpus
+from hedon.reproduce.estimate import Speed, measure_speed
+from hedon.reproduce.plan import Job, plan_jobs
+
+
+def listing(request: Request, folder: Path, threads: int) -> Group:
+    """The items of a request as a table; measures how fast this machine is, which takes seconds.
+
+    Args:
+        request: the items, with the scale that is asked for.
+        folder: of the runs.
+        threads: to be used; 0 for all processors.
+    """
+    threads = threads or usable_cpus()
+    speeds: dict[int, Speed] = {}
+
+    def seconds(jobs: list[Job]) -> float:
+        total = 0.0
+        for job in jobs:
+            kinds = len(job.config.food)  # networks grow with the kinds of food
+            if kinds not in speeds:
+                speeds[kinds] = measure_speed(job.config, threads)
+            total += job.world_steps / speeds[kinds].rate
+        return total
+
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
+    for name in ("item", "kind", "what it is", "needs"):
+        table.add_column(name)
+    for name in ("in all", "still to run"):
+        table.add_column(name, justify="right")
+    for item in request.items:
+        one = replace(request, items=(item,))
+        whole, left = map(seconds, _jobs(one, folder))
+        table.add_row(item.name, item.kind, item.title, _needs(one), _time(whole), _time(left))
+    table.add_section()
+    whole, left = map(seconds, _jobs(request, folder))
+    table.add_row("together", "", "worlds that items share counted once", "", _time(whole), _time(left))
+    notes = [
+        f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
+        f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"
+        " fuller worlds take longer, thinner ones less."
+        for kinds, speed in speeds.items()
+    ]
+    return Group(table, *(Text(note, style="dim") for note in notes))
+
+
+def _jobs(request: Request, folder: Path) -> tuple[list[Job], list[Job]]:
+    """All runs that a request takes, and those that are not there yet."""
+    wanted = needs(request)
+    found, _ = find_runs(folder, wanted)
+    return plan_jobs(wanted, [], folder), plan_jobs(wanted, found, folder)
+
+
+def _needs(request: Request) -> str:
+    (item,) = request.items
+    if not item.arms:
+        return "settings alone"
+    scale = request.scale(item)
+    settings, worlds = len(item.arms), len(scale.seeds)
+    parts = [f"{settings} setting{'s' if settings > 1 else ''}", f"{worlds} world{'s' if worlds > 1 else ''}"]
+    return ", ".join([*parts, f"{scale.steps:,} steps"])
+
+
+def _time(seconds: float) -> str:
+    return duration(seconds) if seconds >= 1 else "-"

@@ -1,0 +1,91 @@
+"""What is left to run for some items: runs that are there are used, those too short are gone on with, others begun."""
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import polars as pl
+
+from hedon.analysis.item.item import Arm
+from hedon.analysis.item.request import Need
+from hedon.config import Config
+from hedon.experiment.plan import free_folder, seed_span
+from hedon.record.reader import Run
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run to begin or to go on with.
+
+    Attributes:
+        folder: of the run.
+        config: of its worlds.
+        seeds: of all its worlds.
+        steps: that each world is to have in all [step].
+        world_steps: left to do, summed over its worlds [step].
+        begun: whether the folder holds the run's beginning.
+    """
+
+    folder: Path
+    config: Config
+    seeds: tuple[int, ...]
+    steps: int
+    world_steps: int
+    begun: bool
+
+
+def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list[Job]:
+    """The runs that are missing, the longest first.
+
+    A world that died out has all the steps that it can have, and counts: nothing replaces it.
+
+    Args:
+        wanted: the worlds that are needed.
+        runs: those that are there.
+        folder: where new runs begin.
+    """
+    jobs: list[Job] = []
+    for need in wanted:
+        mine = [run for run in runs if run.manifest.config_digest == need.digest]
+        reach = {run.path: _reach(run) for run in mine}
+        too_short: dict[Path, int] = {}
+        missing: dict[int, list[int]] = {}
+        for seed, steps in need.steps.items():
+            holders = [run for run in mine if seed in run.manifest.seeds]
+            longest = max(holders, key=lambda run: reach[run.path][seed], default=None)
+            if longest is None:
+                missing.setdefault(steps, []).append(seed)
+            elif reach[longest.path][seed] < steps:
+                too_short[longest.path] = max(too_short.get(longest.path, 0), steps)
+        for run in mine:
+            if (steps := too_short.get(run.path)) is not None:
+                left = sum(max(0, steps - int(min(done, steps))) for done in reach[run.path].values())
+                jobs.append(Job(run.path, need.config, run.manifest.seeds, steps, left, True))
+        for steps, seeds in missing.items():
+            name = f"{arm_name(need.arm, need.config.fidelity)}-{seed_span(seeds)}"
+            free = free_folder(folder / name, [job.folder for job in jobs])
+            jobs.append(Job(free, need.config, tuple(seeds), steps, steps * len(seeds), False))
+    return sorted(jobs, key=lambda job: -job.world_steps)
+
+
+def arm_name(arm: Arm, fidelity: str) -> str:
+    """A name for a setting that tells it from the others: "baseline-corrected-entropy_coef-0.0"."""
+    changes = [override.partition("=") for override in arm.overrides]
+    words = [f"{path.rpartition('.')[2]}-{value}" for path, _, value in changes]
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", "-".join([arm.preset, fidelity, *words]))
+
+
+def _reach(run: Run) -> dict[int, float]:
+    """Steps that a run has of each seed's world; infinite where the world died out."""
+    manifest = run.manifest
+    if manifest.status in ("finished", "interrupted"):
+        done = [
+            math.inf if extinct is not None else steps
+            for steps, extinct in zip(manifest.steps_done, manifest.extinct_steps, strict=True)
+        ]
+        return dict(zip(manifest.seeds, done, strict=True))
+    # The manifest of a run that goes on, or was killed, does not say how far it came; its records do.
+    rows = run.population(skip_damaged=True).group_by("seed").agg(pl.col("step").max())
+    return dict.fromkeys(manifest.seeds, 0.0) | {seed: float(step) for seed, step in rows.iter_rows()}

@@ -1,0 +1,103 @@
+"""Several runs at a time: they end as they would alone, whatever interrupts them, and one that fails harms no other."""
+
+import io
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from resumed_run import SMALL, assert_same_run, small_run
+from rich.console import Console
+
+from hedon.config import load_config
+from hedon.experiment.plan import Moment
+from hedon.record.lock import FolderLock
+from hedon.record.manifest import load_manifest
+from hedon.reproduce.conduct import conduct, parallel_runs
+from hedon.reproduce.plan import Job
+from hedon.reproduce.progress import PlanDisplay
+from hedon.reproduce.work import Outcome
+
+STEPS = 640
+
+
+class Interrupting(PlanDisplay):
+    """A display that presses Ctrl-C when a run has come so far."""
+
+    def __init__(self, jobs: list[Job], at_step: int) -> None:
+        super().__init__(Console(file=io.StringIO()), jobs)
+        self._at_step = at_step
+        self.pressed = False
+
+    def update(self, job: Job, moment: Moment) -> None:
+        super().update(job, moment)
+        if moment.step >= self._at_step and not self.pressed:
+            self.pressed = True
+            os.kill(os.getpid(), signal.SIGINT)
+
+
+def a_job(folder: Path, *, begun: bool = False, steps: int = STEPS, growth: float = 0.2) -> Job:
+    config = load_config("baseline", overrides=(*SMALL, f"food.normal.growth_rate={growth}"))
+    return Job(folder, config, (1, 2), steps, 2 * steps, begun)
+
+
+def printed_display(jobs: list[Job]) -> tuple[io.StringIO, PlanDisplay]:
+    stream = io.StringIO()
+    return stream, PlanDisplay(Console(file=stream, width=200), jobs)
+
+
+def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:
+    jobs = [a_job(tmp_path / "a"), a_job(tmp_path / "b", growth=1.0)]
+    stream, display = printed_display(jobs)
+    with display:
+        outcomes = conduct(jobs, 4, display)
+    assert outcomes == {job.folder: Outcome("finished") for job in jobs}
+    small_run(tmp_path / "alone-a", STEPS)
+    small_run(tmp_path / "alone-b", STEPS, overrides=("food.normal.growth_rate=1.0",))
+    for name in ("a", "b"):
+        assert_same_run(tmp_path / name, tmp_path / f"alone-{name}")
+        assert f"{tmp_path / name}: finished, step {STEPS}" in stream.getvalue()
+
+
+def test_an_interrupted_plan_goes_on_to_the_same_end(tmp_path: Path) -> None:
+    steps = 6400
+    jobs = [a_job(tmp_path / "a", steps=steps), a_job(tmp_path / "b", steps=steps)]
+    outcomes = conduct(jobs, 2, Interrupting(jobs, 1))
+    assert outcomes == {tmp_path / "a": Outcome("interrupted")}, "the second had not begun, and must not begin"
+    done = load_manifest(tmp_path / "a").steps_done[0]
+    assert 0 < done < steps
+    assert done % 64 == 0, "a single Ctrl-C ends a run at the end of a window"
+    assert not (tmp_path / "b").exists()
+    again = [a_job(tmp_path / "a", begun=True, steps=steps)]
+    assert conduct(again, 2, printed_display(again)[1]) == {tmp_path / "a": Outcome("finished")}
+    small_run(tmp_path / "alone", steps)
+    assert_same_run(tmp_path / "a", tmp_path / "alone")
+
+
+def test_a_run_that_fails_leaves_the_others_alone(tmp_path: Path) -> None:
+    jobs = [a_job(tmp_path / "held"), a_job(tmp_path / "free")]
+    stream, display = printed_display(jobs)
+    with FolderLock(tmp_path / "held"):
+        outcomes = conduct(jobs, 1, display)
+    assert outcomes[tmp_path / "held"].status == "failed"
+    assert "in use by another run" in outcomes[tmp_path / "held"].fault
+    assert outcomes[tmp_path / "free"] == Outcome("finished")
+    assert "held: failed" in stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("seeds", "runs", "threads", "together"), [(5, 7, 64, 7), (5, 7, 16, 3), (5, 7, 2, 1), (1, 1, 9, 1)]
+)
+def test_as_many_runs_at_a_time_as_leave_each_world_a_thread(
+    seeds: int, runs: int, threads: int, together: int
+) -> None:
+    config = load_config("baseline")
+    jobs = [Job(Path(str(i)), config, tuple(range(seeds)), 1, seeds, False) for i in range(runs)]
+    assert parallel_runs(jobs, threads) == together
+
+
+def test_no_job_is_no_work() -> None:
+    stream, display = printed_display([])
+    with display:
+        assert conduct([], 2, display) == {}
+    assert stream.getvalue() == ""
