@@ -1,16 +1,37 @@
 """How did the reward weights change over time, and how much of it is drift?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.population import history
-from hedon.analysis.style import ACTION_COLOR, NEUTRAL_COLOR, new_figure, say_empty, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line
+from hedon.analysis.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, styled
+from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
+_WIDEST = 10.0  # figure [inch]
+_POINTS = 200  # intervals of the time axis
+
+
+@dataclass(frozen=True)
+class HistoryRow:
+    """The worlds of one setting, drawn as a row of panels.
+
+    Attributes:
+        population: table `population`.
+        title: what the setting is called.
+        remark: what else must be known of it.
+        extinct: worlds that died out; where it is not known, those that end before others are taken for such.
+    """
+
+    population: pl.DataFrame
+    title: str = ""
+    remark: str = ""
+    extinct: Container[int] | None = None
 
 
 def draw_history(
@@ -21,32 +42,77 @@ def draw_history(
 ) -> Figure:
     """One panel per reward weight and one for the first neutral marker, all with the same axes.
 
-    Thin lines are means over the living of one world, thick lines are means over worlds with their 95 %
-    interval.
-
     Args:
         population: table `population`.
         food_kinds: names.
         neutral_names: genome columns; the first is drawn.
         colors: per food kind.
     """
+    return draw_histories([HistoryRow(population)], food_kinds, neutral_names, colors)
+
+
+def draw_histories(
+    settings: Sequence[HistoryRow],
+    food_kinds: Sequence[str],
+    neutral_names: Sequence[str],
+    colors: Mapping[str, str],
+) -> Figure:
+    """One row per setting, one column per reward weight and for the first neutral marker; the same axes throughout.
+
+    Thin lines are means over the living of one world, thick lines are means over worlds with their 95 %
+    interval. A cross ends the line of a world that died out.
+
+    Args:
+        settings: from top to bottom, at least one.
+        food_kinds: names, of all settings.
+        neutral_names: genome columns; the first is drawn.
+        colors: per food kind.
+    """
     shown = {f"w_{kind}": (f"weight of {kind} food", colors[kind]) for kind in food_kinds}
     shown["w_action"] = ("weight of action", ACTION_COLOR)
     shown |= dict.fromkeys(neutral_names[:1], ("neutral marker", NEUTRAL_COLOR))
-    rows = history(population, food_kinds, list(shown))
+    end = max(last_step(setting.population) for setting in settings)
     with styled():
-        figure = new_figure(2.7 * len(shown) + 0.5, 2.9)
-        panels = figure.subplots(1, len(shown), sharex=True, sharey=True, squeeze=False)[0]
-        for axes, (name, (title, color)) in zip(panels, shown.items(), strict=True):
-            draw_zero_line(axes)
-            draw_traces(axes, rows, f"{name}_mean", color)
-            axes.set_title(title, color=color)
-            draw_time_axis(axes, rows)
-        panels[0].set_ylabel("mean weight of the living")
-        values = rows.select(f"{name}_mean" for name in shown).to_numpy().astype(np.float64)
-        reach = np.nanmax(np.abs(values)) if np.isfinite(values).any() else 0.0
+        width = min(2.7 * len(shown) + 0.5, _WIDEST)
+        height = 2.3 * len(settings) + 0.3 if len(settings) > 1 else 2.9 + 0.3 * bool(settings[0].title)
+        figure = new_figure(width, height)
+        grid = figure.subplots(len(settings), len(shown), sharex=True, sharey=True, squeeze=False)
+        reach = 0.0
+        for setting, panels in zip(settings, grid, strict=True):
+            rows = history(setting.population, food_kinds, list(shown), _POINTS, end)
+            for axes, (name, (title, color)) in zip(panels, shown.items(), strict=True):
+                draw_zero_line(axes)
+                draw_traces(axes, rows, f"{name}_mean", color, extinct=setting.extinct, end=end)
+                if setting is settings[0]:
+                    axes.set_title(title, color=color)
+                if setting is settings[-1]:
+                    draw_time_axis(axes, rows, end)
+            _say_setting(panels[0], setting)
+            panels[0].set_ylabel("mean weight of the living" if len(settings) == 1 else "mean weight")
+            if rows.is_empty():
+                say_empty(panels[0], "nothing recorded yet")
+            values = rows.select(f"{name}_mean" for name in shown).to_numpy().astype(np.float64)
+            reach = max(reach, np.nanmax(np.abs(values)) if np.isfinite(values).any() else 0.0)
         if reach < _MIN_HALF_RANGE:
-            panels[0].set_ylim(-_MIN_HALF_RANGE, _MIN_HALF_RANGE)
-        if rows.is_empty():
-            say_empty(panels[0], "nothing recorded yet")
+            grid[0, 0].set_ylim(-_MIN_HALF_RANGE, _MIN_HALF_RANGE)
     return figure
+
+
+def _say_setting(axes: Axes, setting: HistoryRow) -> None:
+    """Writes what a row shows above it, higher than the title of a panel."""
+    if not setting.title:
+        return
+    lift = 24 if axes.get_title("left") else 6
+    at = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points", "va": "bottom"}
+    name = axes.annotate(setting.title, xytext=(0, lift), fontsize=10.0, fontweight="bold", **at)
+    remark = axes.annotate(
+        setting.remark,
+        xy=(1, 0),
+        xycoords=name,
+        xytext=(8, 0),
+        textcoords="offset points",
+        va="bottom",
+        color=MUTED,
+        fontsize=8.0,
+    )
+    remark.set_in_layout(False)  # it may be wider than the panel

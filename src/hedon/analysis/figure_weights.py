@@ -1,6 +1,7 @@
 """Which combinations of rewards evolved? Weights of the agents that were born last, as in the paper."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
@@ -15,6 +16,7 @@ from hedon.analysis.style import (
     MUTED,
     NEUTRAL_COLOR,
     PALE,
+    head,
     new_figure,
     say_empty,
     seed_color,
@@ -27,18 +29,43 @@ _MIN_HALF_RANGE = 1.0  # of the weight axes
 _SHARE_WITHIN = 0.98  # of the agents, in each weight; the few beyond would squeeze all others
 _MARGIN = 1.3
 _BINS = 60
+_SIDE = 0.225  # width of a distribution beyond the axes, in panels
+_WIDEST = 10.0  # figure [inch]
 _DENSITY_COLOR = "#6b7884"
 _LEGEND_SEEDS = 10  # more would hide the data
+
+
+@dataclass(frozen=True)
+class WeightGroup:
+    """The agents of one setting, drawn as a panel per food kind.
+
+    Attributes:
+        agents: those of the table `agents` that are shown; `world` tells colors.
+        food_kinds: names.
+        title: what the setting is called.
+        remark: what else must be known of it.
+    """
+
+    agents: pl.DataFrame
+    food_kinds: Sequence[str]
+    title: str = ""
+    remark: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """The genome columns along the x axes."""
+        return [f"w_{kind}" for kind in self.food_kinds]
+
+    @property
+    def weights(self) -> list[str]:
+        """The genome columns along any axis."""
+        return [*self.names, "w_action"]
 
 
 def draw_weights(
     agents: pl.DataFrame, food_kinds: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
 ) -> Figure:
-    """One panel per food kind: its weight against the weight of action, a point per agent.
-
-    Colors tell worlds apart, or the time of birth where there is one world. The curves beyond the axes are
-    the distributions over all agents, with that of the first neutral marker behind them in gray.
-    The axes reach as far as nearly all agents; crosses at their edge stand for those beyond.
+    """The weights of the agents of one setting that were born last.
 
     Args:
         agents: table `agents`.
@@ -46,41 +73,77 @@ def draw_weights(
         neutral_names: genome columns.
         count: agents per world.
     """
-    rows = last_agents(agents, count)
-    names = [f"w_{kind}" for kind in food_kinds]
-    reach = _reach(rows, [*names, "w_action"])
-    beyond = rows.filter(pl.any_horizontal(pl.col(*names, "w_action").abs() > reach)).height
-    neutral = rows[neutral_names[0]].to_numpy() if neutral_names else np.array([])
+    return draw_weight_groups([WeightGroup(last_agents(agents, count), food_kinds)], neutral_names)
+
+
+def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[str]) -> Figure:
+    """One panel per setting and food kind: its weight against the weight of action, a point per agent.
+
+    Colors tell worlds apart, or the time of birth where there is one world in all. The curves beyond the axes are
+    the distributions over all agents, with that of the first neutral marker behind them in gray.
+    All panels have the same axes, which reach as far as nearly all agents of each setting; crosses at their edge
+    stand for those beyond.
+
+    Args:
+        groups: from left to right, at least one.
+        neutral_names: genome columns, of all settings.
+    """
+    reach = max(_reach(group) for group in groups)
+    kinds = sum(len(group.food_kinds) for group in groups)
+    columns = kinds + _SIDE * len(groups)  # panels and the distributions beside them, in panels
+    size = min(3.3, (_WIDEST - 0.6) / columns)  # of a panel [inch]
+    lines = max((1 + group.remark.count("\n") + bool(group.remark) for group in groups if group.title), default=0)
     with styled():
-        figure = new_figure(3.3 * len(names) + 1.3, 4.5)
+        figure = new_figure(size * columns + 0.6, 1.2 * size + 0.54 + 0.18 * lines)
         grid = figure.add_gridspec(
             2,
-            len(names) + 1,
-            width_ratios=[*[4] * len(names), 0.9],
-            height_ratios=[0.9, 4],
+            kinds + len(groups),
+            width_ratios=[part for group in groups for part in (*[1.0] * len(group.food_kinds), _SIDE)],
+            height_ratios=[_SIDE, 1.0],
             wspace=0,
             hspace=0,
         )
-        for i, (kind, name) in enumerate(zip(food_kinds, names, strict=True)):
-            axes = figure.add_subplot(grid[1, i])
-            _scatter(figure, axes, rows, name)
-            _edge_marks(axes, rows, name, reach)
-            axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=f"weight of {kind} food")
-            for axis in (axes.xaxis, axes.yaxis):
-                axis.set_major_locator(MaxNLocator(5))
-            if i == 0:
-                axes.set_ylabel("weight of action")
-            _marginal(figure.add_subplot(grid[0, i], sharex=axes), rows[name].to_numpy(), neutral, reach)
-            if i == len(names) - 1:
-                side = figure.add_subplot(grid[1, i + 1], sharey=axes)
-                _marginal(side, rows["w_action"].to_numpy(), neutral, reach, upright=True)
-        _legend(figure, rows, neutral, reach, beyond)
-        if rows.is_empty():
-            say_empty(figure.axes[0], "no agents recorded")
+        by_birth = len(groups) == 1 and groups[0].agents["world"].n_unique() == 1
+        column = 0
+        for group in groups:
+            neutral = _neutral(group, neutral_names)
+            for name in group.names:
+                axes = figure.add_subplot(grid[1, column])
+                _scatter(figure, axes, group, name, by_birth=by_birth)
+                _edge_marks(axes, group.agents, name, reach)
+                _set_axes(axes, name, reach, first=column == 0)
+                top = figure.add_subplot(grid[0, column], sharex=axes)
+                _marginal(top, group.agents[name].to_numpy(), neutral, reach)
+                column += 1
+                if name == group.names[0]:
+                    head(top, group.title, group.remark)
+                    if group.agents.is_empty():
+                        say_empty(axes, "no agents recorded")
+                if name == group.names[-1]:
+                    side = figure.add_subplot(grid[1, column], sharey=axes)
+                    _marginal(side, group.agents["w_action"].to_numpy(), neutral, reach, upright=True)
+                    column += 1
+        _legend(figure, groups, neutral_names, reach)
     return figure
 
 
-def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
+def _set_axes(axes: Axes, name: str, reach: float, *, first: bool) -> None:
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=f"weight of {name.removeprefix('w_')} food")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+    if first:
+        axes.set_ylabel("weight of action")
+    else:
+        axes.tick_params(labelleft=False)
+
+
+def _neutral(group: WeightGroup, neutral_names: Sequence[str]) -> np.ndarray:
+    """The first neutral marker of a setting's agents; empty where there is none."""
+    return group.agents[neutral_names[0]].to_numpy() if neutral_names else np.array([])
+
+
+def _scatter(figure: Figure, axes: Axes, group: WeightGroup, name: str, *, by_birth: bool) -> None:
+    rows = group.agents
     for draw in (axes.axhline, axes.axvline):
         draw(0, color=PALE, linewidth=1.0, zorder=0.5)
     # Worlds in random order, so that the last does not cover the others.
@@ -88,15 +151,13 @@ def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
     x, y = rows[name].to_numpy()[order], rows["w_action"].to_numpy()[order]
     size = float(np.clip(6e4 / max(rows.height, 1), 3.0, 14.0))
     look = {"s": size, "linewidths": 0, "alpha": 0.45, "rasterized": True}
-    if rows["world"].n_unique() > 1:
+    if not by_birth or rows["birth_step"].n_unique() < 2:
         axes.scatter(x, y, c=[seed_color(world) for world in rows["world"].to_numpy()[order]], **look)
-    elif rows["birth_step"].n_unique() < 2:
-        axes.scatter(x, y, color=seed_color(0), **look)
     else:
         unit, unit_name = step_unit(float(rows["birth_step"].to_numpy().max()))
         births = rows["birth_step"].to_numpy()[order] / unit
         points = axes.scatter(x, y, c=births, cmap="viridis", **look)
-        if name == next(column for column in rows.columns if column.startswith("w_")):
+        if name == group.names[0]:
             bar = figure.colorbar(points, ax=axes, location="bottom", shrink=0.7, aspect=40, pad=0.02)
             bar.set_label(f"born at [{unit_name}]")
             if bar.solids is not None:
@@ -106,7 +167,7 @@ def _scatter(figure: Figure, axes: Axes, rows: pl.DataFrame, name: str) -> None:
 
 def _edge_marks(axes: Axes, rows: pl.DataFrame, name: str, reach: float) -> None:
     """Crosses at the edge of the axes for the agents that lie beyond it."""
-    rows = rows.filter(pl.any_horizontal(pl.col(name, "w_action").abs() > reach))
+    rows = rows.filter(_is_beyond([name, "w_action"], reach))
     x, y = (np.clip(rows[column].to_numpy(), -reach, reach) for column in (name, "w_action"))
     axes.scatter(x, y, marker="x", s=9, linewidths=0.7, color=MUTED, alpha=0.7, clip_on=False, zorder=3)
 
@@ -129,17 +190,19 @@ def _marginal(axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float,
     axes.axis("off")
 
 
-def _legend(figure: Figure, rows: pl.DataFrame, neutral: np.ndarray, reach: float, beyond: int) -> None:
+def _legend(figure: Figure, groups: Sequence[WeightGroup], neutral_names: Sequence[str], reach: float) -> None:
     handles: list[Artist] = []
-    worlds = rows.select("world", "seed").unique().sort("world").rows()
+    worlds = sorted({world for group in groups for world in group.agents.select("world", "seed").unique().rows()})
     if 1 < len(worlds) <= _LEGEND_SEEDS:
         dot = {"marker": "o", "linestyle": "", "markersize": 4.5}
         handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
     handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
+    neutral = np.concatenate([_neutral(group, neutral_names) for group in groups])
     if len(neutral):
         outside = float((np.abs(neutral) > reach).mean())
         label = "neutral marker" if outside < 0.01 else f"neutral marker ({100 * outside:.0f} % beyond)"
         handles.append(Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label=label))
+    beyond = sum(group.agents.filter(_is_beyond(group.weights, reach)).height for group in groups)
     if beyond:
         cross = {"marker": "x", "linestyle": "", "markersize": 3.5, "color": MUTED}
         handles.append(Line2D([], [], label=f"{beyond:,} agents beyond", **cross))
@@ -148,10 +211,15 @@ def _legend(figure: Figure, rows: pl.DataFrame, neutral: np.ndarray, reach: floa
     figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.0, handletextpad=0.3)
 
 
-def _reach(rows: pl.DataFrame, names: Sequence[str]) -> float:
+def _is_beyond(names: Sequence[str], reach: float) -> pl.Expr:
+    """Whether any of these weights of an agent lies beyond the axes."""
+    return pl.any_horizontal(pl.col(*names).abs() > reach)
+
+
+def _reach(group: WeightGroup) -> float:
     """Half the range of the axes: room for nearly all agents, but none for what no agent has."""
-    if rows.is_empty():
+    if group.agents.is_empty():
         return _MIN_HALF_RANGE
-    weights = np.abs(rows.select(names).to_numpy())
+    weights = np.abs(group.agents.select(group.weights).to_numpy())
     bulk, largest = np.quantile(weights, _SHARE_WITHIN, axis=0).max(), weights.max()
     return max(_MIN_HALF_RANGE, min(_MARGIN * float(bulk), 1.08 * float(largest)))

@@ -10,7 +10,11 @@ _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
 
 
 def history(
-    population: pl.DataFrame, food_kinds: Sequence[str], weight_names: Sequence[str] = (), points: int = 200
+    population: pl.DataFrame,
+    food_kinds: Sequence[str],
+    weight_names: Sequence[str] = (),
+    points: int = 200,
+    end: float = 0.0,
 ) -> pl.DataFrame:
     """The course of each world, in at most `points` intervals of equal length.
 
@@ -19,6 +23,8 @@ def history(
         food_kinds: names.
         weight_names: genome columns whose means are wanted.
         points: rows per world at most.
+        end: the least step at which the last interval ends, so that histories of several settings can have
+            the same intervals [step].
 
     Returns:
         By world and bin (index of the interval): step (its end [step]); alive, energy_mean, generation_mean
@@ -26,7 +32,7 @@ def history(
         births_failed_space per 1000 steps; eaten_<kind> per 1000 steps lived. What has no value, since
         nobody lived, is null.
     """
-    width = max((_last_step(population) + 1) / points, 1.0)
+    width = max((max(_last_step(population), end) + 1) / points, 1.0)
     groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin"))
     rates = [(1000.0 * pl.col(name).sum() / pl.col("steps").sum()).alias(name) for name in _COUNTS]
     lived = pl.col("agent_steps").sum()

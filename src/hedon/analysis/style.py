@@ -117,9 +117,29 @@ def step_unit(last_step: float) -> tuple[float, str]:
     return 1.0, "steps"
 
 
+def head(axes: Axes, title: str, remark: str = "") -> None:
+    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty."""
+    lines = remark.count("\n") + 1 if remark else 0
+    if title:
+        axes.set_title(title, pad=8.0 + 11.0 * lines)
+    if remark:
+        at = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
+        axes.annotate(remark, **at, va="bottom", color=MUTED, fontsize=8.0, linespacing=1.15)
+
+
 def say_empty(axes: Axes, text: str) -> None:
     """Writes into the middle of axes why there is nothing to see."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
+
+
+def draw_message(text: str) -> Figure:
+    """A figure that says why there is nothing to see."""
+    with styled():
+        figure = new_figure(4.6, 1.2)
+        axes = figure.add_subplot()
+        axes.axis("off")
+        say_empty(axes, text)
+    return figure
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:

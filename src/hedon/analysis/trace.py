@@ -1,5 +1,7 @@
 """Lines over time: a thin one per world, a thick one for their mean, a band for its interval."""
 
+from collections.abc import Container
+
 import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
@@ -9,13 +11,21 @@ from hedon.analysis.style import PALE, step_unit
 
 
 def draw_traces(
-    axes: Axes, history: pl.DataFrame, column: str, color: str, label: str | None = None, *, thin: bool = True
+    axes: Axes,
+    history: pl.DataFrame,
+    column: str,
+    color: str,
+    label: str | None = None,
+    *,
+    thin: bool = True,
+    extinct: Container[int] | None = None,
+    end: float = 0.0,
 ) -> None:
     """Draws one column of a history.
 
     The thick line is the mean over the worlds that have a value at that time, so extinct worlds leave it;
     the band is the 95 % interval of the mean, where there are at least three worlds. A cross marks where a
-    world ends.
+    world died out.
 
     Args:
         axes: to draw on; its x axis is in the unit of `draw_time_axis`.
@@ -23,15 +33,19 @@ def draw_traces(
         column: of the history.
         color: of all lines.
         label: of the thick line.
-        thin: whether the worlds' own lines are drawn.
+        thin: whether the worlds' own lines and their crosses are drawn.
+        extinct: worlds that died out; where it is not known, those that end before others.
+        end: of the time axis, where it reaches further than the history [step].
     """
-    unit, _ = step_unit(last_step(history))
+    unit, _ = step_unit(max(last_step(history), end))
     worlds = history.partition_by("world")
-    for world in worlds if thin and len(worlds) > 1 else []:
+    gone = _ended_early(history) if extinct is None else extinct
+    for world in worlds if thin else []:
         rows = world.filter(pl.col(column).is_not_null())
         x, y = rows["step"].to_numpy() / unit, rows[column].to_numpy()
-        axes.plot(x, y, color=color, linewidth=0.8, alpha=0.35)
-        if len(x) and world["bin"].to_numpy().max() < history["bin"].to_numpy().max():
+        if len(worlds) > 1:
+            axes.plot(x, y, color=color, linewidth=0.8, alpha=0.35)
+        if len(x) and world["world"][0] in gone:
             axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
     x, mean, low, high = over_worlds(history, column)
     if len(worlds) >= SHOWN_FROM:
@@ -66,11 +80,12 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
     return table[:, 0], table[:, 1], table[:, 2], table[:, 3]
 
 
-def draw_time_axis(axes: Axes, history: pl.DataFrame) -> None:
-    """Labels the x axis in a unit that suits the length of the run, from 0 on."""
-    unit, name = step_unit(last_step(history))
+def draw_time_axis(axes: Axes, history: pl.DataFrame, end: float = 0.0) -> None:
+    """Labels the x axis in a unit that suits the length of the run, from 0 on to its end or a later one [step]."""
+    last = max(last_step(history), end)
+    unit, name = step_unit(last)
     axes.set_xlabel(f"time [{name}]")
-    axes.set_xlim(0, max(last_step(history) / unit * 1.01, 1e-9))
+    axes.set_xlim(0, max(last / unit * 1.01, 1e-9))
 
 
 def draw_zero_line(axes: Axes) -> None:
@@ -81,3 +96,9 @@ def draw_zero_line(axes: Axes) -> None:
 def last_step(history: pl.DataFrame) -> float:
     """The last step of a history [step]; 0 where it is empty."""
     return float(history["step"].to_numpy().max()) if history.height else 0.0
+
+
+def _ended_early(history: pl.DataFrame) -> set[int]:
+    """The worlds whose records end before those of others."""
+    ends = history.group_by("world").agg(pl.col("bin").max())
+    return set(ends.filter(pl.col("bin") < pl.col("bin").max())["world"])

@@ -35,7 +35,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
     for worlds in conditions.values():
         lives = [durations(world.agents, world.last_step) for world in worlds]
         fitted = [survival_curve(*life) for life in lives]
-        until = min((age for curve in fitted if (age := curve.trusted_age()) > 0), default=0.0)
+        until = _common_age(worlds, fitted)
         for world, life, curve in zip(worlds, lives, fitted, strict=True):
             rows.append(labels(world) | _life_row(*life, curve, until))
             curves += [labels(world) | point for point in _points(curve)]
@@ -48,8 +48,9 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "median": "median",
     }
     note = (
-        "The restricted mean is that of min(lifetime, `until`), up to an age that 20 agents of each world reached; the "
-        "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter."
+        "The restricted mean is that of min(lifetime, `until`), up to an age that 20 agents of each living world "
+        "reached; the error is what the dead alone give instead, minus it. Steps per death are the mean life if age "
+        "did not matter."
     )
     return [
         table("lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note),
@@ -151,6 +152,16 @@ def energy(conditions: Conditions) -> list[ResultTable]:
         "Per 1000 steps lived by an agent. forgiven_share: of what was charged, what could not be paid at zero energy."
     )
     return [table("energy", "Energy budget, means over worlds", summary, note), worlds_table]
+
+
+def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:
+    """The age up to which all these curves are read [step]; 0 where nobody died.
+
+    Where all have died out no life is censored, so such worlds set no limit while others live.
+    """
+    ages = {world.seed: curve.trusted_age() for world, curve in zip(worlds, curves, strict=True)}
+    living = [ages[world.seed] for world in worlds if world.extinct_step is None]
+    return min(filter(None, living), default=0.0) or min(filter(None, ages.values()), default=0.0)
 
 
 def _life_row(duration: np.ndarray, died: np.ndarray, curve: SurvivalCurve, until: float) -> dict:

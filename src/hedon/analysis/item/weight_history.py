@@ -1,0 +1,73 @@
+"""The paper's figures of how rewards evolve: mean weights over time, world by world, beside the neutral marker."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from hedon.analysis.condition_figure import NamedFigure
+from hedon.analysis.figure_history import HistoryRow, draw_histories
+from hedon.analysis.item.census import describe, missing, present, sentences, stack, world_indices
+from hedon.analysis.item.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
+from hedon.analysis.item.item import Arm, Item, Material
+from hedon.analysis.style import draw_message, food_colors
+
+_READ = (
+    "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from three worlds on; a cross "
+    "ends the line of a world that died out. The neutral marker enters no reward: its course is drift."
+)
+
+
+def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
+    worlds = present(arms, material)
+    caption = sentences(question, _READ, missing(arms, material))
+    if not worlds:
+        yield NamedFigure(name, caption, draw_message("no worlds yet"))
+        return
+    indices = world_indices(worlds.values())
+    rows = [
+        HistoryRow(
+            stack(group, "population", indices),
+            label,
+            ", ".join(describe(group)),
+            {indices[world.seed] for world in group if world.extinct_step is not None},
+        )
+        for label, group in worlds.items()
+    ]
+    first = next(iter(worlds.values()))[0]
+    colors = food_colors(first.food_kinds, [food.color for food in first.config.food.values()])
+    yield NamedFigure(name, caption, draw_histories(rows, first.food_kinds, first.neutral_names, colors))
+
+
+def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
+    return Item(name, title, "figure", paper, partial(_draw, name, question, arms), arms, PAPER_SCALE)
+
+
+HISTORIES: tuple[Item, ...] = (
+    _item(
+        "history-baseline",
+        "How weights evolve in the baseline",
+        "The weight of food rises in all runs; that of action rises in some and stays near or below 0 in others.",
+        "When do rewards evolve in the baseline?",
+        BASELINE,
+    ),
+    _item(
+        "history-sizes",
+        "How weights evolve in arenas of three sizes",
+        "In the baseline and the large arena the weight of food rises; in the small arena hardly any weight moves.",
+        "Does the size of the arena change how rewards evolve?",
+        *SIZES,
+    ),
+    _item(
+        "history-poor",
+        "How weights evolve with poor food",
+        "The weight of normal food rises; that of poor food goes different ways in different runs.",
+        "When does food that gives little become rewarding?",
+        POOR,
+    ),
+    _item(
+        "history-poison",
+        "How weights evolve with poison",
+        "The weight of normal food rises; that of poison goes different ways in different runs.",
+        "When does food that harms become aversive?",
+        POISON,
+    ),
+)
