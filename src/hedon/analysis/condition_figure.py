@@ -21,11 +21,19 @@ from hedon.analysis.world import WorldRecord
 
 @dataclass(frozen=True)
 class NamedFigure:
-    """A figure with its name, which names its file, and the question that it answers."""
+    """A figure.
+
+    Attributes:
+        name: names its file.
+        question: that it answers, its heading.
+        figure: itself.
+        caption: how to read it; may be empty.
+    """
 
     name: str
     question: str
     figure: Figure
+    caption: str = ""
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:

@@ -30,12 +30,14 @@ class FigureFile:
         question: that it answers, its heading.
         path: of its PNG file, relative to the report.
         svg: the same as SVG.
+        caption: how to read it; may be empty.
     """
 
     condition: str
     question: str
     path: str
     svg: bytes
+    caption: str = ""
 
     @property
     def uri(self) -> str:

@@ -31,7 +31,7 @@ def draw(name: str, **worlds: Sequence[WorldRecord]) -> tuple[str, Figure]:
     (made,) = ITEMS[name].make(Material("corrected", worlds))
     assert isinstance(made, NamedFigure)
     assert made.name == name
-    return made.question, made.figure
+    return made.caption, made.figure
 
 
 def crosses(axes: Axes) -> list[Line2D]:
@@ -98,10 +98,10 @@ def test_a_cross_ends_the_line_of_a_world_that_died_out_and_no_other(five: list[
 
 
 def test_arms_without_worlds_are_named(five: list[WorldRecord]) -> None:
-    question, figure = draw("history-sizes", large=five[:1])
+    caption, figure = draw("history-sizes", large=five[:1])
     assert len(figure.axes) == 3
-    assert question.endswith("Not run yet: small; baseline.")
-    question, figure = draw("history-poison")
+    assert caption.endswith("Not run yet: small; baseline.")
+    caption, figure = draw("history-poison")
     assert remarks(figure) == ["no worlds yet"]
 
 

@@ -30,7 +30,7 @@ def draw(name: str, **worlds: Sequence[WorldRecord]) -> tuple[str, Figure]:
     (made,) = ITEMS[name].make(Material("corrected", worlds))
     assert isinstance(made, NamedFigure)
     assert made.name == name
-    return made.question, made.figure
+    return made.caption, made.figure
 
 
 def panels(figure: Figure) -> list[Axes]:
@@ -91,12 +91,12 @@ def test_a_seed_has_the_same_color_in_each_arm(five: list[WorldRecord]) -> None:
 
 
 def test_arms_without_worlds_are_named(five: list[WorldRecord]) -> None:
-    question, figure = draw("weights-sizes", baseline=five, small=[])
+    caption, figure = draw("weights-sizes", baseline=five, small=[])
     assert len(panels(figure)) == 1
-    assert question.endswith("Not run yet: small; large.")
-    question, figure = draw("weights-poor")
+    assert caption.endswith("Not run yet: small; large.")
+    caption, figure = draw("weights-poor")
     assert texts(figure)[-1] == "no worlds yet"
-    assert question.endswith("Not run yet: poor.")
+    assert caption.endswith("Not run yet: poor.")
     assert "Not run yet" not in draw("weights-baseline", baseline=five)[0]
 
 

@@ -1,5 +1,9 @@
 """All items of the reproduction, by name and in the order in which they are shown."""
 
+from hedon.analysis.item.evolved_weight import WEIGHTS
+from hedon.analysis.item.extinction import EXTINCTIONS
 from hedon.analysis.item.item import Item
+from hedon.analysis.item.life import LIVES
+from hedon.analysis.item.weight_history import HISTORIES
 
-ITEMS: dict[str, Item] = {}
+ITEMS: dict[str, Item] = {item.name: item for item in (*EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES)}

@@ -19,9 +19,9 @@ _READ = (
 
 def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
     worlds = present(arms, material)
-    caption = sentences(question, _READ, missing(arms, material))
+    caption = sentences(_READ, missing(arms, material))
     if not worlds:
-        yield NamedFigure(name, caption, draw_message("no worlds yet"))
+        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
         return
     indices = world_indices(worlds.values())
     groups = [
@@ -31,7 +31,7 @@ def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> 
         for label, group in worlds.items()
     ]
     neutral = next(iter(worlds.values()))[0].neutral_names
-    yield NamedFigure(name, caption, draw_weight_groups(groups, neutral))
+    yield NamedFigure(name, question, draw_weight_groups(groups, neutral), caption)
 
 
 def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:

@@ -65,7 +65,7 @@ def _make(item: Item, gathered: Gathered, folder: Path) -> Made:
     for part in item.make(material):
         if isinstance(part, NamedFigure):
             path = save_figure(part.figure, folder / FIGURES / f"{part.name}.png").relative_to(folder)
-            parts.append(FigureFile(item.title, part.question, path.as_posix(), svg_bytes(part.figure)))
+            parts.append(FigureFile(item.title, part.question, path.as_posix(), svg_bytes(part.figure), part.caption))
         else:
             parts.append(part)
     return Made(item, _worlds_table(item, material, gathered), tuple(parts))

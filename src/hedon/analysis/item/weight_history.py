@@ -18,9 +18,9 @@ _READ = (
 
 def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
     worlds = present(arms, material)
-    caption = sentences(question, _READ, missing(arms, material))
+    caption = sentences(_READ, missing(arms, material))
     if not worlds:
-        yield NamedFigure(name, caption, draw_message("no worlds yet"))
+        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
         return
     indices = world_indices(worlds.values())
     rows = [
@@ -34,7 +34,7 @@ def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> 
     ]
     first = next(iter(worlds.values()))[0]
     colors = food_colors(first.food_kinds, [food.color for food in first.config.food.values()])
-    yield NamedFigure(name, caption, draw_histories(rows, first.food_kinds, first.neutral_names, colors))
+    yield NamedFigure(name, question, draw_histories(rows, first.food_kinds, first.neutral_names, colors), caption)
 
 
 def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
@@ -45,28 +45,30 @@ HISTORIES: tuple[Item, ...] = (
     _item(
         "history-baseline",
         "How weights evolve in the baseline",
-        "The weight of food rises in all runs; that of action rises in some and stays near or below 0 in others.",
+        "Mean weights of each seed and over seeds. By its text the weight of food ends positive, that of action largely "
+        "positive or slightly negative.",
         "When do rewards evolve in the baseline?",
         BASELINE,
     ),
     _item(
         "history-sizes",
         "How weights evolve in arenas of three sizes",
-        "In the baseline and the large arena the weight of food rises; in the small arena hardly any weight moves.",
+        "The same for three sizes. By its text the weight of food ends positive in the baseline and the large arena, and "
+        "hardly any weight evolves in the small one.",
         "Does the size of the arena change how rewards evolve?",
         *SIZES,
     ),
     _item(
         "history-poor",
         "How weights evolve with poor food",
-        "The weight of normal food rises; that of poor food goes different ways in different runs.",
+        "The same with poor food. By its text the weight of normal food stays positive, that of poor food varies widely.",
         "When does food that gives little become rewarding?",
         POOR,
     ),
     _item(
         "history-poison",
         "How weights evolve with poison",
-        "The weight of normal food rises; that of poison goes different ways in different runs.",
+        "The same with poison. By its text the weight of normal food stays positive, that of poison varies widely.",
         "When does food that harms become aversive?",
         POISON,
     ),
