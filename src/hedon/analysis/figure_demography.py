@@ -2,7 +2,9 @@
 
 import numpy as np
 import polars as pl
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from hedon.analysis.demography import expected_lifetime, reproduction_number
 from hedon.analysis.population import run_tail
@@ -19,42 +21,22 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
         config: the settings.
         populations: tables `population` of the worlds; none where there was no run.
     """
-    energy = np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(config.energy.capacity, 2.0), 160)[1:]])
-    r0 = reproduction_number(config.hazard, config.birth, energy)
+    energy = _energies(config)
     lifetime = expected_lifetime(config.hazard, energy)
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
         figure = new_figure(8.6, 3.0)
         left, right = figure.subplots(1, 2, sharex=True)
-        left.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
+        draw_reproduction(left, config)
         right.plot(energy, np.where(np.isfinite(lifetime), lifetime / unit, np.nan), color=BLUE, linewidth=2.0)
-        left.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
-        left.annotate(
-            "a lineage keeps its size",
-            (1.0, 1.0),
-            xycoords=("axes fraction", "data"),
-            xytext=(-2, 4),
-            textcoords="offset points",
-            ha="right",
-            color=MUTED,
-            fontsize=8,
-        )
-        left.set_title("children tried in a life, R0")
         right.set_title(f"mean life [{name}]")
+        _set_axes(right, energy)
         quartiles = _quartiles(populations)
-        for axes in (left, right):
-            axes.set_xscale("symlog", linthresh=_LINEAR_BELOW)
-            axes.set_yscale("log")
-            axes.set_xlim(0, energy[-1])
-            axes.set_xlabel("energy, held constant")
-            axes.set_xticks([t for t in (0, 1, 10, 100, 1000) if t <= energy[-1]])
-            axes.xaxis.set_major_formatter("{x:g}")
-            axes.yaxis.set_major_formatter("{x:g}")
-            if quartiles is not None:
+        if quartiles is not None:
+            for axes in (left, right):
                 axes.axvspan(quartiles[0], quartiles[2], color=ORANGE, alpha=0.16, linewidth=0)
                 axes.axvline(quartiles[1], color=ORANGE, linewidth=1.2)
-        if quartiles is not None:
             right.annotate(
                 "half of the living",
                 (quartiles[1], 0.92),
@@ -65,6 +47,45 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
                 fontsize=8,
             )
     return figure
+
+
+def draw_reproduction(axes: Axes, config: Config) -> None:
+    """Draws R0 at constant energy, and the line R0 = 1 at which a lineage keeps its size.
+
+    Args:
+        axes: to draw on.
+        config: the settings.
+    """
+    energy = _energies(config)
+    r0 = reproduction_number(config.hazard, config.birth, energy)
+    axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
+    axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    axes.annotate(
+        "a lineage keeps its size",
+        (1.0, 1.0),
+        xycoords=("axes fraction", "data"),
+        xytext=(-2, 4),
+        textcoords="offset points",
+        ha="right",
+        color=MUTED,
+        fontsize=8,
+    )
+    axes.set_title("children tried in a life, R0")
+    _set_axes(axes, energy)
+
+
+def _energies(config: Config) -> NDArray[np.float64]:
+    return np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(config.energy.capacity, 2.0), 160)[1:]])
+
+
+def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:
+    axes.set_xscale("symlog", linthresh=_LINEAR_BELOW)
+    axes.set_yscale("log")
+    axes.set_xlim(0, energy[-1])
+    axes.set_xlabel("energy, held constant")
+    axes.set_xticks([t for t in (0, 1, 10, 100, 1000) if t <= energy[-1]])
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter("{x:g}")
 
 
 def _quartiles(populations: list[pl.DataFrame]) -> tuple[float, float, float] | None:

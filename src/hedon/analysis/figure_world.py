@@ -14,6 +14,8 @@ from hedon.analysis.outline import wall_outline
 from hedon.analysis.style import INK, MUTED, PALE, new_figure, styled
 from hedon.record.snapshot import Snapshot
 
+AGENT_COLOR = "#bed3e6"
+"""Of agents where no color stands for their energy."""
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
 _AGENT_RAY = "#1f63a0"
@@ -37,11 +39,15 @@ def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[
     with styled():
         figure = new_figure(_WIDTH, _WIDTH * 0.86 * height / width + 0.8)
         axes = figure.subplots()
-        _draw_walls(axes, snapshot)
+        draw_walls(axes, snapshot.walls)
         for index in rays_of:
             _draw_rays(axes, snapshot, index, colors)
-        _draw_food(axes, snapshot, colors)
-        _draw_agents(figure, axes, snapshot, rays_of)
+        draw_foods(axes, snapshot, colors)
+        if len(snapshot.x):
+            top = _top_energy(snapshot.energy)
+            _draw_energy_bar(figure, axes, snapshot, draw_agents(axes, snapshot, top), top)
+        if len(rays_of):
+            _draw_rings(axes, snapshot, rays_of)
         _draw_scale(axes, low, width)
         axes.set_title(
             f"seed {snapshot.seed}, step {snapshot.step:,}: {len(snapshot.x)} agents, {len(snapshot.food_x)} foods",
@@ -87,28 +93,40 @@ def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray
     return np.stack([start, start + length[:, None] * direction], axis=1), kind
 
 
-def _draw_walls(axes: Axes, snapshot: Snapshot) -> None:
-    outline = wall_outline(snapshot.walls)
+def draw_walls(axes: Axes, walls: np.ndarray, linewidth: float = 2.4) -> None:
+    """Draws walls, shape (w, 4) [u], and the floor that they enclose."""
+    outline = wall_outline(walls)
     if outline is not None:
         axes.add_patch(Polygon(outline, closed=True, facecolor=_FLOOR, edgecolor="none", zorder=0))
-    segments = list(snapshot.walls.reshape(-1, 2, 2))
-    axes.add_collection(LineCollection(segments, colors=_WALL, linewidths=2.4, capstyle="round", zorder=5))
+    segments = list(walls.reshape(-1, 2, 2))
+    axes.add_collection(LineCollection(segments, colors=_WALL, linewidths=linewidth, capstyle="round", zorder=5))
 
 
-def _draw_food(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> None:
+def draw_foods(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> None:
+    """Draws the foods as discs, each in its kind's color."""
     places = np.stack([snapshot.food_x, snapshot.food_y], axis=-1)
     for i, kind in enumerate(snapshot.food_kinds):
         mine = places[snapshot.food_kind == i]
         _discs(axes, mine, snapshot.food_radius, facecolors=colors[kind], edgecolors="white", linewidths=0.5)
 
 
-def _draw_agents(figure: Figure, axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
-    if len(snapshot.x) == 0:
-        return
+def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> EllipseCollection:
+    """Draws the agents as discs with mouth and heading.
+
+    Args:
+        axes: to draw on.
+        snapshot: the state; somebody lives.
+        top: energy from which on the color is the darkest; None where all have the same color.
+
+    Returns:
+        The discs.
+    """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
-    top = max(float(np.quantile(snapshot.energy, 0.95)), 40.0)  # a newcomer's 40 stays in sight in poor worlds
     discs = _discs(axes, centers, snapshot.radius, edgecolors=MUTED, linewidths=0.5)
-    discs.set(array=snapshot.energy, cmap=_ENERGY_COLORS, norm=Normalize(0, top))
+    if top is None:
+        discs.set_facecolor(AGENT_COLOR)
+    else:
+        discs.set(array=snapshot.energy, cmap=_ENERGY_COLORS, norm=Normalize(0, top))
     degree = np.degrees(snapshot.angle) + 90.0  # Matplotlib counts from +x
     mouths = [
         Wedge((x, y), snapshot.radius, a - snapshot.mouth_spread, a + snapshot.mouth_spread, width=1.9)
@@ -118,13 +136,24 @@ def _draw_agents(figure: Figure, axes: Axes, snapshot: Snapshot, rays_of: Sequen
     ahead = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
     noses = np.stack([centers, centers + 0.82 * snapshot.radius * ahead], axis=1)
     axes.add_collection(LineCollection(list(noses), colors=INK, linewidths=0.9, zorder=4))
-    if len(rays_of):
-        chosen = centers[list(rays_of)]
-        _discs(axes, chosen, snapshot.radius + 1.5, facecolors="none", edgecolors=INK, linewidths=1.4)
+    return discs
+
+
+def _top_energy(energy: np.ndarray) -> float:
+    """The energy that is drawn darkest: few agents have more; a newcomer's 40 stays in sight in poor worlds."""
+    return max(float(np.quantile(energy, 0.95)), 40.0)
+
+
+def _draw_energy_bar(figure: Figure, axes: Axes, snapshot: Snapshot, discs: EllipseCollection, top: float) -> None:
     over = "max" if snapshot.energy.max() > top else "neither"
     bar = figure.colorbar(discs, ax=axes, location="right", shrink=0.5, aspect=24, pad=0.015, extend=over)
     bar.set_label("energy of the agent")
     bar.outline.set_visible(False)
+
+
+def _draw_rings(axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
+    chosen = np.stack([snapshot.x, snapshot.y], axis=-1)[list(rays_of)]
+    _discs(axes, chosen, snapshot.radius + 1.5, facecolors="none", edgecolors=INK, linewidths=1.4)
 
 
 def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, str]) -> None:

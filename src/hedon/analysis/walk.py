@@ -92,6 +92,34 @@ def neutral_means(
     return np.concatenate(means)
 
 
+def lineages(
+    law: MutationLaw, mutations: int, worlds: int, count: int, rng: np.random.Generator, births: int = 1
+) -> NDArray[np.float32]:
+    """A neutral gene down single lines of descent, apart from any pedigree.
+
+    Args:
+        law: of founding and mutation.
+        mutations: births in each line.
+        worlds: that the lines belong to; with frozen noise, each has a table of its own.
+        count: lines in each world.
+        rng: source of chance.
+        births: with frozen noise, how many births a window has; each birth of a line is any one of them.
+
+    Returns:
+        The gene of the founder and after each mutation, shape (mutations + 1, worlds, count).
+    """
+    genes = np.empty((mutations + 1, worlds, count), np.float32)
+    genes[0] = np.clip(rng.normal(law.mean, law.sd, (worlds, count)), -law.limit, law.limit)
+    table = rng.standard_cauchy((worlds, births if law.frozen else 0))
+    for i in range(mutations):
+        if law.frozen:
+            noise = np.take_along_axis(table, rng.integers(births, size=(worlds, count)), axis=1)
+        else:
+            noise = rng.standard_cauchy((worlds, count))
+        genes[i + 1] = np.clip(genes[i] + law.scale * noise, -law.limit, law.limit)
+    return genes
+
+
 def birth_number(tree: Genealogy, window: int) -> NDArray[np.int64]:
     """The number of each birth within its window of learning, from 0; 0 for founders, shape (n,)."""
     born = tree.parent >= 0

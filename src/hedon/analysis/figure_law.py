@@ -1,0 +1,102 @@
+"""What are the laws of death and birth?"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hedon.analysis.demography import birth_rate, expected_lifetime, hazard, reproduction_number, survival
+from hedon.analysis.figure_demography import draw_reproduction
+from hedon.analysis.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PINK,
+    SKY,
+    VERMILION,
+    VIOLET,
+    new_figure,
+    step_unit,
+    styled,
+)
+from hedon.config import Config
+from hedon.config.life import HazardConfig
+
+ENERGIES = {0.0: VERMILION, 5.0: ORANGE, 10.0: GREEN, 20.0: SKY, 40.0: BLUE}
+"""Energies that curves are drawn for, with their colors."""
+AGES = {0.0: PINK, 500_000.0: VIOLET, 1_000_000.0: MUTED, 1_500_000.0: INK}
+"""Ages that curves are drawn for [step], with their colors."""
+_MOST_ENERGY = 60.0  # up to which curves change
+_OLDEST = 2_000_000.0  # by then nearly everybody is dead, whatever the energy [step]
+_YOUNGEST = 100.0  # where the logarithmic axis of ages begins [step]
+_POINTS = 241
+
+
+def draw_hazard(config: HazardConfig) -> Figure:
+    """The chance of death by energy and by age, and survival at constant energy with the mean life."""
+    with styled():
+        figure = new_figure(8.6, 5.6)
+        panels = figure.subplot_mosaic([["energy", "age"], ["survival", "survival"]], height_ratios=(1.2, 1.0))
+        panels["age"].sharey(panels["energy"])
+        _draw_hazard_by_energy(panels["energy"], config)
+        _draw_hazard_by_age(panels["age"], config)
+        _draw_survival(panels["survival"], config)
+    return figure
+
+
+def draw_birth(config: Config) -> Figure:
+    """The chance of a birth by energy, and the children that are tried in a life at constant energy."""
+    energy = np.linspace(0, min(_MOST_ENERGY, config.energy.capacity), _POINTS)
+    none = float(reproduction_number(config.hazard, config.birth, 0.0))
+    with styled():
+        figure = new_figure(8.6, 3.0)
+        chance, children = figure.subplots(1, 2)
+        chance.plot(energy, 1e3 * birth_rate(config.birth, energy), color=BLUE, linewidth=2.0)
+        chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * config.birth.kappa), xlabel="energy")
+        chance.set_title("chance of trying a birth [1/1000 steps]")
+        draw_reproduction(children, config)
+        children.plot(0, none, marker="o", markersize=6, color=VERMILION, clip_on=False, zorder=5)
+        children.annotate(
+            f"without energy {none:.2f}",
+            (0, none),
+            xytext=(10, 22),
+            textcoords="offset points",
+            color=VERMILION,
+            fontsize=8,
+            arrowprops={"arrowstyle": "-", "color": VERMILION, "linewidth": 0.8},
+        )
+    return figure
+
+
+def _draw_hazard_by_energy(axes: Axes, config: HazardConfig) -> None:
+    energy = np.linspace(0, _MOST_ENERGY, _POINTS)
+    for age, color in AGES.items():
+        axes.plot(energy, hazard(config, age, energy), color=color, linewidth=2.0, label=f"{age:,.0f}")
+    axes.set(yscale="log", xlim=(0, _MOST_ENERGY), xlabel="energy", ylabel="chance of death [1/step]")
+    axes.set_title("hazard by energy")
+    axes.legend(title="age [step]", loc="lower left", title_fontsize=8)
+
+
+def _draw_hazard_by_age(axes: Axes, config: HazardConfig) -> None:
+    age = np.linspace(0, _OLDEST, _POINTS)
+    unit, name = step_unit(_OLDEST)
+    for energy, color in ENERGIES.items():
+        axes.plot(age / unit, hazard(config, age, energy), color=color, linewidth=2.0, label=f"{energy:g}")
+    axes.set(xlim=(0, _OLDEST / unit), xlabel=f"age [{name}]")
+    axes.tick_params(labelleft=False)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.set_title("hazard by age")
+    axes.legend(title="energy", loc="lower right", title_fontsize=8)
+
+
+def _draw_survival(axes: Axes, config: HazardConfig) -> None:
+    age = np.geomspace(_YOUNGEST, _OLDEST, _POINTS)
+    for energy, color in ENERGIES.items():
+        mean = float(expected_lifetime(config, energy))
+        label = f"energy {energy:g}: {mean:,.0f}"
+        axes.plot(age, survival(config, age, energy), color=color, linewidth=2.0, label=label)
+    axes.set(xscale="log", xlim=(_YOUNGEST, _OLDEST), ylim=(0, 1.02), xlabel="age [step]", ylabel="share that lives on")
+    axes.xaxis.set_major_formatter("{x:,.0f}")
+    axes.set_title("survival at constant energy")
+    axes.legend(title="mean life [step]", loc="lower left", title_fontsize=8)

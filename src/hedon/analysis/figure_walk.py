@@ -1,0 +1,91 @@
+"""Where do mutations alone carry a weight?"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from scipy.special import voigt_profile
+
+from hedon.analysis.style import INK, MUTED, new_figure, seed_color, styled
+from hedon.analysis.trace import draw_zero_line
+from hedon.analysis.walk import MutationLaw, lineages
+
+LENGTHS = (100, 1000)
+"""Numbers of mutations after which weights are shown; as in the paper."""
+_LINES = 10_000  # of descent, that shares are counted over
+_TABLES = 1000  # worlds that these belong to, where noise is frozen
+_EXAMPLES = 8  # lines that are drawn
+_PER_TABLE = 2  # of these in a world, where noise is frozen
+_BINS = 40
+
+Genes = NDArray[np.float32]
+Floats = NDArray[np.float64]
+
+
+def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figure:
+    """A row per number of mutations: examples of lines of descent, and the weights at their end.
+
+    Shaded: half and 95 % of all lines. At the right, where each birth has a noise of its own, dashed: what the same
+    noise would do without a limit, in closed form, Cauchy noise added to the founders' normal law.
+
+    Args:
+        law: of founding and mutation.
+        births: in a window; for frozen noise.
+        rng: source of chance.
+    """
+    genes, examples, colors = _sample(law, births, rng)
+    with styled():
+        figure = new_figure(8.6, 5.6)
+        panels = figure.subplots(len(LENGTHS), 2, sharey=True, width_ratios=(3, 1))
+        for (walk, share), length in zip(panels, LENGTHS, strict=True):
+            _draw_lines(walk, genes[: length + 1], examples[: length + 1], colors)
+            _draw_share(share, genes[length], law, length)
+            walk.set_ylim(-1.03 * law.limit, 1.03 * law.limit)
+        kept = ", two of a color from one world and its table" if law.frozen else ""
+        panels[0][0].set_title(f"{_EXAMPLES} lines of descent{kept}")
+        panels[-1][1].set_xlabel("lines per bin [%]")
+        handles = [*panels[0][0].get_legend_handles_labels()[0], *panels[0][1].get_legend_handles_labels()[0]]
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), handlelength=1.8)
+    return figure
+
+
+def unlimited_share(law: MutationLaw, length: int, edges: Floats) -> Floats:
+    """What share of lines would end in each bin if nothing were clipped, by the density at its middle."""
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return voigt_profile(middle - law.mean, law.sd, length * law.scale) * np.diff(edges)
+
+
+def _sample(law: MutationLaw, births: int, rng: np.random.Generator) -> tuple[Genes, Genes, list[str]]:
+    """All lines, shape (mutations + 1, lines), then those that are drawn and their colors."""
+    worlds, per_world = (_TABLES, _PER_TABLE) if law.frozen else (_LINES, 1)
+    genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births)
+    examples = genes[:, :: worlds * per_world // _EXAMPLES, :per_world].reshape(len(genes), -1)
+    return genes.reshape(len(genes), -1), examples, [seed_color(i // per_world) for i in range(_EXAMPLES)]
+
+
+def _draw_lines(axes: Axes, genes: Genes, examples: Genes, colors: list[str]) -> None:
+    number = np.arange(len(genes))
+    outer_low, low, high, outer_high = np.quantile(genes, (0.025, 0.25, 0.75, 0.975), axis=1)
+    draw_zero_line(axes)
+    axes.fill_between(number, outer_low, outer_high, color=MUTED, alpha=0.12, linewidth=0, label="95 % of all lines")
+    axes.fill_between(number, low, high, color=MUTED, alpha=0.22, linewidth=0, label="half of all lines")
+    for example, color in zip(examples.T, colors, strict=True):
+        axes.plot(number, example, color=color, linewidth=1.1)
+    axes.set(xlim=(0, number[-1]), xlabel="mutations", ylabel="weight")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_major_formatter("{x:,.0f}")
+
+
+def _draw_share(axes: Axes, ends: Genes, law: MutationLaw, length: int) -> None:
+    edges = np.linspace(-law.limit, law.limit, _BINS + 1)
+    share = 100 * np.histogram(ends, edges)[0] / len(ends)
+    axes.stairs(share, edges, orientation="horizontal", fill=True, color=MUTED, alpha=0.45)
+    if not law.frozen:
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        unlimited = 100 * unlimited_share(law, length, edges)
+        axes.plot(
+            unlimited, middle, color=INK, linewidth=1.2, linestyle=(0, (4, 3)), label="without the limit (closed form)"
+        )
+    axes.set_xlim(left=0)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.set_title(f"after {length:,}")
