@@ -83,7 +83,7 @@ def test_an_agent_without_energy_just_replaces_itself() -> None:
     assert xy(level)[1] == pytest.approx([1, 1])
     assert xy(start)[1] == pytest.approx([1.02], abs=5e-3)
     assert xy(curve)[1][0] == xy(start)[1][0]
-    assert "1.02" in named.question
+    assert "1.02" in named.caption
     assert any("1.02" in text.get_text() for text in children.texts)
 
 
@@ -102,8 +102,8 @@ def test_walks_are_drawn_for_both_lengths(fidelity: str) -> None:
 
 
 def test_frozen_noise_is_explained_where_it_is_drawn() -> None:
-    assert "frozen" not in make("walk").question
-    assert f"{window_births(CONFIG)} entries" in make("walk", "released").question
+    assert "frozen" not in make("walk").caption
+    assert f"{window_births(CONFIG)} entries" in make("walk", "released").caption
     assert window_births(CONFIG) == round(200 * 2e-4 * 1024)
 
 

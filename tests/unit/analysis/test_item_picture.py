@@ -102,7 +102,7 @@ def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
         assert (axes.get_xlim(), axes.get_ylim()) == ((0, arena.width), (0, arena.height))
         assert discs(axes) == []
         assert any("no run" in text.get_text() for text in axes.texts)
-    assert all(preset in named.question for preset in PRESETS)
+    assert all(preset in named.caption for preset in PRESETS)
 
 
 def test_panels_do_not_overlap() -> None:
@@ -135,7 +135,7 @@ def test_only_panels_with_a_snapshot_hold_agents_and_foods() -> None:
     assert discs(shown["centered"]) == [12]
     assert any("0 agents, 12 foods" in text.get_text() for text in shown["centered"].texts)
     assert discs(shown["baseline"]) == []
-    missing = named.question.split(":")[-1]
+    missing = named.caption.split(":")[-1]
     assert "baseline" in missing
     assert "poison" not in missing
 

@@ -3,7 +3,12 @@
 from hedon.analysis.item.evolved_weight import WEIGHTS
 from hedon.analysis.item.extinction import EXTINCTIONS
 from hedon.analysis.item.item import Item
+from hedon.analysis.item.law import LAWS
 from hedon.analysis.item.life import LIVES
+from hedon.analysis.item.parameter import PARAMETERS
+from hedon.analysis.item.picture import PICTURES
 from hedon.analysis.item.weight_history import HISTORIES
 
-ITEMS: dict[str, Item] = {item.name: item for item in (*EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES)}
+ITEMS: dict[str, Item] = {
+    item.name: item for item in (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS)
+}

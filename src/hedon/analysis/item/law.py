@@ -25,34 +25,34 @@ def window_births(config: Config) -> int:
 def _hazard(material: Material) -> Iterator[NamedFigure]:
     config = _BASELINE.config(material.fidelity)
     poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
-    question = (
-        f"How do energy and age decide who dies? At constant energy a life lasts {poor:,.0f} steps on average "
-        f"without any, and {rich:,.0f} with as much as an agent can hold."
+    caption = (
+        f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
+        "agent can hold."
     )
-    yield NamedFigure("hazard", question, draw_hazard(config.hazard))
+    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(config.hazard), caption)
 
 
 def _birth(material: Material) -> Iterator[NamedFigure]:
     config = _BASELINE.config(material.fidelity)
     children = float(reproduction_number(config.hazard, config.birth, 0.0))
-    question = (
-        f"How does energy decide who has children? Even an agent that stays at zero energy tries {children:.2f} "
-        "children in its life; a lineage keeps its size at 1, if all of them find a place."
+    caption = (
+        f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
+        "at 1, if all of them find a place."
     )
-    yield NamedFigure("birth", question, draw_birth(config))
+    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(config), caption)
 
 
 def _walk(material: Material) -> Iterator[NamedFigure]:
     config = _BASELINE.config(material.fidelity)
     law, births = mutation_law(config), window_births(config)
-    question = "Where do mutations alone carry a weight that nothing selects?"
+    question, caption = "Where do mutations alone carry a weight that nothing selects?", ""
     if law.frozen:
-        question += (
-            f" The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
+        caption = (
+            f"The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
             f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
             "without energy tries in a window."
         )
-    yield NamedFigure("walk", question, draw_walks(law, births, np.random.default_rng(SEED)))
+    yield NamedFigure("walk", question, draw_walks(law, births, np.random.default_rng(SEED)), caption)
 
 
 LAWS: tuple[Item, ...] = (

@@ -36,14 +36,11 @@ def _arenas(material: Material) -> Iterator[NamedFigure]:
         [ArenaPanel(arm.label, arm.config(material.fidelity), material.snapshots.get(arm.label)) for arm in arms]
         for arms in (_SIZES, _FOODS)
     ]
-    question = (
-        "What arenas are there, and where does food grow in each? "
-        "Above each, of every kind of food, its energy and how much there can be."
-    )
+    caption = "Above each, of every kind of food, its energy and how much there can be."
     missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
     if missing:
-        question += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."
-    yield NamedFigure("arenas", question, draw_arenas(rows))
+        caption += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."
+    yield NamedFigure("arenas", "What arenas are there, and where does food grow in each?", draw_arenas(rows), caption)
 
 
 PICTURES: tuple[Item, ...] = (
@@ -56,6 +53,7 @@ PICTURES: tuple[Item, ...] = (
         _arena,
         (_BASELINE,),
         _ONE_WORLD,
+        pictures=True,
     ),
     Item(
         "arenas",
@@ -65,5 +63,6 @@ PICTURES: tuple[Item, ...] = (
         _arenas,
         (*_SIZES, *_FOODS),
         _ONE_WORLD,
+        pictures=True,
     ),
 )

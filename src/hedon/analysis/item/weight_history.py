@@ -45,23 +45,24 @@ HISTORIES: tuple[Item, ...] = (
     _item(
         "history-baseline",
         "How weights evolve in the baseline",
-        "Mean weights of each seed and over seeds. By its text the weight of food ends positive, that of action largely "
-        "positive or slightly negative.",
+        "Mean weights of each seed and over seeds. By its text the weight of food ends positive, that of action "
+        "largely positive or slightly negative.",
         "When do rewards evolve in the baseline?",
         BASELINE,
     ),
     _item(
         "history-sizes",
         "How weights evolve in arenas of three sizes",
-        "The same for three sizes. By its text the weight of food ends positive in the baseline and the large arena, and "
-        "hardly any weight evolves in the small one.",
+        "The same for three sizes. By its text the weight of food ends positive in the baseline and the large arena, "
+        "and hardly any weight evolves in the small one.",
         "Does the size of the arena change how rewards evolve?",
         *SIZES,
     ),
     _item(
         "history-poor",
         "How weights evolve with poor food",
-        "The same with poor food. By its text the weight of normal food stays positive, that of poor food varies widely.",
+        "The same with poor food. By its text the weight of normal food stays positive, that of poor food varies "
+        "widely.",
         "When does food that gives little become rewarding?",
         POOR,
     ),
