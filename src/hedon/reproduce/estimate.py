@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from hedon.config import Config
 from hedon.experiment.simulation import Simulation
 
-FULL_ENOUGH = 150
+TYPICAL_ALIVE = 150
 """Agents of a typical world; a fresh one has too few to tell."""
 MOST_WORLDS = 16
 """Worlds measured side by side at most: more threads are taken to be as fast each."""
@@ -28,15 +28,18 @@ class Speed:
 
 
 def measure_speed(config: Config, threads: int) -> Speed:
-    """Times one window of worlds of a setting in which everybody learns, each on a thread of its own; takes seconds.
+    """Times one window of worlds of a setting, each on a thread of its own; takes seconds.
+
+    Everybody is there from the first step, learns at the end, and nobody is born meanwhile.
 
     Args:
         config: the setting.
         threads: to be used in the end.
     """
     worlds = min(threads, MOST_WORLDS)
-    count = min(FULL_ENOUGH, config.population.capacity)
-    peopled = replace(config, population=replace(config.population, initial_count=count))
+    count = min(TYPICAL_ALIVE, config.population.capacity)
+    population, birth = replace(config.population, initial_count=count), replace(config.birth, kappa=0.0)
+    peopled = replace(config, population=population, birth=birth)
     simulation = Simulation(peopled, range(1, worlds + 1), worlds)
     window = config.learning.rollout_steps
     simulation.run(1)  # the first touch of all memory
