@@ -131,6 +131,9 @@ def test_the_rule_of_decline() -> None:
     found = fate(world([50, 150, *[100] * 7, 74]))
     assert (found.fate, found.early, found.late, found.kept) == (HEADING, 150.0, 74.0, pytest.approx(74 / 150))
     assert fate(world([50, 150, *[100] * 7, 200], extinct=10_000)).fate == EXTINCT
+    risen = fate(world([50, 150, 100, 70, 70, *[100] * 5]))
+    assert (risen.fate, risen.recovered) == (STANDING, True)
+    assert not fate(world([50, 150, *[100] * 8])).recovered  # the first tenth, of founders, is no low
     assert not fate(world([50])).is_lost
 
 

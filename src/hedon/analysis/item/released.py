@@ -29,7 +29,8 @@ _COMPARED = ("w_food", "w_action", "lifetime", "food_agent", "alive", "generatio
 
 _FATE = (
     "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
-    "second. The interval is exact (Clopper and Pearson). The paper replaced seeds that died out."
+    "second. Standing worlds that had such a low before, and rose again, say how far that can be trusted. The interval "
+    "is exact (Clopper and Pearson). The paper replaced seeds that died out."
 )
 _SURVIVOR = (
     "Means over worlds with 95 % intervals from three worlds on, geometric for lifetime and food; standing: neither "
@@ -71,6 +72,7 @@ def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
     paper = {EXTINCT: f"{EXTINCTION[_PAPER_COSTS]:.0%} of 10 seeds"}
     counts = {name: sum(found.fate == name for found in fates) for name in FATES}
     counts = {"extinct or heading for it": sum(found.is_lost for found in fates)} | counts
+    counts["standing after such a low"] = sum(found.recovered for found in fates)
     for name, count in counts.items() if fates else ():
         low, high = share_interval(count, len(fates))
         shares = {"worlds": count, "of": len(fates), "share": count / len(fates), "low": low, "high": high}

@@ -9,11 +9,16 @@ from hedon.analysis.response import Response, common_to, figures
 
 
 def world_rows(material: Material, arms: Sequence[Arm], responses: Sequence[Response]) -> list[dict[str, Any]]:
-    """One row per world, in the order of the arms: arm, seed, steps, died_out, and a column per response."""
+    """One row per world, in the order of the arms.
+
+    Columns: arm, seed, steps, died_out, one per response, and until, the age up to which lifetimes are averaged where
+    the living are counted [step].
+    """
     common = common_to(world for arm in arms for world in material.worlds.get(arm.label, ()))
     return [
         {"arm": arm.label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
         | figures(world, common, responses)
+        | {"until": common.until}
         for arm in arms
         for world in material.worlds.get(arm.label, ())
     ]
