@@ -33,8 +33,8 @@ _EFFECT = (
 )
 _CELL = (
     "Means over worlds, geometric for lifetimes and rates of food. An extinct world counts as 0 alive from its end on. "
-    "Lifetimes with the living counted are means of min(lifetime, a common age, `until` in fault_worlds); weights are means over the 5000 "
-    "agents born last."
+    "Lifetimes with the living counted are means of min(lifetime, a common age, `until` in fault_worlds); weights are "
+    "means over the 5000 agents born last."
 )
 
 
