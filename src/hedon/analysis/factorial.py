@@ -12,7 +12,9 @@ who halve interactions; here they are not halved, so that on a log scale an inte
 
 The error is that of worlds within cells, pooled over all cells. Where cells are missing, an effect is estimated by
 least squares in the largest model that can tell it: all effects up to some order, those of higher order taken to be
-none. What no model can tell is left out.
+none. It is then the mean of what its factors do in some cells only, and is told only if no effect of other factors is
+mixed in, of whatever order; so growth may be told from two cells, but noise never from growth, critic and all three
+together. What no model can tell is left out.
 """
 
 import itertools
@@ -118,15 +120,19 @@ def all_effects(factors: int, order: int | None = None) -> list[Factors]:
 def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDArray[np.float64]]]:
     """Which effects some worlds can tell: for each, the order of its model and the weights of the worlds' values."""
     solved: dict[Factors, tuple[int, NDArray[np.float64]]] = {}
-    for order in range(factors, 0, -1) if cells else ():
+    if not cells:
+        return solved
+    everything = [(), *all_effects(factors)]
+    whole = _design(cells, everything)
+    for order in range(factors, 0, -1):
         model = [(), *all_effects(factors, order)]
-        design = _design(cells, model)
-        inverse = np.linalg.pinv(design)
-        # An effect can be told if changing it alone changes what the model says of the cells in a way of its own.
-        told = np.abs(np.diag(inverse @ design) - 1.0) < _TOLERANCE
-        for i, group in enumerate(model[1:], 1):
-            if told[i] and group not in solved:
-                solved[group] = (order, inverse[i])
+        inverse = np.linalg.pinv(_design(cells, model))
+        for group, weights in list(zip(model, inverse, strict=True))[1:]:
+            # What the estimate holds of each effect: itself whole, none of those that do not include its factors.
+            holds = dict(zip(everything, weights @ whole, strict=True))
+            strange = max(abs(share) for effect, share in holds.items() if not set(group) <= set(effect))
+            if group not in solved and abs(holds[group] - 1.0) < _TOLERANCE and strange < _TOLERANCE:
+                solved[group] = (order, weights)
     return {group: solved[group] for group in all_effects(factors) if group in solved}
 
 

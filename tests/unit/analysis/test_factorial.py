@@ -108,9 +108,27 @@ def test_what_cells_cannot_tell_apart_is_not_told() -> None:
     fit = fit_factorial(design([none, first, every], TRUE, 0.0, 2, rng), 3)
     assert estimates(fit) == pytest.approx({(0,): cell_mean(first, TRUE) - cell_mean(none, TRUE)})
     assert set(fit.left_out) == set(TRUE) - {(0,)}
+    # A half of the design: additive models would take the interactions of the others for the second factor.
+    half = [none, first, (False, False, True), every]
+    assert set(estimates(fit_factorial(design(half, TRUE, 0.0, 2, rng), 3))) == {(0,), (2,)}
     assert fit_factorial(design([none, every], TRUE, 0.0, 2, rng), 3).effects == ()
     assert fit_factorial(design([none], TRUE, 0.0, 2, rng), 3).left_out == tuple(all_effects(3))
     assert fit_factorial({}, 3).left_out == tuple(all_effects(3))
+
+
+def test_what_is_told_of_some_cells_never_holds_another_effect() -> None:
+    """Whichever cells there are: changing all effects that do not include a factor changes no estimate of its own."""
+    rng = np.random.default_rng(8)
+    told = 0
+    for chosen in range(1, 256):
+        cells = [cell for i, cell in enumerate(CELLS) if chosen >> i & 1]
+        for group in all_effects(3):
+            other = {effect: 9.0 * rng.normal() for effect in all_effects(3) if not set(group) <= set(effect)}
+            found = estimates(fit_factorial(design(cells, other | {group: 2.0}, 0.0, 1, rng), 3))
+            if group in found:
+                told += 1
+                assert found[group] == pytest.approx(2.0, abs=1e-9)
+    assert told > 255
 
 
 def test_a_sure_effect_is_found_and_corrected_for_seven() -> None:

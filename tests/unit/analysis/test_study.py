@@ -95,8 +95,8 @@ def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
     tables, _ = made(fault.FAULTS[0], {"none": worlds, "growth": worlds})
     assert set(tables["fault_effects"].rows["effect"]) == {"growth"}
     note = tables["fault_effects"].note
-    assert "left out noise, critic," in note
-    assert "with interactions of higher order taken as none growth (of all responses)" in note
+    assert "left out: noise, critic," in note
+    assert "told for some cells only: growth (of all responses)" in note
 
 
 def test_an_extinct_world_counts_as_empty(worlds: list[WorldRecord]) -> None:

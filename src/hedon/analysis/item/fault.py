@@ -121,8 +121,8 @@ def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
     gaps: dict[str, list[str]] = {}
     for name, fit in fits.items():
         narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
-        parts = [f"left out {', '.join(map(effect_name, fit.left_out))}"] if fit.left_out else []
-        parts += [f"with interactions of higher order taken as none {', '.join(narrow)}"] if narrow else []
+        parts = [f"left out: {', '.join(map(effect_name, fit.left_out))}"] if fit.left_out else []
+        parts += [f"told for some cells only: {', '.join(narrow)}"] if narrow else []
         if parts:
             gaps.setdefault(" and ".join(parts), []).append(name)
     told = [
