@@ -13,8 +13,8 @@ who halve interactions; here they are not halved, so that on a log scale an inte
 The error is that of worlds within cells, pooled over all cells. Where cells are missing, an effect is estimated by
 least squares in the largest model that can tell it: all effects up to some order, those of higher order taken to be
 none. It is then the mean of what its factors do in some cells only, and is told only if no effect of other factors is
-mixed in, of whatever order; so growth may be told from two cells, but noise never from growth, critic and all three
-together. What no model can tell is left out.
+mixed in, of whatever order: A may be told from two cells that differ in A alone, but never from cells with B, with C
+and with all three. What no model can tell is left out.
 """
 
 import itertools
