@@ -1,0 +1,153 @@
+"""What does each of several two-level factors do, alone and together? Contrasts of a full factorial design.
+
+A factor is coded −1/2 where it is absent and +1/2 where it is there; the column of several factors is the product of
+theirs; the effects are the coefficients of these columns. So
+
+- the *main effect* of A is the mean of the cells with A minus the mean of those without;
+- the *interaction* A × B is the effect of A with B minus the effect of A without B, means over the other factors;
+- A × B × C is the interaction A × B with C minus that without C.
+
+With all cells there, they count alike, however many worlds they hold. Box, Hunter & Hunter (2005), chapters 5 and 6,
+who halve interactions; here they are not halved, so that on a log scale an interaction is a ratio of ratios.
+
+The error is that of worlds within cells, pooled over all cells. Where cells are missing, an effect is estimated by
+least squares in the largest model that can tell it: all effects up to some order, those of higher order taken to be
+none. It is then the mean of what its factors do in some cells only, and is told only if no effect of other factors is
+mixed in, of whatever order: A may be told from two cells that differ in A alone, but never from cells with B, with C
+and with all three. What no model can tell is left out.
+"""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.analysis.correction import holm
+from hedon.analysis.interval import LEVEL
+
+Cell = tuple[bool, ...]
+"""Which factors are there, in their order."""
+Factors = tuple[int, ...]
+"""Indices of the factors of an effect, ascending."""
+
+NAN = math.nan
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One effect on one response, on the scale of the values given.
+
+    Attributes:
+        factors: whose effect or interaction it is.
+        order: of its model; effects of higher order are taken to be none.
+        estimate: see above.
+        low, high: bounds of its 95 % interval, Student's t; NaN where no cell has two worlds.
+        p: two-sided; NaN likewise, and where worlds of a cell do not differ.
+        p_holm: corrected for all effects of the fit.
+        seed_low, seed_high: least and largest of the same effect in single seeds; NaN where no seed tells it.
+        seeds: that have.
+    """
+
+    factors: Factors
+    order: int
+    estimate: float
+    low: float
+    high: float
+    p: float
+    p_holm: float
+    seed_low: float
+    seed_high: float
+    seeds: int
+
+
+@dataclass(frozen=True)
+class FactorialFit:
+    """The effects of one response.
+
+    Attributes:
+        effects: by order, then in the order of the factors.
+        left_out: what the cells cannot tell.
+        freedom: worlds minus cells.
+        sd: standard deviation within cells; NaN without freedom.
+    """
+
+    effects: tuple[Effect, ...]
+    left_out: tuple[Factors, ...]
+    freedom: int
+    sd: float
+
+
+def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> FactorialFit:
+    """Estimates all effects that can be told.
+
+    Args:
+        cells: for each cell with values, the value of each seed.
+        factors: how many there are.
+    """
+    filled = {cell: values for cell, values in cells.items() if values}
+    rows = [(cell, value) for cell, values in filled.items() for value in values.values()]
+    values = np.array([value for _, value in rows])
+    solved = _solve([cell for cell, _ in rows], factors)
+    freedom = len(rows) - len(filled)
+    within = sum(float(np.var(list(values.values()))) * len(values) for values in filled.values())
+    variance = within / freedom if freedom > 0 else NAN
+    reach = float(stats.t.ppf(0.5 + LEVEL / 2, freedom)) if freedom > 0 else NAN
+    found = []
+    for group, (order, weights) in solved.items():
+        estimate, error = float(weights @ values), math.sqrt(variance * float(weights @ weights))
+        p = float(2.0 * stats.t.sf(abs(estimate) / error, freedom)) if error > 0 else NAN
+        seeds = _in_seeds(filled, factors, group, order)
+        low, high = min(seeds, default=NAN), max(seeds, default=NAN)
+        bounds = (estimate - reach * error, estimate + reach * error)
+        found.append(Effect(group, order, estimate, *bounds, p, NAN, low, high, len(seeds)))
+    corrected = holm([effect.p for effect in found])
+    effects = tuple(replace(effect, p_holm=p) for effect, p in zip(found, corrected, strict=True))
+    left_out = tuple(group for group in all_effects(factors) if group not in solved)
+    return FactorialFit(effects, left_out, freedom, math.sqrt(variance) if freedom > 0 else NAN)
+
+
+def all_effects(factors: int, order: int | None = None) -> list[Factors]:
+    """All effects of some factors up to an order, by order."""
+    orders = range(1, (factors if order is None else order) + 1)
+    return [group for k in orders for group in itertools.combinations(range(factors), k)]
+
+
+def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDArray[np.float64]]]:
+    """Which effects some worlds can tell: for each, the order of its model and the weights of the worlds' values."""
+    solved: dict[Factors, tuple[int, NDArray[np.float64]]] = {}
+    if not cells:
+        return solved
+    everything = [(), *all_effects(factors)]
+    whole = _design(cells, everything)
+    for order in range(factors, 0, -1):
+        model = [(), *all_effects(factors, order)]
+        inverse = np.linalg.pinv(_design(cells, model))
+        for group, weights in list(zip(model, inverse, strict=True))[1:]:
+            # What the estimate holds of each effect: itself whole, none of those that do not include its factors.
+            holds = dict(zip(everything, weights @ whole, strict=True))
+            strange = max(abs(share) for effect, share in holds.items() if not set(group) <= set(effect))
+            if group not in solved and abs(holds[group] - 1.0) < _TOLERANCE and strange < _TOLERANCE:
+                solved[group] = (order, weights)
+    return {group: solved[group] for group in all_effects(factors) if group in solved}
+
+
+def _in_seeds(cells: Mapping[Cell, Mapping[int, float]], factors: int, group: Factors, order: int) -> list[float]:
+    """An effect in each single seed whose cells tell it by a model of the same order."""
+    found = []
+    for seed in sorted({seed for values in cells.values() for seed in values}):
+        mine = [cell for cell, values in cells.items() if seed in values]
+        solved = _solve(mine, factors).get(group)
+        if solved is not None and solved[0] == order:
+            found.append(float(solved[1] @ np.array([cells[cell][seed] for cell in mine])))
+    return found
+
+
+def _design(cells: Sequence[Cell], groups: Sequence[Factors]) -> NDArray[np.float64]:
+    """One row per cell, one column per effect."""
+    coded = np.array(cells, np.float64).reshape(len(cells), -1) - 0.5
+    return np.array([coded[:, list(group)].prod(axis=1) for group in groups]).reshape(len(groups), -1).T

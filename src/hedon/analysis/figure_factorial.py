@@ -1,0 +1,162 @@
+"""Which factors change a world, alone and together? The cells of a factorial design and its effects."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import polars as pl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+from hedon.analysis.response import Response
+from hedon.analysis.style import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
+
+_COLUMNS = 3
+_WIDTH = 9.0
+_ROW = 0.26  # height of a line of a panel [inch]
+_SPREAD = 0.28  # of the worlds of a cell, to either side of its line
+_REACH = 2.0  # widths of the estimates' own range beyond which intervals are cut off
+_WIDE = 4.0  # largest over least value from which on an axis of ratios is logarithmic
+
+
+def draw_cells(worlds: pl.DataFrame, arms: Sequence[str], responses: Sequence[Response]) -> Figure:
+    """A panel per response, a line per cell: a point per world, a bar for their mean.
+
+    Means of responses that are compared as ratios are geometric. Hollow points are worlds that died out.
+
+    Args:
+        worlds: one row per world: arm, seed, died_out and a column per response.
+        arms: in the order of the lines.
+        responses: that are drawn.
+    """
+    with styled():
+        figure, panels = _panels(responses, arms)
+        for axes, response in zip(panels, responses, strict=True):
+            for line, arm in enumerate(arms):
+                rows = worlds.filter((pl.col("arm") == arm) & pl.col(response.name).is_not_null()).sort("seed")
+                if rows.height:
+                    _draw_cell(axes, line, rows, response)
+            known = worlds[response.name].drop_nulls().to_numpy().astype(np.float64)
+            if not len(known):
+                say_empty(axes, "no world has a value")
+            elif response.ratio:
+                _scale(axes, known.min(), known.max())
+            elif known.min() <= 0 <= known.max():
+                axes.axvline(0, color=PALE, linewidth=1.0, zorder=0.5)
+        handles = [
+            Line2D([], [], color=BLUE, marker="o", linestyle="", markersize=4, label="world"),
+            Line2D([], [], color=INK, marker="|", linestyle="", markersize=9, markeredgewidth=2, label="mean"),
+        ]
+        if worlds["died_out"].any():
+            hollow = {"marker": "o", "linestyle": "", "markersize": 4, "markerfacecolor": "white"}
+            handles.append(Line2D([], [], color=VERMILION, label="world that died out", **hollow))
+        figure.legend(handles=handles, loc="outside upper left", ncols=3, labelcolor=MUTED)
+    return figure
+
+
+def draw_effects(effects: pl.DataFrame, names: Sequence[str], responses: Sequence[Response]) -> Figure:
+    """A panel per response, a line per effect: the estimate, its 95 % interval, and the same in single seeds.
+
+    The vertical line is where nothing is changed: 0, or a ratio of 1. Filled points are effects whose corrected
+    p is at most 0.05. An interval that reaches far beyond the estimates is cut off at an arrow.
+
+    Args:
+        effects: one row per response and effect: response, effect, estimate, low, high, p_holm, seed_low, seed_high.
+        names: of the effects, in the order of the lines.
+        responses: that are drawn.
+    """
+    with styled():
+        figure, panels = _panels(responses, names)
+        for axes, response in zip(panels, responses, strict=True):
+            rows = effects.filter(pl.col("response") == response.name)
+            if rows.is_empty():
+                say_empty(axes, "no effect can be told")
+                continue
+            axes.axvline(1.0 if response.ratio else 0.0, color=PALE, linewidth=1.4, zorder=0.5)
+            low, high = _reach(rows, response)
+            if response.ratio:
+                _scale(axes, low, high)
+            for row in rows.iter_rows(named=True):
+                _draw_effect(axes, names.index(row["effect"]), row, low, high)
+            axes.set_xlim(low, high)
+            axes.set_xlabel("ratio" if response.ratio else "difference")
+        sure = {"color": BLUE, "marker": "o", "markersize": 4.5}
+        handles = [
+            Line2D([], [], **sure, linewidth=1.4, label="effect and 95 % interval, p (Holm) ≤ 0.05"),
+            Line2D([], [], **sure, linewidth=1.4, markerfacecolor="white", label="p above 0.05, or none"),
+            Line2D([], [], color=MUTED, linewidth=4.0, alpha=0.35, label="range over seeds"),
+        ]
+        figure.legend(handles=handles, loc="outside upper left", ncols=3, labelcolor=MUTED)
+    return figure
+
+
+def _panels(responses: Sequence[Response], lines: Sequence[str]) -> tuple[Figure, list[Axes]]:
+    """A grid of panels that share the names of their lines, which stand at the left; and only as many as needed."""
+    rows = -(-len(responses) // _COLUMNS)
+    figure = new_figure(_WIDTH, rows * (0.95 + _ROW * max(len(lines), 2)) + 0.3)
+    panels = figure.subplots(rows, _COLUMNS, sharey=True, squeeze=False).ravel().tolist()
+    for axes in panels[len(responses) :]:
+        axes.remove()
+    for axes, response in zip(panels, responses, strict=False):
+        axes.set_title(response.title, fontsize=9)
+        axes.set_ylim(len(lines) - 0.4, -0.6)
+        axes.set_yticks(range(len(lines)), lines)
+        axes.grid(visible=False, axis="y")
+    return figure, panels[: len(responses)]
+
+
+def _draw_cell(axes: Axes, line: int, rows: pl.DataFrame, response: Response) -> None:
+    values = rows[response.name].to_numpy().astype(np.float64)
+    offset = np.linspace(-_SPREAD, _SPREAD, len(values)) if len(values) > 1 else np.zeros(1)
+    gone = rows["died_out"].to_numpy()
+    axes.scatter(values[~gone], line + offset[~gone], s=17, color=BLUE, linewidths=0, alpha=0.8, zorder=3)
+    axes.scatter(values[gone], line + offset[gone], s=17, facecolors="white", edgecolors=VERMILION, zorder=3)
+    mean = np.exp(np.log(values).mean()) if response.ratio else values.mean()
+    axes.plot([mean, mean], [line - 0.38, line + 0.38], color=INK, linewidth=2.0, zorder=2)
+
+
+def _draw_effect(axes: Axes, line: int, row: dict, low: float, high: float) -> None:
+    if row["seed_low"] is not None:
+        axes.plot([row["seed_low"], row["seed_high"]], [line, line], color=MUTED, linewidth=6.0, alpha=0.35, zorder=1)
+    if row["low"] is not None:
+        axes.plot([max(row["low"], low), min(row["high"], high)], [line, line], color=BLUE, linewidth=1.4, zorder=2)
+        for bound, edge, marker in ((row["low"] < low, low, "<"), (row["high"] > high, high, ">")):
+            if bound:
+                axes.plot(edge, line, marker=marker, color=BLUE, markersize=5, clip_on=False, zorder=3)
+    sure = row["p_holm"] is not None and row["p_holm"] <= 0.05
+    fill = BLUE if sure else "white"
+    axes.scatter(row["estimate"], line, s=24, c=[fill], edgecolors=BLUE, linewidths=1.2, zorder=4)
+
+
+def _reach(rows: pl.DataFrame, response: Response) -> tuple[float, float]:
+    """The limits of the axis: all estimates and seeds, and of the intervals what is not much wider."""
+    neutral = 1.0 if response.ratio else 0.0
+    inner = _known(rows, ("estimate", "seed_low", "seed_high"), neutral)
+    outer = _known(rows, ("low", "high"), neutral)
+    if response.ratio:
+        inner, outer = np.log(inner), np.log(np.maximum(outer, 1e-300))
+    width = max(float(np.ptp(inner)), 1e-3)
+    low = max(outer.min(), inner.min() - _REACH * width)
+    high = min(outer.max(), inner.max() + _REACH * width)
+    low, high = min(low, inner.min()), max(high, inner.max())
+    margin = 0.06 * (high - low)
+    bounds = np.array([low - margin, high + margin])
+    low, high = (np.exp(bounds) if response.ratio else bounds).tolist()
+    return low, high
+
+
+def _known(rows: pl.DataFrame, names: Sequence[str], neutral: float) -> np.ndarray:
+    values = rows.select(names).to_numpy().astype(np.float64).ravel()
+    return np.append(values[np.isfinite(values)], neutral)
+
+
+def _scale(axes: Axes, low: float, high: float) -> None:
+    """A logarithmic axis where the values span so much that its ticks can be few and round."""
+    if high < _WIDE * low:
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+        return
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=6))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter("{x:g}")

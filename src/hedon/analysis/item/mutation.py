@@ -1,0 +1,73 @@
+"""Rows and figure of what a world's mutations predict, for the studies that ask it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from hedon.analysis.condition_figure import NamedFigure
+from hedon.analysis.figure_prediction import draw_predictions
+from hedon.analysis.item.item import Arm, Material
+from hedon.analysis.table_drift import COMPARISONS, GeneDrift, compare, gene_drift
+from hedon.analysis.topic.result import ResultTable, generator, table
+
+GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}
+_ALL = "all genes"
+
+_PREDICTION = (
+    "bias: mean mutation per birth, which each generation of a line without selection adds to its weight. Slopes are "
+    "of seen = slope · predicted, through the origin, with Student's t interval; p_sign is exact binomial. Genes of "
+    "one world have tables of their own but share its pedigree. A weight that has reached the limit drifts no further, "
+    "which the second comparison accounts for. A bias is there with either noise, but with independent noise it is "
+    "that of mutations that happened once, and does not recur; near the limit it leans inward, as clipping does."
+)
+_GENE = (
+    "numbers: births within a window that have an entry. bounds: entries of which all children were clipped at the "
+    "limit. disagreement: largest difference between mutations of equal number; rounding is 1e-6 for weights up to "
+    "10. line_mean, line_low, line_high: weight of lines without selection after `generations`, mean and 95 % of "
+    "them. slope: of mean weight against mean generation; displacement: from the founders' mean to the end, per "
+    "generation."
+)
+
+Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
+"""Per arm, the seed of each world and the drift of each of its genes."""
+
+
+def arm_drifts(material: Material, arms: Sequence[Arm]) -> Drifts:
+    """All genes of all worlds of some arms."""
+    return {
+        arm.label: [
+            (world.seed, found)
+            for world in material.worlds.get(arm.label, ())
+            for weight in GENES
+            if weight in world.weight_names and (found := gene_drift(world, weight, generator(world))) is not None
+        ]
+        for arm in arms
+    }
+
+
+def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | ResultTable]:
+    """The figure and the two tables of a study.
+
+    Args:
+        name: that the parts' names begin with.
+        drifts: of `arm_drifts`.
+        note: on the worlds.
+    """
+    shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
+    yield NamedFigure(f"{name}_prediction", "Do weights go where mutations push them?", draw_predictions(shown, GENES))
+    yield table(
+        f"{name}_prediction",
+        "Mutations: predicted and seen",
+        [row for label, found in shown.items() for row in _prediction_rows(label, found)],
+        " ".join(filter(None, [_PREDICTION, note])),
+    )
+    rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
+    yield table(f"{name}_gene", "Mutations, world by world", rows, _GENE, shown=False)
+
+
+def _prediction_rows(label: str, drifts: Sequence[GeneDrift]) -> Iterator[dict[str, Any]]:
+    for comparison in COMPARISONS:
+        for weight in (*GENES, _ALL):
+            mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
+            if mine:
+                found = {"arm": label, "compared": comparison, "weight": weight}
+                yield found | vars(compare(mine, comparison))

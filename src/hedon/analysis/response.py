@@ -1,0 +1,142 @@
+"""What a study asks of each world: one figure per question, by name, with the scale on which worlds are compared."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.claim import last_mean
+from hedon.analysis.food import food_per_agent_step, food_per_step
+from hedon.analysis.lifetime import mean_lifetime
+from hedon.analysis.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
+from hedon.analysis.survival import durations, restricted_mean, survival_curve
+from hedon.analysis.world import WorldRecord
+
+_LIVES_OVER = 0.05
+"""Share that lives on below which the rest of a curve hardly adds to its mean, so that no age needs to be the last."""
+
+
+@dataclass(frozen=True)
+class Common:
+    """What all worlds of a study share, so that their figures can be compared.
+
+    Attributes:
+        end: step up to which the longest world reaches [step]; an extinct one counts as empty from its end to there.
+        until: age up to which lifetimes are averaged, where censored lives count [step]; 0 where there is none.
+    """
+
+    end: int
+    until: float
+
+
+@dataclass(frozen=True)
+class Response:
+    """One figure of a world.
+
+    Attributes:
+        name: of its column.
+        title: in words, with its unit.
+        measure: of one world; None where it has none.
+        ratio: whether worlds are compared by the logarithm, so that effects are ratios.
+        sure: whether differences get an interval; a 0 or 1 per world has no normal law to take one from.
+    """
+
+    name: str
+    title: str
+    measure: Callable[[WorldRecord, Common], float | None]
+    ratio: bool = False
+    sure: bool = True
+
+    def value(self, world: WorldRecord, common: Common) -> float | None:
+        """The figure of a world; None where it has none or, for a ratio, where it is not above 0."""
+        value = self.measure(world, common)
+        return None if value is None or not math.isfinite(value) or (self.ratio and value <= 0) else value
+
+    def scaled(self, value: float) -> float:
+        """On the scale on which worlds are compared."""
+        return math.log(value) if self.ratio else value
+
+    def unscaled(self, value: float | None) -> float | None:
+        """Back from that scale: of a difference, the difference or the ratio."""
+        return math.exp(value) if self.ratio and value is not None else value
+
+
+def common_to(worlds: Iterable[WorldRecord]) -> Common:
+    """The end and the age that all of some worlds share.
+
+    The age is the smallest, over worlds, that 20 agents reached; a world whose curve has fallen below 5 % by then is
+    passed over, since its mean does not depend on where it is cut. Where all are such, it is the largest.
+    """
+    worlds, ages, short = list(worlds), [], []
+    for world in worlds:
+        curve = survival_curve(*durations(world.agents, world.last_step))
+        age = curve.trusted_age()
+        left = 1.0 if age == 0 else float(curve.share[np.searchsorted(curve.age, age)])
+        over = world.extinct_step is not None or left < _LIVES_OVER
+        (short if over else ages).append(age)
+    until = min((age for age in ages if age > 0), default=max(short, default=0.0))
+    return Common(max((world.last_step for world in worlds), default=0), until)
+
+
+def figures(world: WorldRecord, common: Common, responses: Sequence[Response]) -> dict[str, float | None]:
+    """All figures of one world, by name."""
+    return {response.name: response.value(world, common) for response in responses}
+
+
+def _alive(world: WorldRecord, common: Common) -> float | None:
+    if world.extinct_step is None:
+        return mean_alive(run_tail(world.population))
+    begin = (1 - TAIL) * common.end
+    tail = world.population.filter(pl.col("step") > begin)
+    return int(tail["agent_steps"].sum()) / (common.end - begin)
+
+
+def _energy(world: WorldRecord, _common: Common) -> float | None:
+    return mean_energy(run_tail(world.population)) if world.extinct_step is None else None
+
+
+def _restricted(world: WorldRecord, common: Common) -> float | None:
+    curve = survival_curve(*durations(world.agents, world.last_step))
+    return restricted_mean(curve, common.until).mean if common.until and len(curve.age) else None
+
+
+def _refused(world: WorldRecord, _common: Common) -> float | None:
+    sums = world.population.select(pl.col("births", "births_failed_full", "births_failed_space").sum()).row(0)
+    return (sums[1] + sums[2]) / sum(sums) if sum(sums) else None
+
+
+def _weight(name: str) -> Callable[[WorldRecord, Common], float | None]:
+    return lambda world, _common: last_mean(name, world) if name in world.weight_names else None
+
+
+def _size(name: str) -> Callable[[WorldRecord, Common], float | None]:
+    signed = _weight(name)
+    return lambda world, common: None if (value := signed(world, common)) is None else abs(value)
+
+
+RESPONSES = (
+    Response("alive", "agents alive, last tenth", _alive),
+    Response("lifetime", "lifetime of the dead [step]", lambda w, _: mean_lifetime(w.agents), ratio=True),
+    Response("restricted_lifetime", "lifetime, the living counted [step]", _restricted, ratio=True),
+    Response("food_agent", "food, mean over agents [1/step]", lambda w, _: _food_agent(w), ratio=True),
+    Response("food_step", "food per step lived [1/step]", lambda w, _: _food_step(w), ratio=True),
+    Response("w_food", "weight of food", _weight("w_normal")),
+    Response("w_action", "weight of action", _weight("w_action")),
+    Response("neutral", "neutral marker", _weight("neutral_1")),
+    Response("neutral_size", "|neutral marker|", _size("neutral_1")),
+    Response("refused", "share of births without a place", _refused),
+    Response("generation", "generation at the end", lambda w, _: last_generation(w.population)),
+    Response("energy", "mean energy, last tenth", _energy),
+    Response("extinct", "extinct", lambda w, _: float(w.extinct_step is not None), sure=False),
+)
+"""Of a baseline world; those of weights are means over the 5000 agents born last."""
+
+
+def _food_agent(world: WorldRecord) -> float | None:
+    return food_per_step(world.agents, world.food_kinds)
+
+
+def _food_step(world: WorldRecord) -> float | None:
+    return food_per_agent_step(world.population, world.food_kinds)

@@ -1,0 +1,157 @@
+"""The table of frozen noise and what it predicts, on records whose table is known."""
+
+import dataclasses
+
+import numpy as np
+import polars as pl
+import pytest
+
+from hedon.analysis.noise_table import mutations, noise_table
+from hedon.analysis.table_drift import compare, gene_drift, prediction
+from hedon.analysis.world import WorldRecord
+from hedon.config import load_config
+
+WINDOW = 1024
+GENE = "neutral_1"
+PER_WINDOW = 24  # births at most
+
+
+def make_world(
+    table: np.ndarray | None, rng: np.random.Generator, *, windows: int = 120, seed: int = 1, limit: float = 10.0
+) -> WorldRecord:
+    """A world of 40 agents without selection; noise from the table, or independent where there is none."""
+    config = load_config("baseline", "released" if table is not None else "corrected")
+    config = dataclasses.replace(config, genome=dataclasses.replace(config.genome, weight_limit=limit))
+    weight = rng.normal(0, 0.1, 40).astype(np.float32).tolist()
+    generation, birth, parents = [0] * 40, [0] * 40, [-1] * 40
+    living, rows = list(range(40)), []
+    for window in range(windows):
+        count = int(rng.integers(PER_WINDOW // 2, PER_WINDOW + 1))
+        steps = np.sort(rng.integers(1, WINDOW + 1, count))
+        for number, step in enumerate(steps):
+            parent = living[int(rng.integers(40))]
+            noise = 0.02 * rng.standard_cauchy() if table is None else table[number]
+            child = np.float32(np.float32(weight[parent]) + np.float32(noise))
+            weight.append(float(np.clip(child, -np.float32(limit), np.float32(limit))))
+            generation.append(generation[parent] + 1)
+            birth.append(window * WINDOW + int(step))
+            parents.append(parent)
+            living[int(rng.integers(40))] = len(weight) - 1
+        mean = (np.mean([values[i] for i in living]) for values in (weight, generation))
+        rows.append(dict(zip((f"{GENE}_mean", "generation_mean"), mean, strict=True)))
+    agents = pl.DataFrame(
+        {"agent_id": range(len(weight)), "parent_id": [p if p >= 0 else None for p in parents], "birth_step": birth}
+        | {"generation": generation, "world": [0] * len(weight), "death_step": [None] * len(weight)}
+        | {GENE: pl.Series(weight, dtype=pl.Float32)}
+    )
+    population = pl.DataFrame(rows).with_columns(step=pl.int_range(1, windows + 1) * WINDOW)
+    names = (("normal",), ("w_normal", "w_action"), (GENE,))
+    return WorldRecord("c", "run", seed, config, *names, agents, population, windows * WINDOW, None)
+
+
+def make_table(rng: np.random.Generator) -> np.ndarray:
+    return np.clip(0.02 * rng.standard_cauchy(PER_WINDOW), -1.0, 1.0)
+
+
+def test_the_table_is_read_off_the_records() -> None:
+    rng = np.random.default_rng(1)
+    table = make_table(rng)
+    found = noise_table(mutations(make_world(table, rng), GENE))
+    assert found.value == pytest.approx(table, abs=2e-6)
+    assert found.is_one
+    assert 0 < found.disagreement < 2e-6
+    assert not found.bound.any()
+    # Each window has the first dozen births, only some have the last.
+    assert (found.births[: PER_WINDOW // 2] == 120).all()
+    assert found.births[-1] < 30
+    assert found.bias == pytest.approx(np.average(table, weights=found.births), abs=1e-6)
+
+
+def test_clipped_children_do_not_hide_the_table() -> None:
+    """Weights that are pushed to a narrow limit: clipped births show less than the table, and are not used."""
+    rng = np.random.default_rng(2)
+    table = make_table(rng)
+    table[3], table[5] = 0.4, -2.5  # the latter is always clipped
+    mutated = mutations(make_world(table, rng, limit=1.0), GENE)
+    assert mutated.clipped.mean() > 0.1
+    found = noise_table(mutated)
+    free = np.arange(PER_WINDOW) != 5
+    assert found.value[free] == pytest.approx(table[free], abs=2e-6)
+    assert found.is_one
+    assert np.flatnonzero(found.bound).tolist() == [5]
+    assert -2.0 <= found.value[5] < -1.0  # a bound, of the right sign
+
+
+def test_independent_noise_is_no_table() -> None:
+    rng = np.random.default_rng(3)
+    found = noise_table(mutations(make_world(None, rng), GENE))
+    assert not found.is_one
+    assert found.disagreement > 0.1
+
+
+def test_births_after_a_gap_have_no_number() -> None:
+    rng = np.random.default_rng(4)
+    table = make_table(rng)
+    world = make_world(table, rng)
+    holed = dataclasses.replace(world, agents=world.agents.filter(pl.col("agent_id") != 300))
+    found = mutations(holed, GENE)
+    assert len(found.change) == 300 - 40
+    assert noise_table(found).is_one
+    none = dataclasses.replace(world, agents=world.agents.filter(pl.col("parent_id").is_null()))
+    assert gene_drift(none, GENE, rng) is None
+
+
+def test_frozen_noise_predicts_where_a_gene_without_selection_drifts() -> None:
+    rng = np.random.default_rng(5)
+    drifts = [gene_drift(make_world(make_table(rng), rng, seed=seed), GENE, rng) for seed in range(10)]
+    known = [drift for drift in drifts if drift is not None]
+    assert len(known) == 10
+    for comparison in ("drift per generation", "bias, first half and second"):
+        found = compare(known, comparison)
+        assert found.correlation > 0.9
+        assert found.low < found.slope < found.high
+        assert found.slope == pytest.approx(1.0, abs=0.35)
+    end = compare(known, "weight at the end")
+    assert end.correlation > 0.9
+    assert end.slope == pytest.approx(1.0, abs=0.35)
+    assert sum(d.line_low <= d.end <= d.line_high for d in known) >= 8
+
+
+def test_lines_stop_at_the_limit() -> None:
+    rng = np.random.default_rng(6)
+    world = make_world(np.full(PER_WINDOW, 0.1), rng, limit=1.0)
+    found = gene_drift(world, GENE, rng)
+    assert found is not None
+    assert found.generations > 20  # enough for twice the limit
+    assert found.line_mean == found.line_high == 1.0
+    assert found.end == pytest.approx(1.0, abs=0.6)
+    assert found.displacement < 0.05 < found.bias  # what the limit hides from the drift per generation
+
+
+def test_independent_noise_predicts_nothing() -> None:
+    rng = np.random.default_rng(7)
+    drifts = [gene_drift(make_world(None, rng, seed=seed), GENE, rng) for seed in range(12)]
+    found = compare([drift for drift in drifts if drift is not None], "bias, first half and second")
+    assert abs(found.rank_correlation) < 0.6
+    assert 2 <= found.same_sign <= 10
+
+
+def test_the_slope_s_interval_covers_as_often_as_promised() -> None:
+    rng = np.random.default_rng(8)
+    covered = 0
+    for _ in range(1000):
+        x = rng.normal(size=8)
+        found = prediction(x, 0.7 * x + rng.normal(size=8))
+        covered += found.low <= 0.7 <= found.high
+    assert covered / 1000 == pytest.approx(0.95, abs=0.025)
+
+
+def test_predictions_by_hand() -> None:
+    found = prediction([1.0, 2.0, -1.0, np.nan], [2.0, 4.0, -2.0, 5.0])
+    assert (found.pairs, found.same_sign, found.p_sign) == (3, 3, 0.25)
+    assert (found.correlation, found.rank_correlation) == pytest.approx((1.0, 1.0))
+    assert (found.slope, found.low, found.high) == pytest.approx((2.0, 2.0, 2.0))
+    few = prediction([1.0, -1.0], [1.0, 1.0])
+    assert (few.pairs, few.same_sign, few.p_sign) == (2, 1, 1.0)
+    assert np.isnan(few.slope)
+    assert np.isnan(prediction([], []).p_sign)
