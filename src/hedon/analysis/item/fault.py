@@ -67,10 +67,11 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
     rows = world_rows(material, ARMS, RESPONSES)
     missing = missing_note(material, ARMS, SCALE)
     fits = {response.name: _fit(rows, response) for response in RESPONSES}
+    rows_of_effects = {response.name: list(_effect_rows(response, fits[response.name])) for response in RESPONSES}
     effects = table(
         "fault_effects",
         "Effects of the released code's faults",
-        [row for response in RESPONSES for row in _effect_rows(response, fits[response.name])],
+        [row for response in _SHOWN for row in rows_of_effects[response.name]],
         " ".join(filter(None, [_EFFECT, _missing_effects(fits), missing])),
     )
     worlds = table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
@@ -87,6 +88,8 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
     yield table(
         "fault_cells", "Worlds with and without the faults", _cell_rows(rows), " ".join(filter(None, [_CELL, missing]))
     )
+    everything = [row for found in rows_of_effects.values() for row in found]
+    yield table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
     yield worlds
 
 
