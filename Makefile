@@ -15,7 +15,7 @@ test: sync
 	$(RUN) clang-format --dry-run -Werror $(shell find engine -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
 	$(RUN) pyright
-	$(RUN) pytest
+	$(RUN) pytest --numprocesses auto --dist loadfile
 	$(RUN) python tests/sanitize.py asan
 	$(RUN) --group cuda python tests/cuda.py
 

@@ -43,7 +43,7 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
     assert item.kind == "study"
     assert len(set(labels)) == len(labels)
     tables, _ = made(item, {})
-    assert any(f"No world of: {', '.join(labels)}." in part.note for part in tables.values())
+    assert any(f"Not run yet: {'; '.join(labels)}." in part.note for part in tables.values())
     cut = [world.until(30 * 1024) for world in worlds]
     cases = ((worlds[:1], False, True), (worlds[1:2], True, False), (worlds, True, True), (cut, True, True))
     for chosen, dies, breeds in cases:

@@ -8,6 +8,7 @@ import polars as pl
 from hedon.analysis.appetite import WINDOWS, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_appetite import draw_appetite
+from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.population import history
@@ -53,7 +54,7 @@ def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
         "entropy",
         "With and without the bonus for entropy",
         [row for response in (*RESPONSES, _HALF_WAY) for row in _difference(rows, response)],
-        " ".join(filter(None, [_DIFFERENCE, missing])),
+        sentences(_DIFFERENCE, missing),
     )
     eaten = [
         {"arm": label, "seed": world.seed} | vars(part)

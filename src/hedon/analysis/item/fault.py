@@ -6,6 +6,7 @@ from typing import Any
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
 from hedon.analysis.figure_factorial import draw_cells, draw_effects
+from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.response import RESPONSES, Response
@@ -72,7 +73,7 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
         "fault_effects",
         "Effects of the released code's faults",
         [row for response in _SHOWN for row in rows_of_effects[response.name]],
-        " ".join(filter(None, [_EFFECT, _missing_effects(fits), missing])),
+        sentences(_EFFECT, _missing_effects(fits), missing),
     )
     worlds = table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
     told = set(effects.rows["effect"]) if effects.rows.height else set()
@@ -85,9 +86,7 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
         drawn = draw_effects(effects.rows, names, _SHOWN)
         yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn)
     yield effects
-    yield table(
-        "fault_cells", "Worlds with and without the faults", _cell_rows(rows), " ".join(filter(None, [_CELL, missing]))
-    )
+    yield table("fault_cells", "Worlds with and without the faults", _cell_rows(rows), sentences(_CELL, missing))
     everything = [row for found in rows_of_effects.values() for row in found]
     yield table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
     yield worlds

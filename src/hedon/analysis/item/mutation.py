@@ -5,6 +5,7 @@ from typing import Any
 
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_prediction import draw_predictions
+from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Material
 from hedon.analysis.table_drift import COMPARISONS, GeneDrift, compare, gene_drift
 from hedon.analysis.topic.result import ResultTable, generator, table
@@ -58,7 +59,7 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
         f"{name}_prediction",
         "Mutations: predicted and seen",
         [row for label, found in shown.items() for row in _prediction_rows(label, found)],
-        " ".join(filter(None, [_PREDICTION, note])),
+        sentences(_PREDICTION, note),
     )
     rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
     yield table(f"{name}_gene", "Mutations, world by world", rows, _GENE, shown=False)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from hedon.analysis.interval import SHOWN_FROM, Interval, mean_interval
+from hedon.analysis.item.census import missing, sentences
 from hedon.analysis.item.item import Arm, Material, Scale
 from hedon.analysis.response import Response, common_to, figures
 
@@ -44,9 +45,7 @@ def shown_interval(values: Sequence[float | None], response: Response | None = N
 
 def missing_note(material: Material, arms: Sequence[Arm], scale: Scale) -> str:
     """Names the arms without worlds, the worlds that reach less far than the study's scale, and those that died out."""
-    parts = []
-    if none := [arm.label for arm in arms if not material.worlds.get(arm.label)]:
-        parts.append(f"No world of: {', '.join(none)}.")
+    parts = [missing(arms, material)]
     worlds = [(arm.label, world) for arm in arms for world in material.worlds.get(arm.label, ())]
     short = [world.last_step for _, world in worlds if world.extinct_step is None and world.last_step < scale.steps]
     if short:
@@ -54,4 +53,4 @@ def missing_note(material: Material, arms: Sequence[Arm], scale: Scale) -> str:
         parts.append(f"{len(short)} of {len(worlds)} worlds reach only {reach} of {scale.steps:,} steps.")
     if gone := [f"{label} (seed {world.seed})" for label, world in worlds if world.extinct_step is not None]:
         parts.append(f"Died out, and counted: {', '.join(gone)}.")
-    return " ".join(parts)
+    return sentences(*parts)
