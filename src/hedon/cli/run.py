@@ -10,7 +10,7 @@ import typer
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
-from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -67,6 +67,7 @@ def run(
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
+    require_no_run(folder)
     plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint)
     conduct(plan, lambda display: run_plan(plan, display))
 

@@ -1,5 +1,6 @@
 """Where the files of a run lie."""
 
+import shlex
 from pathlib import Path
 
 from hedon.record.error import RecordError
@@ -43,6 +44,19 @@ def holds_run(folder: Path) -> bool:
     begun = all((folder / name).is_dir() for name in TABLE_FOLDERS)
     kept = any(not path.is_dir() or any(path.iterdir()) for path in tables)
     return kept or ((folder / CONFIG).exists() and not begun)
+
+
+def require_no_run(folder: Path) -> None:
+    """Refuses a folder for a new run that holds one.
+
+    Raises:
+        RecordError: it does.
+    """
+    if holds_run(folder):
+        raise RecordError(
+            f"{folder} holds a run already: go on with it by `hedon resume {shlex.quote(str(folder))}`, "
+            "choose another folder, or remove it first"
+        )
 
 
 def part_path(folder: Path, table: str, index: int) -> Path:

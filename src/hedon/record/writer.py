@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from hedon.record.atomic import write_atomically
 from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, fault_path, holds_run
+from hedon.record.folder import CONFIG, fault_path, require_no_run
 from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
@@ -176,11 +176,7 @@ class Writer:
                 raise
 
     def _prepare(self, config_text: str, manifest: Manifest) -> None:
-        if holds_run(self.folder):
-            raise RecordError(
-                f"{self.folder} holds a run already: go on with it by `hedon resume {shlex.quote(str(self.folder))}`, "
-                "choose another folder, or remove it first"
-            )
+        require_no_run(self.folder)
         try:
             for table in self.tables:
                 (self.folder / table).mkdir(parents=True, exist_ok=True)
