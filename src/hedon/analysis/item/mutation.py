@@ -28,6 +28,8 @@ _GENE = (
     "generation."
 )
 
+_BRIEF = ("weight", "numbers", "bias", "slope", "displacement", "generations", "line_mean", "end")
+
 Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
 """Per arm, the seed of each world and the drift of each of its genes."""
 
@@ -62,7 +64,9 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
         sentences(_PREDICTION, note),
     )
     rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
-    yield table(f"{name}_gene", "Mutations, world by world", rows, _GENE, shown=False)
+    brief = [{column: row[column] for column in ("arm", "seed", *_BRIEF)} for row in rows]
+    yield table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
+    yield table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
 
 def _prediction_rows(label: str, drifts: Sequence[GeneDrift]) -> Iterator[dict[str, Any]]:
