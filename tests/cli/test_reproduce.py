@@ -24,7 +24,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("reproduce")
     answer = call(folder, "weights-baseline", "history-baseline", "--seeds", "1-2", "--steps", "1024")
     assert answer.returncode == 0, answer.stderr
-    assert "2 items (corrected) from 2 worlds: 1 runs to make in runs, 2,048 world-steps" in answer.stdout
+    assert "2 items (corrected) from 2 worlds: 1 run to make in runs, 2,048 world-steps" in answer.stdout
     return folder
 
 
@@ -81,6 +81,8 @@ def test_the_list_names_every_item_with_a_measured_time(tmp_path: Path) -> None:
     [
         (("weigths-poor",), "there is no item 'weigths-poor'; did you mean weights-poor?"),
         (("hazard", "--fidelity", "relesed"), "--fidelity: 'relesed' is not one of corrected, released, text"),
+        (("hazard", "list"), "there is no item 'list'; `list` comes first"),
+        (("hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("weights-poor", "--seeds", "5-1"), "--seeds: '5-1' is not a range of seeds"),
     ],
 )

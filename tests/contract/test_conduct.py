@@ -13,7 +13,7 @@ from hedon.config import load_config
 from hedon.experiment.plan import Moment
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
-from hedon.reproduce.conduct import conduct, parallel_runs
+from hedon.reproduce.conduct import conduct, next_share
 from hedon.reproduce.plan import Job
 from hedon.reproduce.progress import PlanDisplay
 from hedon.reproduce.work import Outcome
@@ -86,14 +86,26 @@ def test_a_run_that_fails_leaves_the_others_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("seeds", "runs", "threads", "together"), [(5, 7, 64, 7), (5, 7, 16, 3), (5, 7, 2, 1), (1, 1, 9, 1)]
+    ("worlds", "threads", "shares"),
+    [
+        ((5, 5, 5, 10), 16, [5, 5, 5]),
+        ((5, 5), 16, [5, 11]),
+        ((5, 5), 2, [2]),
+        ((2, 10, 1), 4, [2]),
+        ((1, 1, 1), 2, [1, 1]),
+        ((), 2, []),
+    ],
 )
-def test_as_many_runs_at_a_time_as_leave_each_world_a_thread(
-    seeds: int, runs: int, threads: int, together: int
+def test_each_world_has_a_thread_and_the_last_run_what_is_left(
+    worlds: tuple[int, ...], threads: int, shares: list[int]
 ) -> None:
     config = load_config("baseline")
-    jobs = [Job(Path(str(i)), config, tuple(range(seeds)), 1, seeds, False) for i in range(runs)]
-    assert parallel_runs(jobs, threads) == together
+    waiting = [Job(Path(str(i)), config, tuple(range(n)), 1, n, False) for i, n in enumerate(worlds)]
+    begun: list[int] = []
+    while share := next_share(waiting, begun, threads):
+        begun.append(share)
+        waiting.pop(0)
+    assert begun == shares
 
 
 def test_no_job_is_no_work() -> None:

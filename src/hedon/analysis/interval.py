@@ -18,8 +18,7 @@ class Interval:
 
     Attributes:
         mean: None where no world has a value.
-        low, high: bounds of the interval; None with fewer than two worlds, which say nothing about their
-            spread.
+        low, high: bounds of the interval; None with fewer than two worlds, which say nothing about their spread.
         worlds: how many have a value.
     """
 
@@ -32,13 +31,11 @@ class Interval:
 def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Interval:
     """Mean and Student's t interval over independent worlds.
 
-    Worlds are the unit: agents of one world are relatives, so an interval over agents would be far too
-        narrow.
+    Worlds are the unit: agents of one world are relatives, so an interval over agents would be far too narrow.
 
     Args:
         values: one per world; None and NaN are left out.
-        level: probability with which such an interval covers the true mean, if worlds are normally
-            distributed.
+        level: probability with which such an interval covers the true mean, if worlds are normally distributed.
     """
     known = np.array([value for value in values if value is not None and math.isfinite(value)], np.float64)
     if known.size == 0:

@@ -1,9 +1,7 @@
 """How long do agents live?
 
-Only the dead have a lifetime. Those who still live when a run ends tend to be the long-lived, so a mean
-over the dead
-is too small where lives are not short against the run: look at the number alive, or estimate survival
-    instead.
+Only the dead have a lifetime. Those who still live when a run ends tend to be the long-lived, so a mean over the dead
+is too small where lives are not short against the run: look at the number alive, or estimate survival instead.
 """
 
 import polars as pl

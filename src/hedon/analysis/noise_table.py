@@ -41,10 +41,6 @@ class Mutations:
     clipped: NDArray[np.bool_]
     rounding: float
 
-    def among(self, births: NDArray[np.bool_]) -> "Mutations":
-        """Those of some births."""
-        return Mutations(self.number[births], self.change[births], self.clipped[births], self.rounding)
-
 
 @dataclass(frozen=True, eq=False)
 class NoiseTable:

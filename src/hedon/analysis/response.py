@@ -11,11 +11,11 @@ from hedon.analysis.claim import last_mean
 from hedon.analysis.food import food_per_agent_step, food_per_step
 from hedon.analysis.lifetime import mean_lifetime
 from hedon.analysis.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.survival import durations, restricted_mean, survival_curve
+from hedon.analysis.survival import SurvivalCurve, durations, restricted_mean, survival_curve
 from hedon.analysis.world import WorldRecord
 
-_LIVES_OVER = 0.05
-"""Share that lives on below which the rest of a curve hardly adds to its mean, so that no age needs to be the last."""
+_NEGLIGIBLE = 0.01
+"""Share of a mean lifetime that may lie beyond the age up to which a curve is trusted."""
 
 
 @dataclass(frozen=True)
@@ -66,18 +66,26 @@ class Response:
 def common_to(worlds: Iterable[WorldRecord]) -> Common:
     """The end and the age that all of some worlds share.
 
-    The age is the smallest, over worlds, that 20 agents reached; a world whose curve has fallen below 5 % by then is
-    passed over, since its mean does not depend on where it is cut. Where all are such, it is the largest.
+    A curve is trusted up to the age that 20 agents reached. The common age is the largest of these at which no curve
+    would have to be read further than it is trusted, but for so few survivors that they could not move its mean by a
+    hundredth. In an extinct world no life is censored, so its curve can be read at any age.
     """
-    worlds, ages, short = list(worlds), [], []
-    for world in worlds:
-        curve = survival_curve(*durations(world.agents, world.last_step))
-        age = curve.trusted_age()
-        left = 1.0 if age == 0 else float(curve.share[np.searchsorted(curve.age, age)])
-        over = world.extinct_step is not None or left < _LIVES_OVER
-        (short if over else ages).append(age)
-    until = min((age for age in ages if age > 0), default=max(short, default=0.0))
+    worlds = list(worlds)
+    curves = [survival_curve(*durations(w.agents, w.last_step)) for w in worlds if w.extinct_step is None]
+    trusted = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
+    until = max((age for age in trusted if all(_readable(c, a, age) for a, c in trusted.items())), default=0.0)
+    if not trusted:  # every world died out, or nobody did
+        gone = [survival_curve(*durations(w.agents, w.last_step)).trusted_age() for w in worlds]
+        until = max(gone, default=0.0)
     return Common(max((world.last_step for world in worlds), default=0), until)
+
+
+def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
+    """Whether a curve's mean up to an age needs nothing beyond the age up to which it is trusted."""
+    if until <= trusted:
+        return True
+    left = float(curve.share[np.searchsorted(curve.age, trusted)])
+    return left * (until - trusted) <= _NEGLIGIBLE * restricted_mean(curve, trusted).mean
 
 
 def figures(world: WorldRecord, common: Common, responses: Sequence[Response]) -> dict[str, float | None]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+import numpy as np
 import polars as pl
 
 from hedon.analysis.population import extinct_step
@@ -43,6 +44,16 @@ class WorldRecord:
     def weight_names(self) -> tuple[str, ...]:
         """All genome columns, in order: those that enter the reward, then the neutral markers."""
         return (*self.reward_names, *self.neutral_names)
+
+    def recorded_step(self) -> int:
+        """Up to which step all agents are in the records [step]; 0 if to none.
+
+        The living are written now and then, so a run that goes on, or was killed, lacks those born since.
+        """
+        steps = self.population["step"].to_numpy()
+        born, died = (np.sort(self.agents[name].drop_nulls().to_numpy()) for name in ("birth_step", "death_step"))
+        known = np.searchsorted(born, steps, "right") - np.searchsorted(died, steps, "right")
+        return int(steps[known == self.population["alive"].to_numpy()].max(initial=0))
 
     def until(self, step: int) -> "WorldRecord":
         """The world as its records would be if it had ended earlier, but for what the living had done by then.

@@ -1,5 +1,6 @@
 """`hedon reproduce`: the paper's figures and tables, each from one command."""
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,10 +28,12 @@ def reproduce(
         list[str] | None, typer.Argument(metavar="[ITEM]...", help="Items or groups; list ITEM... tells of them only.")
     ] = None,
     seeds: Annotated[
-        str | None, typer.Option(help="One world per seed and setting, as in 1-5; by default the item's own.")
+        str | None,
+        typer.Option(help="One world per seed, as in 1-5; by default the item's own, as for pictures."),
     ] = None,
     steps: Annotated[
-        int | None, typer.Option(help="Steps of each world; by default the item's own.", min=1, max=MAX_STEPS)
+        int | None,
+        typer.Option(help="Steps of each world; by default the item's own, as for pictures.", min=1, max=MAX_STEPS),
     ] = None,
     fidelity: Annotated[str, typer.Option(help="corrected, released or text.")] = "corrected",
     threads: Threads = 0,
@@ -93,23 +96,48 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
     from hedon.reproduce.progress import PlanDisplay
 
     wanted = needs(request)
-    found, faults = find_runs(runs, wanted)
-    for fault in faults:
-        typer.echo(f"hedon: note: left out: {fault}", err=True)
+    found, _ = find_runs(runs, wanted)
     jobs = plan_jobs(wanted, found, runs)
     worlds = sum(len(need.steps) for need in wanted)
     console.print(
-        f"hedon: {len(request.items)} items ({request.fidelity}) from {worlds} worlds: {len(jobs)} runs to make"
-        f" in {runs}, {sum(job.world_steps for job in jobs):,} world-steps",
+        f"hedon: {count(len(request.items), 'item')} ({request.fidelity}) from {count(worlds, 'world')}: "
+        f"{count(len(jobs), 'run')} to make in {runs}, {sum(job.world_steps for job in jobs):,} world-steps",
         soft_wrap=True,
     )
+    for job in jobs:
+        verb = "go on with" if job.begun else "begin"
+        console.print(f"  {verb} {job.folder}: {count(len(job.seeds), 'world')} to {job.steps:,} steps", soft_wrap=True)
+    _require_folders(out, *([runs] if jobs else []))
     with PlanDisplay(console, jobs) as display:
         outcomes = conduct(jobs, threads or usable_cpus(), display)
-    page, made = write_items(gather(request, runs), out)
+    gathered = gather(request, runs)
+    for fault in gathered.faults:
+        typer.echo(f"hedon: note: left out: {fault}", err=True)
+    page, made = write_items(gathered, out)
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables beside it", soft_wrap=True)
     _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
+
+
+def count(number: int, noun: str) -> str:
+    """A number of things: "1 run", "2 runs"."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+def _require_folders(*folders: Path) -> None:
+    """Makes folders that will be written to, so that what is wrong with them is known before the runs.
+
+    Raises:
+        ReproduceError: one cannot be made or written.
+    """
+    for folder in folders:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ReproduceError(f"cannot write {folder}: {error.strerror}") from None
+        if not os.access(folder, os.W_OK):
+            raise ReproduceError(f"cannot write {folder}: no permission")
 
 
 def _say_what_is_missing(jobs: "list[Job]", ends: dict[Path, str], console: "Console") -> None:

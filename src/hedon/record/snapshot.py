@@ -107,7 +107,7 @@ def load_snapshot(folder: Path) -> Snapshot | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             values = {field.name: file[field.name] for field in fields(Snapshot)}
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise RecordError(f"damaged snapshot {path}: {error}") from error
     scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
     return Snapshot(**{**values, **scalars, "food_kinds": tuple(values["food_kinds"].tolist())})

@@ -1,10 +1,10 @@
 """Which items are meant by the words of a command line."""
 
-import difflib
 from collections.abc import Sequence
 
 from hedon.analysis.item.catalogue import ITEMS
 from hedon.analysis.item.item import Item
+from hedon.config.problem import nearest
 from hedon.error import HedonError
 
 GROUPS = {
@@ -29,10 +29,10 @@ def choose_items(names: Sequence[str]) -> tuple[Item, ...]:
     wanted: set[str] = set()
     for name in names or (DEFAULT_GROUP,):
         if name not in ITEMS and name not in GROUPS:
-            near = difflib.get_close_matches(name, [*ITEMS, *GROUPS], n=1)
-            hint = f"; did you mean {near[0]}?" if near else ""
+            near = nearest(name, [*ITEMS, *GROUPS])
+            hint = "; `list` comes first" if name == "list" else f"; did you mean {near}?" if near else ""
             raise ChoiceError(
-                f"there is no item {name!r}{hint} There are: {', '.join(ITEMS)}; and the groups {', '.join(GROUPS)}"
+                f"there is no item {name!r}{hint}\nItems: {', '.join(ITEMS)}\nGroups: {', '.join(GROUPS)}"
             )
         wanted.update(GROUPS.get(name, (name,)))
     return tuple(item for name, item in ITEMS.items() if name in wanted)

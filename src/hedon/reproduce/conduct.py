@@ -3,9 +3,9 @@
 import os
 import signal
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -26,13 +26,16 @@ class _Worker:
 
     Attributes:
         job: that it makes.
-        process, link: the process and the end of the pipe that it tells by.
+        threads: that it was given.
+        process, pid, link: the process, its number, and the end of the pipe that it tells by.
         told: how many signals were passed on to it.
         ready: whether its run has begun, so that it counts signals.
     """
 
     job: Job
+    threads: int
     process: BaseProcess
+    pid: int
     link: Connection
     told: int = 0
     ready: bool = False
@@ -52,31 +55,50 @@ def conduct(jobs: Sequence[Job], threads: int, display: PlanDisplay) -> dict[Pat
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
     """
-    together = parallel_runs(jobs, threads)
     waiting, workers = list(jobs), list[_Worker]()
     outcomes: dict[Path, Outcome] = {}
+    # Python starts this helper with the first process, and unblocks signals as it does.
+    resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
-            while waiting and len(workers) < together and not interrupted.count:
-                workers.append(_start(waiting.pop(0), max(1, threads // together)))
+            while not interrupted.count and (share := next_share(waiting, [w.threads for w in workers], threads)):
+                workers.append(_start(waiting.pop(0), share))
             for link in wait([worker.link for worker in workers], _LOOK_SECONDS):
                 worker = next(worker for worker in workers if worker.link is link)
                 if (outcome := _hear(worker, display)) is not None:
                     worker.process.join()
+                    worker.link.close()
                     workers.remove(worker)
                     outcomes[worker.job.folder] = outcome
                     display.end(worker.job, outcome)
             for worker in workers:
                 while worker.ready and worker.told < interrupted.count:
-                    worker.told += 1
-                    os.kill(worker.process.pid or 0, signal.SIGINT)
+                    _pass_on(worker)
     return outcomes
 
 
-def parallel_runs(jobs: Sequence[Job], threads: int) -> int:
-    """How many runs go on at a time: as many as leave every world of the largest a thread of its own."""
-    largest = max((len(job.seeds) for job in jobs), default=1)
-    return max(1, min(len(jobs), threads // largest))
+def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
+    """How many threads the next job begins with: one per world, all that are free for the last; 0 if it has to wait.
+
+    Args:
+        waiting: the jobs that have not begun, in order.
+        taken: threads of the runs that go on.
+        threads: to use in all.
+    """
+    if not waiting:
+        return 0
+    free, needed = threads - sum(taken), min(len(waiting[0].seeds), threads)
+    if free < needed:
+        return 0
+    return free if len(waiting) == 1 else needed
+
+
+def _pass_on(worker: _Worker) -> None:
+    """Passes one signal on. The system merges equal signals that wait, so the second is of the other kind."""
+    number = SIGNALS[min(worker.told, len(SIGNALS) - 1)]
+    worker.told += 1
+    with suppress(ProcessLookupError):  # it has just ended; what it said still waits in the pipe
+        os.kill(worker.pid, number)
 
 
 def _start(job: Job, threads: int) -> _Worker:
@@ -86,7 +108,8 @@ def _start(job: Job, threads: int) -> _Worker:
     with _blocked_signals():
         process.start()
     theirs.close()
-    return _Worker(job, process, ours)
+    assert process.pid is not None  # it has been started
+    return _Worker(job, threads, process, process.pid, ours)
 
 
 @contextmanager
@@ -105,7 +128,11 @@ def _hear(worker: _Worker, display: PlanDisplay) -> Outcome | None:
         said = worker.link.recv()
     except (EOFError, OSError):  # gone without a word: killed, by the system for want of memory for example
         worker.process.join()
-        return Outcome("failed", f"its process ended with exit code {worker.process.exitcode}")
+        code = worker.process.exitcode or 0
+        cause = (
+            f"was killed by signal {-code}, perhaps for want of memory" if code < 0 else f"ended with exit code {code}"
+        )
+        return Outcome("failed", f"its process {cause}; the same command goes on with it")
     if isinstance(said, Moment):
         worker.ready = True
         display.update(worker.job, said)

@@ -6,10 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import polars as pl
-
-from hedon.analysis.item.item import Arm
-from hedon.analysis.item.request import Need
+from hedon.analysis.item.request import Need, setting_name
+from hedon.analysis.world import read_worlds
 from hedon.config import Config
 from hedon.experiment.plan import free_folder, seed_span
 from hedon.record.reader import Run
@@ -64,17 +62,15 @@ def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list
                 left = sum(max(0, steps - int(min(done, steps))) for done in reach[run.path].values())
                 jobs.append(Job(run.path, need.config, run.manifest.seeds, steps, left, True))
         for steps, seeds in missing.items():
-            name = f"{arm_name(need.arm, need.config.fidelity)}-{seed_span(seeds)}"
+            name = f"{folder_name(need.config)}-{seed_span(seeds)}"
             free = free_folder(folder / name, [job.folder for job in jobs])
             jobs.append(Job(free, need.config, tuple(seeds), steps, steps * len(seeds), False))
     return sorted(jobs, key=lambda job: -job.world_steps)
 
 
-def arm_name(arm: Arm, fidelity: str) -> str:
-    """A name for a setting that tells it from the others: "baseline-corrected-entropy_coef-0.0"."""
-    changes = [override.partition("=") for override in arm.overrides]
-    words = [f"{path.rpartition('.')[2]}-{value}" for path, _, value in changes]
-    return re.sub(r"[^A-Za-z0-9_.-]+", "-", "-".join([arm.preset, fidelity, *words]))
+def folder_name(config: Config) -> str:
+    """A name for the run of a setting that tells it from the others: "baseline-corrected-entropy_coef-0.0"."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
 
 
 def _reach(run: Run) -> dict[int, float]:
@@ -87,5 +83,4 @@ def _reach(run: Run) -> dict[int, float]:
         ]
         return dict(zip(manifest.seeds, done, strict=True))
     # The manifest of a run that goes on, or was killed, does not say how far it came; its records do.
-    rows = run.population(skip_damaged=True).group_by("seed").agg(pl.col("step").max())
-    return dict.fromkeys(manifest.seeds, 0.0) | {seed: float(step) for seed, step in rows.iter_rows()}
+    return {world.seed: float(world.recorded_step()) for world in read_worlds([run])}

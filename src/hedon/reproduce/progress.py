@@ -20,6 +20,8 @@ from hedon.reproduce.work import Outcome
 LINE_SECONDS = 30.0
 SPAN = 60.0
 """Seconds over which the speed is taken, so that the forecast follows the populations."""
+SURE_SECONDS = 5.0
+"""Time before which no forecast is made [s]."""
 
 
 class PlanDisplay:
@@ -38,7 +40,7 @@ class PlanDisplay:
         self._moments: dict[Path, Moment] = {}
         self._done = dict.fromkeys(self._jobs, 0)
         self._ended = 0
-        self._seen = deque([(time.monotonic(), 0)])
+        self._seen: deque[tuple[float, int]] = deque()
         self._live = Live(console=console, auto_refresh=False, transient=True) if console.is_terminal else None
         self._due = 0.0
 
@@ -87,10 +89,11 @@ class PlanDisplay:
     def _head(self) -> str:
         done = sum(self._done.values())
         (begun, first), (now, last) = self._seen[0], self._seen[-1]
-        rate = (last - first) / max(now - begun, 1e-9)
-        left = duration((self._total - done) / rate) if rate > 0 else "?"
-        share = 100 * done / max(self._total, 1)
-        return f"{share:.1f} %, {self._ended} of {self._count} runs done, {rate:,.0f} world-steps/s, {left} left"
+        text = f"{100 * done / max(self._total, 1):.1f} %, {self._ended} of {self._count} runs done"
+        if now - begun < SURE_SECONDS or last == first:
+            return text
+        rate = (last - first) / (now - begun)
+        return f"{text}, {rate:,.0f} world-steps/s, {duration((self._total - done) / rate)} left"
 
     def _describe(self, folder: Path) -> str:
         moment = self._moments[folder]

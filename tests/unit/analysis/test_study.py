@@ -8,6 +8,7 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
+from hedon.analysis.analysis_table import cells
 from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
@@ -49,7 +50,11 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
     for chosen, dies, breeds in cases:
         tables, drawn = made(item, dict.fromkeys(labels, chosen))
         assert drawn
-        shown = [part for part in tables.values() if part.shown and (breeds or "prediction" not in part.name)]
+        shown = [
+            part
+            for part in tables.values()
+            if part.shown and (breeds or not part.name.endswith(("prediction", "gene")))
+        ]
         assert all(part.rows.height for part in shown)
         assert any("Died out, and counted" in part.note for part in tables.values()) == dies
 
@@ -139,9 +144,11 @@ def test_the_rule_of_decline() -> None:
 
 def test_survivors_are_told_from_all(worlds: list[WorldRecord]) -> None:
     tables, _ = made(released.RELEASED[0], {"released": worlds})
-    fates = {row["fate"]: row["worlds"] for row in tables["released_fate"].rows.iter_rows(named=True)}
+    fates = {row["fate"]: row["count"] for row in tables["released_fate"].rows.iter_rows(named=True)}
     assert fates["extinct"] == 1
     assert fates["extinct or heading for it"] == 1
+    headers, printed = cells(tables["released_fate"])
+    assert all(row[headers.index("95 % interval")] for row in printed), "a share of three worlds has one, however small"
     rows = tables["released_survivors"].rows.filter(pl.col("response") == "alive")
     assert rows["worlds"].to_list() == [3, 2, 2]
     assert rows["mean"][0] == pytest.approx(rows["mean"][1] * 2 / 3)

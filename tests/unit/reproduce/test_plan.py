@@ -1,5 +1,6 @@
 """What is planned for a request, given what lies in the folder of the runs."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from hedon.analysis.item.request import Request, needs
 from hedon.experiment.resume import resume
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.reproduce.choice import ChoiceError, choose_items
-from hedon.reproduce.plan import Job, arm_name, plan_jobs
+from hedon.reproduce.plan import Job, folder_name, plan_jobs
 
 BASE = Arm("base", overrides=SMALL)
 FAST = Arm("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))
@@ -130,9 +131,35 @@ def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -
 
 
 def test_names_of_runs_tell_settings_apart() -> None:
-    assert arm_name(Arm("x"), "corrected") == "baseline-corrected"
-    changed = Arm("x", "small", ("energy.basic_cost=0.002", "learning.entropy_coef=0.0"))
-    assert arm_name(changed, "text") == "small-text-basic_cost-0.002-entropy_coef-0.0"
+    assert folder_name(Arm("x").config("corrected")) == "baseline-corrected"
+    changed = Arm("x", "small", ("energy.basic_cost=0.002", "genome.mutation_noise=frozen"))
+    assert folder_name(changed.config("text")) == "small-text-basic_cost-0.002-mutation_noise-frozen"
+
+
+def test_a_damaged_part_is_named_and_a_whole_run_of_the_same_worlds_counts(tmp_path: Path) -> None:
+    small_run(tmp_path / "a", 256)
+    small_run(tmp_path / "b", 256)
+    part = sorted((tmp_path / "a" / "agents").glob("part-*.parquet"))[0]
+    part.write_bytes(b"damaged")
+    request = Request((an_item("a", BASE),), "corrected")
+    found = gather(request, tmp_path)
+    assert [str(part) in fault for fault in found.faults] == [True]
+    assert {world.run for world in found.worlds.values()} == {"b"}
+
+
+def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Path) -> None:
+    """A run that goes on writes the living now and then: those born since are not in the records."""
+    small_run(tmp_path / "short" / "run", 256)
+    small_run(tmp_path / "run", 512)
+    shutil.copy(tmp_path / "short" / "run" / "agents" / "living.parquet", tmp_path / "run" / "agents")
+    save_manifest(tmp_path / "run", replace(load_manifest(tmp_path / "run"), status="running", steps_done=(0, 0)))
+    request = Request((an_item("a", BASE, steps=512),), "corrected")
+    worlds = gather(request, tmp_path).material(request.items[0]).worlds["base"]
+    assert all(256 <= world.last_step < 512 for world in worlds)
+    for world in worlds:
+        assert world.agents["death_step"].null_count() == world.population["alive"][-1]
+    (job,) = planned(request, tmp_path)
+    assert job.begun
 
 
 def test_a_word_that_names_nothing_is_told_with_the_nearest() -> None:

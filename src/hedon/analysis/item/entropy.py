@@ -8,7 +8,7 @@ import polars as pl
 from hedon.analysis.appetite import WINDOWS, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_appetite import draw_appetite
-from hedon.analysis.item.census import sentences
+from hedon.analysis.item.census import present, sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.population import history
@@ -22,7 +22,12 @@ ARMS = (
     Arm(WITHOUT, overrides=("learning.entropy_coef=0.0",), fidelity="corrected"),
 )
 SCALE = Scale((1, 2), 1_024_000)
-_HALF_WAY = Response("half_way_weight", "weight of food at which agents eat half-way to the best", lambda _w, _c: None)
+_HALF_WAY = Response(
+    "half_way_weight",
+    "weight of food at which agents eat half-way to the best",
+    lambda world, _: half_way_weight(appetite(world)),
+)
+_ASKED = (*RESPONSES, _HALF_WAY)
 
 _DIFFERENCE = (
     f"Means over worlds; change: {WITHOUT} against {WITH}, seed by seed, as a difference or, for lifetimes and rates "
@@ -39,13 +44,9 @@ _APPETITE = (
 def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
     missing = missing_note(material, ARMS, SCALE)
-    worlds = {arm.label: found for arm in ARMS if (found := material.worlds.get(arm.label))}
+    worlds = present(ARMS, material)
     bins = {label: [appetite(world) for world in found] for label, found in worlds.items()}
-    half_ways = [half_way_weight(world_bins) for found in bins.values() for world_bins in found]
-    rows = [
-        row | {_HALF_WAY.name: weight}
-        for row, weight in zip(world_rows(material, ARMS, RESPONSES), half_ways, strict=True)
-    ]
+    rows = world_rows(material, ARMS, _ASKED)
     if worlds:
         courses = {label: _course(found) for label, found in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
@@ -53,7 +54,7 @@ def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
     yield table(
         "entropy",
         "With and without the bonus for entropy",
-        [row for response in (*RESPONSES, _HALF_WAY) for row in _difference(rows, response)],
+        [row for response in _ASKED for row in _difference(rows, response)],
         sentences(_DIFFERENCE, missing),
     )
     eaten = [

@@ -32,10 +32,11 @@ _EFFECT = (
     "p_holm is corrected for all effects on one response. seed_low and seed_high are the least and largest of the "
     "same effect within single seeds."
 )
+_DRAWN = "An arrow at the edge of a panel ends an interval that goes on beyond it."
 _CELL = (
     "Means over worlds, geometric for lifetimes and rates of food. An extinct world counts as 0 alive from its end on. "
-    "Lifetimes with the living counted are means of min(lifetime, a common age, `until` in fault_worlds); weights are "
-    "means over the 5000 agents born last."
+    "Lifetimes with the living counted are means of min(lifetime, an age common to all worlds, {until:,.0f} steps); "
+    "weights are means over the 5000 agents born last."
 )
 
 
@@ -76,6 +77,7 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
         sentences(_EFFECT, _missing_effects(fits), missing),
     )
     worlds = table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
+    until = max((row["until"] for row in rows), default=0.0)
     told = set(effects.rows["effect"]) if effects.rows.height else set()
     if rows:
         there = [label for label in CELLS if material.worlds.get(label)]
@@ -84,9 +86,14 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
     if told:
         names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in told]
         drawn = draw_effects(effects.rows, names, _SHOWN)
-        yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn)
+        yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn, _DRAWN)
     yield effects
-    yield table("fault_cells", "Worlds with and without the faults", _cell_rows(rows), sentences(_CELL, missing))
+    yield table(
+        "fault_cells",
+        "Worlds with and without the faults",
+        _cell_rows(rows),
+        sentences(_CELL.format(until=until), missing),
+    )
     everything = [row for found in rows_of_effects.values() for row in found]
     yield table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
     yield worlds

@@ -1,15 +1,15 @@
 """From run folders to what items are made from: the worlds that were asked for, as far as they are there."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.analysis.item.item import Item, Material
-from hedon.analysis.item.request import Need, Request, needs
+from hedon.analysis.item.request import Need, Request, needs, setting_name
 from hedon.analysis.world import WorldRecord, read_worlds
-from hedon.config import digest
+from hedon.config import ConfigError, digest, load_config
 from hedon.record.error import RecordError
-from hedon.record.folder import MANIFEST
+from hedon.record.folder import CONFIG, MANIFEST
 from hedon.record.reader import Run, open_run
 from hedon.record.snapshot import Snapshot, load_snapshot
 
@@ -22,12 +22,14 @@ class Gathered:
         request: what was asked.
         runs: that hold some of the worlds.
         worlds: per setting's digest and seed, as far as their records reach.
-        faults: folders that could not be read, and why.
+        snapshots: per setting's digest the last state of one world, where there is one.
+        faults: what could not be read, and why.
     """
 
     request: Request
     runs: tuple[Run, ...]
     worlds: dict[tuple[str, int], WorldRecord]
+    snapshots: dict[str, Snapshot]
     faults: tuple[str, ...]
 
     def material(self, item: Item) -> Material:
@@ -38,10 +40,7 @@ class Gathered:
             label: [self.worlds[key, seed].until(scale.steps) for seed in scale.seeds if (key, seed) in self.worlds]
             for label, key in digests.items()
         }
-        snapshots: dict[str, Snapshot] = {}
-        if item.pictures:
-            found = {label: self._snapshot(key) for label, key in digests.items()}
-            snapshots = {label: snapshot for label, snapshot in found.items() if snapshot is not None}
+        snapshots = {label: self.snapshots[key] for label, key in digests.items() if key in self.snapshots}
         return Material(fidelity, {label: group for label, group in worlds.items() if group}, snapshots)
 
     def demanded(self) -> list[WorldRecord]:
@@ -52,12 +51,6 @@ class Gathered:
             for seed, steps in need.steps.items()
             if (need.digest, seed) in self.worlds
         ]
-
-    def _snapshot(self, key: str) -> Snapshot | None:
-        for run in self.runs:
-            if run.manifest.config_digest == key and (snapshot := load_snapshot(run.path)) is not None:
-                return snapshot
-        return None
 
 
 def find_runs(folder: Path, wanted: Iterable[Need]) -> tuple[list[Run], list[str]]:
@@ -71,25 +64,48 @@ def find_runs(folder: Path, wanted: Iterable[Need]) -> tuple[list[Run], list[str
     for path in sorted(folder.glob(f"*/{MANIFEST}")):
         try:
             run = open_run(path.parent)
-        except RecordError as error:
+            mine = seeds.get(run.manifest.config_digest or "", ())
+            if run.manifest.parent is None and any(seed in mine for seed in run.manifest.seeds):
+                load_config(run.path / CONFIG)
+                runs.append(run)
+        except (RecordError, ConfigError) as error:
             faults.append(str(error))
-            continue
-        mine = seeds.get(run.manifest.config_digest or "", ())
-        if run.manifest.parent is None and any(seed in mine for seed in run.manifest.seeds):
-            runs.append(run)
     return runs, faults
 
 
 def gather(request: Request, folder: Path) -> Gathered:
-    """Reads what there is of the worlds that a request needs.
-
-    Raises:
-        RecordError, ConfigError: a run cannot be read.
-    """
+    """Reads what there is of the worlds that a request needs; what is damaged is left out and named."""
     wanted = needs(request)
     runs, faults = find_runs(folder, wanted)
-    seeds: dict[str, Sequence[int]] = {need.digest: list(need.steps) for need in wanted}
-    worlds = {(digest(world.config), world.seed): world for world in read_worlds(runs)}
-    kept = {key: world for key, world in worlds.items() if key[1] in seeds.get(key[0], ())}
+    damaged = {run.path.name: run.damaged_parts() for run in runs}
+    faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
+    status = {run.path.name: run.manifest.status for run in runs}
+    seeds = {need.digest: need.steps for need in wanted}
+    kept: dict[tuple[str, int], WorldRecord] = {}
+    # Whole runs first, since of two worlds that are equally long the first is kept.
+    for world in read_worlds(sorted(runs, key=lambda run: bool(damaged[run.path.name]))):
+        key = digest(world.config), world.seed
+        if world.seed in seeds.get(key[0], ()):
+            known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
+            kept[key] = replace(known, condition=setting_name(world.config))
     used = {world.run for world in kept.values()}
-    return Gathered(request, tuple(run for run in runs if run.path.name in used), kept, tuple(faults))
+    snapshots = _snapshots(request, runs, faults)
+    return Gathered(request, tuple(run for run in runs if run.path.name in used), kept, snapshots, tuple(faults))
+
+
+def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
+    """Per setting that is to be pictured the first state found in which somebody lives, or else any."""
+    wanted = {digest(arm.config(request.fidelity)) for item in request.items if item.pictures for arm in item.arms}
+    found: dict[str, Snapshot] = {}
+    for run in runs:
+        key = run.manifest.config_digest or ""
+        if key not in wanted or (key in found and len(found[key].x)):
+            continue
+        try:
+            snapshot = load_snapshot(run.path)
+        except RecordError as error:
+            faults.append(str(error))
+            continue
+        if snapshot is not None:
+            found[key] = snapshot
+    return found

@@ -5,6 +5,7 @@ from typing import Any
 
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_prediction import draw_predictions
+from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Material
 from hedon.analysis.table_drift import COMPARISONS, GeneDrift, compare, gene_drift
@@ -19,6 +20,10 @@ _PREDICTION = (
     "one world have tables of their own but share its pedigree. A weight that has reached the limit drifts no further, "
     "which the second comparison accounts for. A bias is there with either noise, but with independent noise it is "
     "that of mutations that happened once, and does not recur; near the limit it leans inward, as clipping does."
+)
+_DRAWN = (
+    "A point is one gene of one world; on the line both are equal. The scale of mutations is linear around 0 and "
+    "logarithmic beyond."
 )
 _GENE = (
     "numbers: births within a window that have an entry. bounds: entries of which all children were clipped at the "
@@ -56,11 +61,12 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
         note: on the worlds.
     """
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
-    yield NamedFigure(f"{name}_prediction", "Do weights go where mutations push them?", draw_predictions(shown, GENES))
+    question = "Do weights go where mutations push them?"
+    yield NamedFigure(f"{name}_prediction", question, draw_predictions(shown, GENES), _DRAWN)
     yield table(
         f"{name}_prediction",
         "Mutations: predicted and seen",
-        [row for label, found in shown.items() for row in _prediction_rows(label, found)],
+        [row for label, found in drifts.items() for row in _prediction_rows(label, shown[label], _world_count(found))],
         sentences(_PREDICTION, note),
     )
     rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
@@ -69,10 +75,16 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
     yield table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
 
-def _prediction_rows(label: str, drifts: Sequence[GeneDrift]) -> Iterator[dict[str, Any]]:
+def _world_count(found: Sequence[tuple[int, GeneDrift]]) -> int:
+    return len({seed for seed, _ in found})
+
+
+def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> Iterator[dict[str, Any]]:
+    """Genes of one world share its pedigree, so bounds and chances are told from three worlds on, not three pairs."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
             mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
             if mine:
-                found = {"arm": label, "compared": comparison, "weight": weight}
-                yield found | vars(compare(mine, comparison))
+                found = {"arm": label, "compared": comparison, "weight": weight, "worlds": worlds}
+                found |= vars(compare(mine, comparison))
+                yield found if worlds >= SHOWN_FROM else found | dict.fromkeys(("low", "high", "p_sign"))

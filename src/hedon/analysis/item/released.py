@@ -27,6 +27,7 @@ _GROUPS = {"all": FATES, "not extinct": (STANDING, HEADING), STANDING: (STANDING
 _COMPARED = ("w_food", "w_action", "lifetime", "food_agent", "alive", "generation")
 """Responses that the paper says something of."""
 
+_DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
 _FATE = (
     "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
     "second. Standing worlds that had such a low before, and rose again, say how far that can be trusted. The interval "
@@ -46,7 +47,9 @@ def make_released(material: Material) -> Iterator[NamedFigure | ResultTable]:
     rows = [row | vars(found) for row, found in zip(world_rows(material, ARMS, RESPONSES), fates, strict=True)]
     drifts = arm_drifts(material, ARMS)
     if worlds:
-        yield NamedFigure("released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates))
+        yield NamedFigure(
+            "released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates), _DRAWN
+        )
         yield from _weight_figures(worlds, fates)
     yield table("released_fate", "Worlds that head for extinction", _fate_rows(fates), f"{_FATE} {missing}".strip())
     yield table("released_survivors", "All worlds, and those that last", _survivor_rows(rows), _SURVIVOR)
@@ -75,7 +78,7 @@ def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
     counts["standing after such a low"] = sum(found.recovered for found in fates)
     for name, count in counts.items() if fates else ():
         low, high = share_interval(count, len(fates))
-        shares = {"worlds": count, "of": len(fates), "share": count / len(fates), "low": low, "high": high}
+        shares = {"count": count, "worlds": len(fates), "share": count / len(fates), "low": low, "high": high}
         yield {"fate": name} | shares | {"paper": paper.get(name)}
 
 

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from hedon.analysis.item.item import Arm, Item, Scale
-from hedon.config import Config, digest
+from hedon.analysis.item.item import Item, Scale
+from hedon.config import PRESETS, Config, diff, digest, load_config
+from hedon.config.problem import format_value
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,11 @@ class Need:
     """A setting that worlds are needed of, by one item or several.
 
     Attributes:
-        arm: the first that asks for it.
         config: the setting.
         digest: of the config: settings of equal digest share their worlds.
         steps: of each seed [step].
     """
 
-    arm: Arm
     config: Config
     digest: str
     steps: dict[int, int] = field(default_factory=dict)
@@ -50,16 +49,23 @@ class Need:
 def needs(request: Request) -> list[Need]:
     """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
     found: dict[str, Need] = {}
-    for item, arm, config in _arms(request):
+    for item, config in _settings(request):
         key = digest(config)
-        need = found.setdefault(key, Need(arm, config, key))
+        need = found.setdefault(key, Need(config, key))
         scale = request.scale(item)
         for seed in scale.seeds:
             need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
     return list(found.values())
 
 
-def _arms(request: Request) -> Iterator[tuple[Item, Arm, Config]]:
+def setting_name(config: Config) -> str:
+    """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
+    changes = diff(load_config(config.preset, config.fidelity), config) if config.preset in PRESETS else []
+    words = [f"{path.rpartition('.')[2]} {format_value(new)}" for path, _, new in changes]
+    return ", ".join([f"{config.preset} ({config.fidelity})", *words])
+
+
+def _settings(request: Request) -> Iterator[tuple[Item, Config]]:
     for item in request.items:
         for arm in item.arms:
-            yield item, arm, arm.config(request.fidelity)
+            yield item, arm.config(request.fidelity)
