@@ -65,6 +65,7 @@ def _hedon(
       hedon resume runs/poison --steps 2048000
       hedon report runs/poison
       hedon analyze runs/poison --only selection,drift
+      hedon reproduce list
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
       hedon bench

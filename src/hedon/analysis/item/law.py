@@ -8,12 +8,11 @@ from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.demography import birth_rate, expected_lifetime, reproduction_number
 from hedon.analysis.figure_law import draw_birth, draw_hazard
 from hedon.analysis.figure_walk import draw_walks
-from hedon.analysis.item.item import Arm, Item, Material
+from hedon.analysis.item.condition import BASELINE
+from hedon.analysis.item.item import Item, Material
 from hedon.analysis.topic.result import SEED
 from hedon.analysis.walk import mutation_law
 from hedon.config import Config
-
-_BASELINE = Arm("baseline")
 
 
 def window_births(config: Config) -> int:
@@ -23,7 +22,7 @@ def window_births(config: Config) -> int:
 
 
 def _hazard(material: Material) -> Iterator[NamedFigure]:
-    config = _BASELINE.config(material.fidelity)
+    config = BASELINE.config(material.fidelity)
     poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
     caption = (
         f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
@@ -33,7 +32,7 @@ def _hazard(material: Material) -> Iterator[NamedFigure]:
 
 
 def _birth(material: Material) -> Iterator[NamedFigure]:
-    config = _BASELINE.config(material.fidelity)
+    config = BASELINE.config(material.fidelity)
     children = float(reproduction_number(config.hazard, config.birth, 0.0))
     caption = (
         f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
@@ -43,7 +42,7 @@ def _birth(material: Material) -> Iterator[NamedFigure]:
 
 
 def _walk(material: Material) -> Iterator[NamedFigure]:
-    config = _BASELINE.config(material.fidelity)
+    config = BASELINE.config(material.fidelity)
     law, births = mutation_law(config), window_births(config)
     question, caption = "Where do mutations alone carry a weight that nothing selects?", ""
     if law.frozen:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from hedon.analysis.item.condition import BASELINE
 from hedon.analysis.item.item import Arm, Item, Material
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.config import FIDELITIES, PRESETS
@@ -21,7 +22,6 @@ CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_learning": ("Learning", ("learning",)),
 }
 """Per table its title and the sections of the config that it tells."""
-_BASELINE = Arm("baseline")
 _ORIGIN = (
     'Origin: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, '
     '"ours" is a choice of this project; "paper or code" is the paper\'s value where it prints one, else the code\'s.'
@@ -45,8 +45,8 @@ def _parameters(material: Material) -> Iterator[ResultTable]:
 
 def _settings(fidelity: str) -> Iterator[Row]:
     """A row per setting of the baseline; the fidelities' own values where these differ."""
-    values = {other: flatten(_BASELINE.config(other)) for other in FIDELITIES}
-    for path, setting, value in leaves(_BASELINE.config(fidelity)):
+    values = {other: flatten(BASELINE.config(other)) for other in FIDELITIES}
+    for path, setting, value in leaves(BASELINE.config(fidelity)):
         if path in PROVENANCE:
             continue
         each = {_column(other): format_value(values[other][path]) for other in FIDELITIES}
@@ -62,7 +62,7 @@ def _settings(fidelity: str) -> Iterator[Row]:
 
 def _conditions(fidelity: str) -> Iterator[Row]:
     """A row per setting in which a preset differs from the baseline."""
-    baseline = _BASELINE.config(fidelity)
+    baseline = BASELINE.config(fidelity)
     base, first = flatten(baseline), next(iter(baseline.food))
     for preset in PRESETS:
         config = Arm(preset, preset).config(fidelity)

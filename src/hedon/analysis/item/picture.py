@@ -6,25 +6,24 @@ from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_arenas import ArenaPanel, draw_arenas
 from hedon.analysis.figure_body import draw_body
 from hedon.analysis.figure_world import draw_world, telling_agent
-from hedon.analysis.item.item import Arm, Item, Material, Scale
+from hedon.analysis.item.condition import BASELINE, PLACES, POISON, POOR, SIZES
+from hedon.analysis.item.item import Item, Material, Scale
 from hedon.analysis.style import food_colors
 
-_BASELINE = Arm("baseline")
-_SIZES = tuple(Arm(preset, preset) for preset in ("small", "baseline", "large"))
-_FOODS = tuple(Arm(preset, preset) for preset in ("centered", "relocation", "poor", "poison"))
+_FOODS = (*PLACES[1:], POOR, POISON)
 _ONE_WORLD = Scale((1,), 10_240)
 
 
 def _body(material: Material) -> Iterator[NamedFigure]:
     question = "What does an agent sense, and how does it move and eat?"
-    yield NamedFigure("body", question, draw_body(_BASELINE.config(material.fidelity)))
+    yield NamedFigure("body", question, draw_body(BASELINE.config(material.fidelity)))
 
 
 def _arena(material: Material) -> Iterator[NamedFigure]:
-    snapshot = material.snapshots.get(_BASELINE.label)
+    snapshot = material.snapshots.get(BASELINE.label)
     if snapshot is None:
         return
-    config = _BASELINE.config(material.fidelity)
+    config = BASELINE.config(material.fidelity)
     colors = food_colors(tuple(config.food), [food.color for food in config.food.values()])
     agent = telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
@@ -34,7 +33,7 @@ def _arena(material: Material) -> Iterator[NamedFigure]:
 def _arenas(material: Material) -> Iterator[NamedFigure]:
     rows = [
         [ArenaPanel(arm.label, arm.config(material.fidelity), material.snapshots.get(arm.label)) for arm in arms]
-        for arms in (_SIZES, _FOODS)
+        for arms in (SIZES, _FOODS)
     ]
     caption = "Above each, of every kind of food, its energy and how much there can be."
     missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
@@ -51,7 +50,7 @@ PICTURES: tuple[Item, ...] = (
         "figure",
         "Agents and foods in the arena, and what one agent sees.",
         _arena,
-        (_BASELINE,),
+        (BASELINE,),
         _ONE_WORLD,
         pictures=True,
     ),
@@ -61,7 +60,7 @@ PICTURES: tuple[Item, ...] = (
         "figure",
         "Arenas of three sizes, food in one place or in four by turns, and food of a second kind.",
         _arenas,
-        (*_SIZES, *_FOODS),
+        (*SIZES, *_FOODS),
         _ONE_WORLD,
         pictures=True,
     ),
