@@ -8,9 +8,12 @@ from pathlib import Path
 
 from hedon.analysis.item.request import Need, setting_name
 from hedon.analysis.world import read_worlds
-from hedon.config import Config
+from hedon.config import Config, digest
 from hedon.experiment.plan import free_folder, seed_span
 from hedon.record.reader import Run
+
+LONGEST_NAME = 150
+"""Characters of a setting in the name of a run's folder."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +72,10 @@ def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list
 
 
 def folder_name(config: Config) -> str:
-    """A name for the run of a setting that tells it from the others: "baseline-corrected-entropy_coef-0.0"."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
+    """A name for the run of a setting that tells it from the others: "baseline-corrected-learning.entropy_coef-0.0"."""
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
+    # Whoever changes much has more to say than a file system takes.
+    return name if len(name) <= LONGEST_NAME else f"{config.preset}-{config.fidelity}-{digest(config)[:8]}"
 
 
 def _reach(run: Run) -> dict[int, float]:

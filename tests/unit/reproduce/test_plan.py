@@ -9,8 +9,11 @@ from resumed_run import SMALL, small_run
 
 from hedon.analysis.item.gather import find_runs, gather
 from hedon.analysis.item.item import Arm, Item, Scale
-from hedon.analysis.item.request import Request, needs
+from hedon.analysis.item.request import Request, needs, setting_name
+from hedon.config import load_config
+from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
+from hedon.experiment.run import run
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.reproduce.choice import ChoiceError, choose_items
 from hedon.reproduce.plan import Job, folder_name, plan_jobs
@@ -133,7 +136,23 @@ def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -
 def test_names_of_runs_tell_settings_apart() -> None:
     assert folder_name(Arm("x").config("corrected")) == "baseline-corrected"
     changed = Arm("x", "small", ("energy.basic_cost=0.002", "genome.mutation_noise=frozen"))
-    assert folder_name(changed.config("text")) == "small-text-basic_cost-0.002-mutation_noise-frozen"
+    assert folder_name(changed.config("text")) == "small-text-energy.basic_cost-0.002-genome.mutation_noise-frozen"
+    long = [folder_name(arm.config("corrected")) for arm in (BASE, FAST)]
+    assert max(map(len, long)) < 100
+    assert long[0] != long[1]
+    kinds = [Arm("x", "poor", (f"food.{kind}.growth_rate=0.7",)).config("corrected") for kind in ("normal", "poor")]
+    assert setting_name(kinds[0]) != setting_name(kinds[1])
+
+
+def test_equal_settings_written_in_two_ways_are_one_condition(tmp_path: Path) -> None:
+    faults = ("food.normal.growth_rate=1.0", "genome.mutation_noise=frozen", "learning.critic_target=batch_mean")
+    small_run(tmp_path / "a", 64, seeds=(1,), overrides=faults)
+    config = load_config("baseline", "released", SMALL)
+    run(RunPlan(config, (2,), 64, tmp_path / "b", 1))
+    item = an_item("a", Arm("released", overrides=SMALL, fidelity="released"), steps=64)
+    worlds = gather(Request((item,), "corrected"), tmp_path).demanded()
+    assert [world.seed for world in worlds] == [1, 2]
+    assert len({world.condition for world in worlds}) == 1
 
 
 def test_a_damaged_part_is_named_and_a_whole_run_of_the_same_worlds_counts(tmp_path: Path) -> None:

@@ -80,14 +80,15 @@ def gather(request: Request, folder: Path) -> Gathered:
     damaged = {run.path.name: run.damaged_parts() for run in runs}
     faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
     status = {run.path.name: run.manifest.status for run in runs}
-    seeds = {need.digest: need.steps for need in wanted}
+    needed = {need.digest: need for need in wanted}
     kept: dict[tuple[str, int], WorldRecord] = {}
     # Whole runs first, since of two worlds that are equally long the first is kept.
     for world in read_worlds(sorted(runs, key=lambda run: bool(damaged[run.path.name]))):
-        key = digest(world.config), world.seed
-        if world.seed in seeds.get(key[0], ()):
+        need = needed.get(digest(world.config))
+        if need is not None and world.seed in need.steps:
             known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
-            kept[key] = replace(known, condition=setting_name(world.config))
+            # Equal settings can be written in several ways, so the need names them, not each run.
+            kept[need.digest, world.seed] = replace(known, condition=setting_name(need.config))
     used = {world.run for world in kept.values()}
     snapshots = _snapshots(request, runs, faults)
     return Gathered(request, tuple(run for run in runs if run.path.name in used), kept, snapshots, tuple(faults))

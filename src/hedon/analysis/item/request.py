@@ -61,7 +61,7 @@ def needs(request: Request) -> list[Need]:
 def setting_name(config: Config) -> str:
     """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
     changes = diff(load_config(config.preset, config.fidelity), config) if config.preset in PRESETS else []
-    words = [f"{path.rpartition('.')[2]} {format_value(new)}" for path, _, new in changes]
+    words = [f"{path} {format_value(new)}" for path, _, new in changes]
     return ", ".join([f"{config.preset} ({config.fidelity})", *words])
 
 
