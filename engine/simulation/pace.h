@@ -23,24 +23,27 @@ class Pace {
 
   /// Which way the next stretch goes.
   bool together() const {
+    if (count_ < START) return count_ % 2 == 0;
     const bool faster = together_ <= alone_;
     return count_ % TRIAL == TRIAL - 1 ? !faster : faster;
   }
 
-  /// Notes how long a stretch took [s per step].
+  /// Notes how long a stretch took [s per step]. A disturbance makes a stretch longer, never shorter, so a shorter one
+  /// is believed at once, and a longer one little by little.
   void note(bool together, double seconds) {
     double& known = together ? together_ : alone_;
-    known = known == 0.0 ? seconds : known + WEIGHT * (seconds - known);
+    known = known == 0.0 || seconds < known ? seconds : known + WEIGHT * (seconds - known);
     ++count_;
   }
 
  private:
   static constexpr double SECONDS = 0.008;  ///< of a stretch
   static constexpr int64_t LONGEST = 32;    ///< steps of a stretch
-  static constexpr int64_t TRIAL = 64;      ///< one stretch in so many goes the other way: costs about 1 %
-  static constexpr double WEIGHT = 0.25;    ///< of the newest stretch in the running mean
+  static constexpr int64_t START = 4;       ///< stretches at first that go both ways in turn
+  static constexpr int64_t TRIAL = 64;      ///< of those after, one in so many goes the other way: costs about 1 %
+  static constexpr double WEIGHT = 0.25;    ///< of a longer stretch in what is known
 
-  double together_ = 0.0;  ///< unknown at first, hence tried first
+  double together_ = 0.0;  ///< 0 while unknown
   double alone_ = 0.0;
   int64_t count_ = 0;
 };

@@ -19,7 +19,9 @@ TILES = ((1, 1), (2, 5), (10, 10), (20, 25))
 """Copies of the preset's arena along x and y: 200, 2,000, 20,000 and 100,000 slots of the baseline."""
 QUICK_TILES = ((1, 1), (2, 1))
 PIECES = 5
-"""Timed pieces; one more goes before."""
+"""Timed pieces."""
+TRIALS = 4
+"""Single steps before them, in which the engine tries how fast a team is and how fast one of it alone, in turn."""
 MAX_PIECE_STEPS = 200
 ROLLOUT_ROWS = 2_400_000
 """Slots times steps: 500 MB of rollouts at every size, and half a million agent-steps in each piece."""
@@ -74,8 +76,8 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     base = plan.config()
     rows: list[Row] = []
     for slots, (across, up) in _sizes(plan).items():
-        piece = 4 if plan.quick else max(1, min(MAX_PIECE_STEPS, ROLLOUT_ROWS // slots // (PIECES + 1)))
-        config = scaled_config(plan, across, up, piece * (PIECES + 1))
+        piece = 4 if plan.quick else max(1, min(MAX_PIECE_STEPS, (ROLLOUT_ROWS // slots - TRIALS) // PIECES))
+        config = scaled_config(plan, across, up, TRIALS + piece * PIECES)
         threads = sorted({plan.threads[0], plan.threads[-1]})
         needed, free = bytes_needed(config, threads[-1]), memory_bytes("MemAvailable")
         full = replace(config, learning=base.learning)
@@ -111,8 +113,8 @@ def _measure_one(plan: Plan, config: Config, tiles: tuple[int, int], threads: in
     simulation = Simulation(config, [1], threads, plan.kernel)
     scene_of(peopled(plan)).tiled(*tiles, arena.width, arena.height).put_into(simulation)
     world = simulation.worlds[0]
-    for steps in (1, 1, piece - 2):  # the engine first tries how fast a team is, then how fast one of it alone
-        simulation.run(steps)
+    for _ in range(TRIALS):
+        simulation.run(1)
     alive, foods, counters = world.alive, int(world.view("food_stock.present").sum()), world.counters
     agent_steps, pieces = [], []
     parts: dict[str, list[float]] = {part: [] for part in PARTS}
