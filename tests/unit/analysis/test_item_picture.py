@@ -90,6 +90,15 @@ def test_an_arena_where_nobody_lives_is_drawn() -> None:
     assert discs(named.figure.axes[0]) == [12]
 
 
+def test_captions_say_which_world_is_shown_and_when() -> None:
+    snapshot = synthetic_snapshot(agents=7)
+    when = f"seed {snapshot.seed} at step {snapshot.step:,}"
+    assert make("arena", baseline=snapshot)[0].caption == f"World of {when}."
+    caption = make("arenas", baseline=snapshot)[0].caption
+    assert f"Shown: baseline {when}." in caption
+    assert "baseline" not in caption.split("no run:")[1]
+
+
 def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
     [named] = make("arenas")
     shown = panels(named.figure)

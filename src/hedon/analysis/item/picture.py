@@ -9,6 +9,7 @@ from hedon.analysis.figure_world import draw_world, telling_agent
 from hedon.analysis.item.condition import BASELINE, PLACES, POISON, POOR, SIZES
 from hedon.analysis.item.item import Item, Material, Scale
 from hedon.analysis.style import food_colors
+from hedon.record.snapshot import Snapshot
 
 _FOODS = (*PLACES[1:], POOR, POISON)
 _ONE_WORLD = Scale((1,), 10_240)
@@ -27,7 +28,8 @@ def _arena(material: Material) -> Iterator[NamedFigure]:
     colors = food_colors(tuple(config.food), [food.color for food in config.food.values()])
     agent = telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
-    yield NamedFigure("arena", "What does a world look like?", draw_world(snapshot, colors, rays_of))
+    figure = draw_world(snapshot, colors, rays_of)
+    yield NamedFigure("arena", "What does a world look like?", figure, f"World of {_when(snapshot)}.")
 
 
 def _arenas(material: Material) -> Iterator[NamedFigure]:
@@ -36,10 +38,17 @@ def _arenas(material: Material) -> Iterator[NamedFigure]:
         for arms in (SIZES, _FOODS)
     ]
     caption = "Above each, of every kind of food, its energy and how much there can be."
+    shown = [f"{panel.label} {_when(panel.snapshot)}" for row in rows for panel in row if panel.snapshot is not None]
+    if shown:
+        caption += f" Shown: {'; '.join(shown)}."
     missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
     if missing:
         caption += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."
     yield NamedFigure("arenas", "What arenas are there, and where does food grow in each?", draw_arenas(rows), caption)
+
+
+def _when(snapshot: Snapshot) -> str:
+    return f"seed {snapshot.seed} at step {snapshot.step:,}"
 
 
 PICTURES: tuple[Item, ...] = (
