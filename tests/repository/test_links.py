@@ -1,24 +1,12 @@
 """Links of the documentation lead somewhere: to files that are there, to headings that are there."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
+from project_files import ROOT, project_files
 
-ROOT = Path(__file__).parents[2]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-
-
-def pages() -> list[Path]:
-    listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard", "*.md"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return [ROOT / name for name in listed.stdout.splitlines() if (ROOT / name).exists()]
 
 
 def prose(page: Path) -> str:
@@ -33,7 +21,7 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("page", pages(), ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", project_files(".md"), ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_somewhere(page):
     broken = []
     for target in LINK.findall(prose(page)):
@@ -48,4 +36,4 @@ def test_links_lead_somewhere(page):
 
 
 def test_the_pages_are_found():
-    assert ROOT / "README.md" in pages()
+    assert ROOT / "README.md" in project_files(".md")

@@ -1,12 +1,11 @@
 """The house rules that a script can hold: sizes of files, who includes whom, what the step path may use."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
+from project_files import ROOT, project_files
 
-ROOT = Path(__file__).parents[2]
 LONGEST = 400
 
 # What each part of the engine may include, besides itself.
@@ -29,11 +28,6 @@ FORBIDDEN_IN_STEP = re.compile(
 )
 
 
-def sources(*suffixes: str) -> list[Path]:
-    names = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
-    return [ROOT / name for name in names.stdout.splitlines() if name.endswith(suffixes) and (ROOT / name).exists()]
-
-
 def code_without_comments(path: Path) -> str:
     return re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
 
@@ -41,7 +35,7 @@ def code_without_comments(path: Path) -> str:
 def test_no_file_is_too_long():
     long = {
         str(p.relative_to(ROOT)): n
-        for p in sources(".py", ".h", ".cpp", ".cu")
+        for p in project_files(".py", ".h", ".cpp", ".cu")
         if (n := len(p.read_text().splitlines())) > LONGEST
     }
     assert not long
@@ -49,7 +43,7 @@ def test_no_file_is_too_long():
 
 @pytest.mark.parametrize("part", sorted(ALLOWED))
 def test_engine_parts_include_only_what_they_may(part):
-    files = [p for p in sources(".h", ".cpp", ".cu") if p.parent == ROOT / "engine" / part]
+    files = [p for p in project_files(".h", ".cpp", ".cu") if p.parent == ROOT / "engine" / part]
     assert files
     for path in files:
         for target in re.findall(r'#include "([\w/]+)/[\w.]+"', path.read_text()):
@@ -64,7 +58,7 @@ def test_the_step_path_owns_nothing_and_throws_nothing():
 
 
 def test_every_engine_file_says_what_it_is_for():
-    for path in sources(".h", ".cpp"):
+    for path in project_files(".h", ".cpp"):
         first = path.read_text().splitlines()[0]
         twin = path.with_suffix(".h").exists() and path.suffix == ".cpp"
         assert first.startswith("///") or twin, path.relative_to(ROOT)
@@ -72,12 +66,12 @@ def test_every_engine_file_says_what_it_is_for():
 
 def test_the_project_speaks_of_itself_alone():
     words = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
-    for path in sources(".py", ".h", ".cpp", ".md", ".toml"):
+    for path in project_files(".py", ".h", ".cpp", ".md", ".toml"):
         if path != Path(__file__):
             assert not words.search(path.read_text(encoding="utf-8")), path.relative_to(ROOT)
 
 
 def test_test_files_have_names_of_their_own():
     """Pytest imports them by name alone, and stops where two share one."""
-    names = [path.name for path in sources(".py") if path.is_relative_to(ROOT / "tests")]
+    names = [path.name for path in project_files(".py") if path.is_relative_to(ROOT / "tests")]
     assert len(names) == len(set(names))
