@@ -12,7 +12,7 @@ from hedon.analysis.analysis_table import cells
 from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
-from hedon.analysis.item import entropy, fault, noise, released
+from hedon.analysis.item import entropy, fault, noise, released, supply
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.topic.result import ResultTable
@@ -20,7 +20,7 @@ from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
 
-ITEMS = [*fault.FAULTS, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY]
+ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY]
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,10 @@ from hedon.analysis.item.noise import NOISE
 from hedon.analysis.item.parameter import PARAMETERS
 from hedon.analysis.item.picture import PICTURES
 from hedon.analysis.item.released import RELEASED
+from hedon.analysis.item.supply import SUPPLY
 from hedon.analysis.item.weight_history import HISTORIES
 
 _PAPER = (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS)
-_STUDIES = (*DRIFT, *FAULTS, *RELEASED, *NOISE, *ENTROPY)
+_STUDIES = (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY)
 
 ITEMS: dict[str, Item] = {item.name: item for item in (*_PAPER, *_STUDIES)}
