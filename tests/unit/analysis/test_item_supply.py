@@ -29,7 +29,7 @@ def make(found: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTa
 
 
 def test_five_times_as_much_grows_with_the_fault_and_in_the_released_program() -> None:
-    grows = {arm.label: growth(arm, "corrected") for arm in ARMS}
+    grows = {arm.label: growth(arm.config("corrected")) for arm in ARMS}
     assert len(grows) == 9
     for label, value in grows.items():
         assert value == (0.2 if label.endswith("corrected") else 1.0), label

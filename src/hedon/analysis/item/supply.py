@@ -15,6 +15,7 @@ from hedon.analysis.population import run_tail
 from hedon.analysis.response import RESPONSES, Common, Response
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
+from hedon.config import Config
 
 CONDITIONS = ("small", "baseline", "centered")
 """The baseline, and the two in which the paper's agents live in plenty."""
@@ -57,16 +58,16 @@ def make_supply(material: Material) -> Iterator[NamedFigure | ResultTable]:
 
 
 def _arm_row(arm: Arm, material: Material, rows: list[dict[str, Any]]) -> dict[str, Any]:
-    grows, paper = growth(arm, material.fidelity), PAPER[arm.preset]
+    grows, paper = growth(arm.config(material.fidelity)), PAPER[arm.preset]
     means = {asked.name: shown_interval([row[asked.name] for row in rows], asked).mean for asked in _ASKED}
     feeds = grows / paper.food_per_step if paper.food_per_step else None
     known = {"paper_food": paper.food_per_step, "feeds": feeds, "paper_lifetime": paper.mean_lifetime}
     return {"arm": arm.label, "worlds": len(rows), "grows": grows} | means | known
 
 
-def growth(arm: Arm, fidelity: str) -> float:
-    """Food that grows in a setting, over all kinds [food/step]."""
-    return sum(kind.growth_rate for kind in arm.config(fidelity).food.values())
+def growth(config: Config) -> float:
+    """Food that grows, over all kinds [food/step]."""
+    return sum(kind.growth_rate for kind in config.food.values())
 
 
 def _eaters(rows: list[dict[str, Any]]) -> list[Eater]:
@@ -84,7 +85,7 @@ def _rates() -> dict[str, float | None]:
 
 
 def _supplies(material: Material) -> list[float]:
-    return sorted({growth(arm, material.fidelity) for arm in ARMS})
+    return sorted({growth(arm.config(material.fidelity)) for arm in ARMS})
 
 
 def _eaten(world: WorldRecord, _common: Common) -> float | None:
@@ -93,7 +94,7 @@ def _eaten(world: WorldRecord, _common: Common) -> float | None:
 
 def _eaten_share(world: WorldRecord, _common: Common) -> float | None:
     tail = run_tail(world.population)
-    grown = sum(kind.growth_rate for kind in world.config.food.values()) * int(tail["steps"].sum())
+    grown = growth(world.config) * int(tail["steps"].sum())
     eaten = sum(int(tail[f"eaten_{kind}"].sum()) for kind in world.food_kinds)
     return eaten / grown if grown else None
 
