@@ -45,8 +45,8 @@ def draw_supply(
         rates: per condition what the paper's agents eat [1/step]; None where it gives no number.
         supplies: food that grows [food/step], a line each.
     """
-    low = min(_ALIVE[0], *(eater.alive / _MARGIN for eater in eaters))
-    high = max(_ALIVE[1], *(eater.alive * _MARGIN for eater in eaters))
+    low = min([_ALIVE[0], *(eater.alive / _MARGIN for eater in eaters)])
+    high = max([_ALIVE[1], *(eater.alive * _MARGIN for eater in eaters)])
     colors = dict(zip(rules, _COLORS, strict=False))
     with styled():
         figure = new_figure(9.0, 3.3)

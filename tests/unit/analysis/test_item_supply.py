@@ -6,6 +6,7 @@ import pytest
 from synthetic_run import write_run
 
 from hedon.analysis.condition_figure import NamedFigure
+from hedon.analysis.figure_supply import draw_supply
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.supply import ARMS, SUPPLY, growth
 from hedon.analysis.paper import PAPER
@@ -77,3 +78,8 @@ def test_the_figure_has_a_panel_per_condition_with_its_worlds_its_supplies_and_t
         assert supplies == [0.2, 1.0]
         [rate] = [line for line in axes.lines if line.get_linestyle() == "--"]
         assert set(np.asarray(rate.get_ydata())) == {PAPER[condition].food_per_step}
+
+
+def test_worlds_in_which_nobody_eats_leave_the_panels_empty() -> None:
+    figure = draw_supply([], ["corrected"], {"small": 0.0045, "other": None}, [0.2])
+    assert [len(axes.lines) for axes in figure.axes] == [2, 1]
