@@ -37,4 +37,11 @@ HEDON_INLINE int lowest_bit(uint64_t bits) {
 #endif
 }
 
+/// Asks the caches for `count` floats that will be read soon.
+HEDON_INLINE void ask_for(const float* first, int count) {
+#if !defined(__CUDA_ARCH__)
+  for (int i = 0; i < count; i += 16) __builtin_prefetch(first + i);
+#endif
+}
+
 }  // namespace hedon

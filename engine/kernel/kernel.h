@@ -68,6 +68,7 @@ struct Eye {
   float length;  ///< of a ray, from its start [u]
   int32_t self;  ///< index of the agent's own circle, which hides nothing from it; -1 where it has none
   Arc arc[RAY_ARCS];
+  const float* next;  ///< (64, 64) what is read once the rays are cast: asked for meanwhile, a row per circle
 
   HEDON_INLINE int32_t arcs() const { return (rays + 15) / 16; }
 };

@@ -26,7 +26,8 @@ HEDON_FN Eye make_eye(const World& world, int32_t self, Vec2 forward) {
           world.config->body.radius,
           sensor.ray_length,
           world.scene.own[self],
-          {}};
+          {},
+          world.params(slot) + world.shape->network.w2()};
   if (!constants.arc_convex) return eye;
   for (int32_t a = 0; a < eye.arcs(); ++a) {
     const Vec2 right = ray_direction(constants, a * 16, forward), left = ray_direction(constants, a * 16 + 15, forward);
