@@ -52,9 +52,12 @@ HEDON_INLINE void multiply(const float* a, const float* b, int rows, int inner, 
 HEDON_FN void fold_bias(const NetworkShape& shape, const float* params, float* folded) {
   Lanes bias[WIDTH];
   unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(params + shape.b1() + c * LANES); });
-  const int32_t rows = shape.observation.rays * shape.observation.types;
-  for (int32_t row = 0; row < rows; ++row) {
-    unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = bias[c] - load(params + row * HIDDEN + c * LANES); });
+  const ObservationShape& sizes = shape.observation;
+  for (int32_t r = 0; r < sizes.rays; ++r) {
+    for (int32_t type = 0; type < sizes.types; ++type) {
+      const float* row = params + shape.w1() + sizes.ray_entry(r, type) * HIDDEN;
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = bias[c] - load(row + c * LANES); });
+    }
   }
   unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded + c * LANES, bias[c]); });
 }
@@ -79,26 +82,26 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
   unroll<S>([&](auto s) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = load(folded + c * LANES); });
   });
-  const float* group = params + shape.w1();
-  const int32_t group_size = sizes.types * HIDDEN;
   const auto add_row = [&](auto s, float x, const Lanes* row) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(broadcast(x), row[c], total[s][c]); });
   };
   const auto load_row = [&](const float* at, Lanes* row) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { row[c] = load(at + c * LANES); });
   };
+  const float* const w1 = params + shape.w1();
   Lanes row[WIDTH];
-  for (int32_t r = 0; r < sizes.rays; ++r, group += group_size) {
+  for (int32_t r = 0; r < sizes.rays; ++r) {
     if (same_type<S>(observation, r)) {
-      load_row(group + observation[0]->ray_type[r] * HIDDEN, row);
+      load_row(w1 + sizes.ray_entry(r, observation[0]->ray_type[r]) * HIDDEN, row);
       unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->ray[r], row); });
     } else {
       unroll<S>([&](auto s) HEDON_INLINED {
-        load_row(group + observation[s]->ray_type[r] * HIDDEN, row);
+        load_row(w1 + sizes.ray_entry(r, observation[s]->ray_type[r]) * HIDDEN, row);
         add_row(s, observation[s]->ray[r], row);
       });
     }
   }
+  const float* group = w1 + sizes.ray_entries() * HIDDEN;
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
       const float* row = group + lowest_bit(bits) * HIDDEN;

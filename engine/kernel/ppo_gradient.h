@@ -88,16 +88,18 @@ HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation
   unroll<S>([&](auto s) HEDON_INLINED {
     unroll<C>([&](auto c) HEDON_INLINED { by[s][c] = load(by_sum + s * HIDDEN + c * LANES); });
   });
-  float* row = gradient + shape.w1();
-  for (int32_t r = 0; r < sizes.rays; ++r, row += sizes.types * HIDDEN) {
+  float* const w1 = gradient + shape.w1();
+  for (int32_t r = 0; r < sizes.rays; ++r) {
     if (same_type<S>(observation, r)) {
-      add_all(row + observation[0]->ray_type[r] * HIDDEN,
+      add_all(w1 + sizes.ray_entry(r, observation[0]->ray_type[r]) * HIDDEN,
               [&](const PackedObservation& seen) HEDON_INLINED { return seen.ray[r]; });
     } else {
-      unroll<S>([&](auto s)
-                    HEDON_INLINED { add_one(row + observation[s]->ray_type[r] * HIDDEN, s, observation[s]->ray[r]); });
+      unroll<S>([&](auto s) HEDON_INLINED {
+        add_one(w1 + sizes.ray_entry(r, observation[s]->ray_type[r]) * HIDDEN, s, observation[s]->ray[r]);
+      });
     }
   }
+  float* row = w1 + sizes.ray_entries() * HIDDEN;
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
       add_one(row + lowest_bit(bits) * HIDDEN, s, 1.0f);
@@ -201,8 +203,7 @@ HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const Learning
   }
 
   // The rays' -1: x = x' - 1, so each of their rows loses the sum of the derivatives, which is the bias's gradient.
-  const int32_t ray_rows = shape.observation.rays * shape.observation.types;
-  for (int32_t row = 0; row < ray_rows; ++row) {
+  for (int32_t row = 0; row < shape.observation.ray_entries(); ++row) {
     unroll<WIDTH>([&](auto c) HEDON_INLINED {
       float* const at = gradient + row * HIDDEN + c * LANES;
       store(at, load(at) - load(gradient + shape.b1() + c * LANES));

@@ -60,10 +60,17 @@ HEDON_FN void orthogonalize(float gain, float* rows) {
 /// orthogonal, log-sd 0. `params` has `shape.size()` floats.
 HEDON_FN void init_network(const NetworkShape& shape, const RandomStream& stream, float* params) {
   DrawSequence draws{stream, 0};
-  const int32_t inputs = shape.observation.size();
+  const ObservationShape& sizes = shape.observation;
+  const int32_t inputs = sizes.size();
   const float first = 1.0f / sqrtf(static_cast<float>(inputs));
   const float later = 1.0f / sqrtf(static_cast<float>(HIDDEN));
-  draws.uniform(first, inputs * HIDDEN, params + shape.w1());
+  float* const w1 = params + shape.w1();
+  for (int32_t r = 0; r < sizes.rays; ++r) {
+    for (int32_t type = 0; type < sizes.types; ++type) {
+      draws.uniform(first, HIDDEN, w1 + sizes.ray_entry(r, type) * HIDDEN);
+    }
+  }
+  draws.uniform(first, (inputs - sizes.ray_entries()) * HIDDEN, w1 + sizes.ray_entries() * HIDDEN);
   draws.uniform(first, HIDDEN, params + shape.b1());
   draws.uniform(later, HIDDEN * HIDDEN, params + shape.w2());
   draws.uniform(later, HIDDEN, params + shape.b2());

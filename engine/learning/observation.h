@@ -23,22 +23,26 @@ struct alignas(64) PackedObservation {
 };
 static_assert(sizeof(PackedObservation) == 192);
 
-/// Sizes of the observation. Input row of ray r and type k: r * types + k; then touch (type, sector); then dense.
+/// Sizes of the observation. Its entries, and the rows of the first layer: rays (type, ray), touch (type, sector),
+/// dense.
 struct ObservationShape {
   int32_t rays;
   int32_t types;
   int32_t touches;  ///< types * sectors, at most 64
   int32_t dense;    ///< 5 or 6
 
-  HEDON_INLINE int32_t size() const { return rays * types + touches + dense; }
+  HEDON_INLINE int32_t ray_entries() const { return types * rays; }
+  HEDON_INLINE int32_t size() const { return ray_entries() + touches + dense; }
+
+  /// Where a ray and a type are. Neighboring rays mostly hit one type, so what they read lies in a line.
+  HEDON_INLINE int32_t ray_entry(int32_t ray, int32_t type) const { return type * rays + ray; }
 };
 
 /// Writes the full observation: `size()` floats.
 HEDON_FN void unpack(const ObservationShape& shape, const PackedObservation& packed, float* full) {
-  int32_t at = 0;
-  for (int32_t r = 0; r < shape.rays; ++r) {
-    for (int32_t k = 0; k < shape.types; ++k, ++at) full[at] = packed.ray_type[r] == k ? packed.ray[r] - 1.0f : -1.0f;
-  }
+  int32_t at = shape.ray_entries();
+  for (int32_t i = 0; i < at; ++i) full[i] = -1.0f;
+  for (int32_t r = 0; r < shape.rays; ++r) full[shape.ray_entry(r, packed.ray_type[r])] = packed.ray[r] - 1.0f;
   for (int32_t t = 0; t < shape.touches; ++t, ++at) full[at] = static_cast<float>((packed.touch >> t) & 1u);
   for (int32_t d = 0; d < shape.dense; ++d, ++at) full[at] = packed.dense[d];
 }

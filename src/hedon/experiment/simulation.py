@@ -162,7 +162,7 @@ class World:
     def rays(self) -> NDArray[np.float32]:
         """The ray part of the observations: (alive, rays, types), types being agent, each food kind, wall."""
         rays, types = self.config.sensor.ray_count, len(self.config.food) + 2
-        return self.observations()[:, : rays * types].reshape(-1, rays, types)
+        return self.observations()[:, : types * rays].reshape(-1, types, rays).swapaxes(1, 2)
 
     def digest(self) -> str:
         """A hash of all the world's state: equal for equal bits."""

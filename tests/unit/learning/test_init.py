@@ -55,7 +55,7 @@ def test_pack_and_unpack():
     dense = np.arange(5, dtype=np.float32)[None]
     packed = learning.pack(ray, ray_type, np.array([0b1001], np.uint64), dense)
     full = learning.unpack((3, 2, 4, 5), packed)
-    np.testing.assert_allclose(full, [[-1, 0.25, -1, -1, 1, -1, 1, 0, 0, 1, 0, 1, 2, 3, 4]])
+    np.testing.assert_allclose(full, [[-1, -1, 1, 0.25, -1, -1, 1, 0, 0, 1, 0, 1, 2, 3, 4]])
 
 
 def test_wrong_arguments_are_named():
