@@ -137,9 +137,9 @@ class PythonSimulation {
     std::vector<float> full(count * size);
     gather_scene(from);
     for (size_t i = 0; i < count; ++i) {
-      const int32_t self = static_cast<int32_t>(i);
-      note_start(from, from.state.living[self]);
-      unpack(shape, observe(from, self, 0), &full[i * size]);
+      const int32_t slot = from.state.living[static_cast<int64_t>(i)];
+      note_start(from, slot);
+      unpack(shape, observe(from, slot, 0), &full[i * size]);
     }
     return copy_array(std::move(full), {count, size});
   }

@@ -53,19 +53,22 @@ HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratc
   load_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
-/// Writes back what a successful try of a batch computed.
-HEDON_FN void commit_batch(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range) {
-  const NeighborList& list = state.neighbors;
+/// Writes back what a successful try computed of the body in `slot`, if there is one.
+HEDON_FN void commit_body(const PhysicsState& state, const PhysicsScratch& scratch, int32_t slot) {
   const BodyState& bodies = state.bodies;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    const int32_t slot = list.slot[place];
-    bodies.x[slot] = scratch.position[place].x;
-    bodies.y[slot] = scratch.position[place].y;
-    bodies.angle[slot] = wrap_angle(scratch.angle[place]);
-    bodies.velocity_x[slot] = scratch.motion[place].x;
-    bodies.velocity_y[slot] = scratch.motion[place].y;
-    bodies.angular_velocity[slot] = scratch.motion[place].angular;
-  }
+  const int32_t place = state.neighbors.place[slot];
+  if (place < 0) return;
+  bodies.x[slot] = scratch.position[place].x;
+  bodies.y[slot] = scratch.position[place].y;
+  bodies.angle[slot] = wrap_angle(scratch.angle[place]);
+  bodies.velocity_x[slot] = scratch.motion[place].x;
+  bodies.velocity_y[slot] = scratch.motion[place].y;
+  bodies.angular_velocity[slot] = scratch.motion[place].angular;
+}
+
+/// Writes back the impulses of a batch's pairs.
+HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range) {
+  const NeighborList& list = state.neighbors;
   const auto store_pairs = [](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
     for (int32_t pair = first; pair < last; ++pair) {
       pairs.normal_impulse[pair] = work.normal[pair];
@@ -243,8 +246,11 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   const float speed = sqrtf(report.squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
   const float free_path = speed * c.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
+  // Bodies by slot, not by batch: two members would write to most cache lines in turn.
+  group.for_each(static_cast<int>(state.neighbors.place.count),
+                 [&](int32_t slot) { commit_body(state, scratch, slot); });
   group.for_each(head.batches, [&](int32_t batch) {
-    commit_batch(state, scratch, batch_range(state.neighbors, batch));
+    commit_pairs(state, scratch, batch_range(state.neighbors, batch));
     if (batch == 0) {
       head.stale = stale;
       head.free_path = free_path;

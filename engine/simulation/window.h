@@ -26,7 +26,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
     note_start(world, slot);
-    const PackedObservation& next = world.observation(slot, shape.steps) = observe(world, i, group.rank());
+    const PackedObservation& next = world.observation(slot, shape.steps) = observe(world, slot, group.rank());
     float output[16];
     world.kernel->forward(shape.network, world.params(slot), world.folded_bias(slot), next, output);
 
@@ -60,7 +60,7 @@ template <class Group, class Pacer, class Lap>
 HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
                       Lap&& lap) {
   const int64_t window = world.shape->steps;
-  group.once([&] { gather_scene(world); });
+  group.once([&] { prepare_step(world); });
   while (steps > 0 && !world.over()) {
     const int64_t left = window - world.clock().step % window;
     const int64_t stretch = left < steps ? left : steps;

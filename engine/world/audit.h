@@ -105,7 +105,8 @@ HEDON_FN void audit_ledger(const World& world) {
 /// Id of the agent whose circle stands at an index of the scene; -1 for a food.
 HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
-    if (world.scene.own[i] == index) return world.state.life[world.state.living[i]].agent_id;
+    const int32_t slot = world.state.living[i];
+    if (world.scene.own[slot] == index) return world.state.life[slot].agent_id;
   }
   return -1;
 }
@@ -113,11 +114,11 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
 /// How deep two discs may overlap: by the radius of a body. What contacts leave is far less: motors close a gap by some
 /// 0.3 u per substep at most, of which the corrections of the next take a third. Beyond it a contact is ill-defined,
 /// since a body's center lies in what it touches, and the two may pass through each other: a pair was missed.
-HEDON_FN Finding audit_overlap(const World& world, int32_t i) {
+HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const Scene& scene = world.scene;
   const SceneGrid& grid = world.shape->scene;
   const BodyConfig& config = world.config->body;
-  const int32_t own = scene.own[i];
+  const int32_t own = scene.own[slot];
   const float x = scene.x[own], y = scene.y[own];
   const float reach = config.radius > config.food_radius ? config.radius : config.food_radius;
   const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
@@ -136,10 +137,9 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t i) {
   return {Status::ok, -1, 0.0};
 }
 
-/// One agent: its numbers are finite, its center lies in the arena and in nothing else.
-HEDON_FN Finding audit_agent(const World& world, int32_t i) {
+/// The agent in `slot`: its numbers are finite, its center lies in the arena and in nothing else.
+HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   const WorldState& state = world.state;
-  const int32_t slot = state.living[i];
   const BodyState& body = state.physics.bodies;
   const float numbers[] = {body.x[slot],          body.y[slot],          body.angle[slot],
                            body.velocity_x[slot], body.velocity_y[slot], body.angular_velocity[slot]};
@@ -161,7 +161,7 @@ HEDON_FN Finding audit_agent(const World& world, int32_t i) {
     const float inside = cross(Vec2{body.x[slot], body.y[slot]} - walls[w].a, along);
     if (inside < 0.0f) return {Status::outside_arena, -1, inside / length(along)};
   }
-  return audit_overlap(world, i);
+  return audit_overlap(world, slot);
 }
 
 /// Looks a world over. All members of the group call it; the first thing wrong, in canonical order, becomes the fault.
@@ -173,7 +173,7 @@ HEDON_FN void audit(Group& group, World& world) {
   });
   if (world.fault().status != Status::ok) return;
   const int32_t living = world.clock().living_count;
-  group.for_each(living, [&](int32_t i) { world.scratch.finding[i] = audit_agent(world, i); });
+  group.for_each(living, [&](int32_t i) { world.scratch.finding[i] = audit_agent(world, world.state.living[i]); });
   group.once([&] {
     for (int32_t i = 0; i < living; ++i) {
       const Finding& found = world.scratch.finding[i];

@@ -52,7 +52,7 @@ HEDON_FN void gather_scene(World& world) {
   }
   for (int32_t i = living - 1; i >= 0; --i) {
     const int32_t slot = state.living[i];
-    scene.own[i] = put(i, body.x[slot], body.y[slot], world.config->body.radius, AGENT_TYPE);
+    scene.own[slot] = put(i, body.x[slot], body.y[slot], world.config->body.radius, AGENT_TYPE);
   }
 }
 

@@ -11,11 +11,10 @@
 
 namespace hedon {
 
-/// The eye of the agent at position `self` of the living order, which looks along `forward`.
-HEDON_FN Eye make_eye(const World& world, int32_t self, Vec2 forward) {
+/// The eye of the agent in `slot`, which looks along `forward`.
+HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
   const SensorConfig& sensor = world.config->sensor;
   const WorldConstants& constants = *world.constants;
-  const int32_t slot = world.state.living[self];
   Eye eye{world.state.physics.bodies.x[slot],
           world.state.physics.bodies.y[slot],
           forward.x,
@@ -25,7 +24,7 @@ HEDON_FN Eye make_eye(const World& world, int32_t self, Vec2 forward) {
           sensor.ray_count,
           world.config->body.radius,
           sensor.ray_length,
-          world.scene.own[self],
+          world.scene.own[slot],
           {},
           world.params(slot) + world.shape->network.w2()};
   if (!constants.arc_convex) return eye;
@@ -36,10 +35,10 @@ HEDON_FN Eye make_eye(const World& world, int32_t self, Vec2 forward) {
   return eye;
 }
 
-/// Casts the rays of the agent at position `self` of the living order; `rank` is that of the calling member.
-HEDON_FN void cast_agent_rays(const World& world, int32_t self, Vec2 forward, int rank, PackedObservation& out) {
+/// Casts the rays of the agent in `slot`; `rank` is that of the calling member.
+HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, int rank, PackedObservation& out) {
   const RayScene scene = ray_scene(world);
-  const Eye eye = make_eye(world, self, forward);
+  const Eye eye = make_eye(world, slot, forward);
   const Vec2 right = ray_direction(*world.constants, 0, forward);
   const Vec2 left = ray_direction(*world.constants, eye.rays - 1, forward);
   Sighted sighted = no_circles(world, rank);
@@ -57,15 +56,13 @@ HEDON_FN void note_start(World& world, int32_t slot) {
   scratch.start_y[slot] = body.y[slot];
 }
 
-/// The observation of the agent at position `self` of the living order, after `note_start`; `rank` is that of the
-/// calling member. Needs the scene.
-HEDON_FN PackedObservation observe(const World& world, int32_t self, int rank) {
+/// The observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the scene.
+HEDON_FN PackedObservation observe(const World& world, int32_t slot, int rank) {
   const WorldState& state = world.state;
-  const int32_t slot = state.living[self];
   const BodyState& body = state.physics.bodies;
   const float sine = world.scratch.heading_sine[slot], cosine = world.scratch.heading_cosine[slot];
   PackedObservation out;
-  cast_agent_rays(world, self, {-sine, cosine}, rank, out);
+  cast_agent_rays(world, slot, {-sine, cosine}, rank, out);
   out.touch = state.touch[slot];
   const float energy = static_cast<float>(state.life[slot].energy);
   const float vx = body.velocity_x[slot], vy = body.velocity_y[slot], omega = body.angular_velocity[slot];

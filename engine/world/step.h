@@ -44,17 +44,24 @@ HEDON_FN void check_inside(World& world) {
   }
 }
 
-/// Advances a world by one step, whose scene has been gathered. All members of the group call it; `t` is the step
+/// Derives from the state what a step starts from.
+HEDON_FN void prepare_step(World& world) {
+  list_by_slot(world);
+  gather_scene(world);
+}
+
+/// Advances a world by one step, which has been prepared. All members of the group call it; `t` is the step
 /// within the window. `lap(part)` is told when each part ends.
 template <class Group, class Lap>
 HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   Clock& clock = world.clock();
   const WorldState& state = world.state;
 
+  const Array<int32_t>& by_slot = world.scratch.by_slot;
   const auto sense_and_act = [&](int32_t i) {
-    const int32_t slot = state.living[i];
+    const int32_t slot = by_slot[i];
     note_start(world, slot);
-    const PackedObservation observation = observe(world, i, group.rank());
+    const PackedObservation observation = observe(world, slot, group.rank());
     world.observation(slot, t) = observation;
     sample_action(world, slot, t, observation);
     drive(world, slot, t);
@@ -82,14 +89,14 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     eat(world);
   });
   if (world.fault().status != Status::ok) return;
-  group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, state.living[i], t); });
+  group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, by_slot[i], t); });
   group.once([&] {
     keep_ledger(world);
     breed(world);
     reap(world);
     grow(world);
     clock.step += 1;
-    gather_scene(world);
+    prepare_step(world);
     if (clock.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(clock.step));
   });
   lap(Part::life);

@@ -17,7 +17,7 @@ namespace hedon {
 struct Scene {
   Array<float> x, y, radius, type;  ///< (slots + foods) of the circles: cell by cell, row by row of cells
   Array<int32_t> start;             ///< (cells + 1) first circle of each cell
-  Array<int32_t> own;               ///< (slots) index of the circle of the agent at each position of the living order
+  Array<int32_t> own;               ///< (slots) index of the circle of the agent in each slot
   Array<int32_t> cell;              ///< (slots + foods) of each circle, before sorting
   Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< (walls)
   Array<int32_t> sighted;  ///< (members, RAY_ARCS, slots + foods + 16) for each member of the team: see `Sighted`
@@ -34,6 +34,7 @@ struct Finding {
 
 /// What an agent does and meets within one step, by slot. Means nothing between steps.
 struct StepScratch {
+  Array<int32_t> by_slot;                     ///< (slots) slots of the living, rising: see `list_by_slot`
   Array<float> force_left, force_right;       ///< applied by the motors
   Array<float> force_x, force_y, torque;      ///< the same, on the body
   Array<float> heading_sine, heading_cosine;  ///< at the start of the step
@@ -48,7 +49,7 @@ struct StepScratch {
   Array<int32_t> parent;                 ///< (slots)
   Array<uint32_t> parent_key;            ///< (slots)
 
-  HEDON_FIELDS(StepScratch, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine,
+  HEDON_FIELDS(StepScratch, by_slot, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine,
                start_angle, start_x, start_y, meal, death_draw, energy_eaten, energy_basic, energy_action,
                energy_forgiven, energy_capped, starved, breeds, dies, finding, eater, eater_distance, parent,
                parent_key)
