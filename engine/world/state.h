@@ -1,7 +1,8 @@
 /// All that a world is at one moment: read this first.
 ///
 /// Agents live in *slots*, which are reused; an `agent_id` never is. `living` lists the slots of the living in the
-/// order of their ids, and every loop over agents follows it, so that which slot an agent got changes nothing.
+/// order of their ids. Every sum and every loop whose order matters follows it, so that which slot an agent got changes
+/// nothing; where agents do not meet, loops follow the slots, that is memory (`list_by_slot`).
 #pragma once
 
 #include <cstdint>
