@@ -53,6 +53,7 @@ HEDON_FN void fold_bias(const NetworkShape& shape, const float* params, float* f
   Lanes bias[WIDTH];
   unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(params + shape.b1() + c * LANES); });
   const ObservationShape& sizes = shape.observation;
+  // Ray by ray, not row by row: the sum rounds the same wherever the rows lie.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
       const float* row = params + shape.w1() + sizes.ray_entry(r, type) * HIDDEN;
