@@ -34,6 +34,7 @@ def config(**changes: Any) -> dict[str, Any]:
         "value_coef": 1.0,
         "entropy_coef": 0.001,
         "critic_target": "per_state",
+        "acting_weights": "bfloat16",
     } | changes
 
 

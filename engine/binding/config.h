@@ -22,6 +22,7 @@ struct EnumNames;
     static constexpr auto& text = names; \
   }
 HEDON_ENUM(CriticTarget, CRITIC_TARGET_NAMES);
+HEDON_ENUM(ActingWeights, ACTING_WEIGHTS_NAMES);
 HEDON_ENUM(MutationNoise, MUTATION_NOISE_NAMES);
 HEDON_ENUM(ActionNorm, ACTION_NORM_NAMES);
 HEDON_ENUM(ObservationScaling, OBSERVATION_SCALING_NAMES);

@@ -16,6 +16,7 @@
 #include "kernel/kernel.h"
 #include "learning/init.h"
 #include "learning/ppo.h"
+#include "learning/weight_pair.h"
 
 namespace nb = nanobind;
 
@@ -131,7 +132,15 @@ FloatsOut unpack_all(ObservationSizes sizes, Bytes packed) {
   return to_numpy(full.data(), {count, width});
 }
 
-FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Floats params, Bytes packed) {
+FloatsOut pair_all(const Floats& first, const Floats& second) {
+  check_length(second.size(), first.size(), "second");
+  std::vector<float> pairs(first.size());
+  for (size_t i = 0; i < pairs.size(); ++i) pairs[i] = pair_weights(first.data()[i], second.data()[i]);
+  return to_numpy(pairs.data(), {pairs.size()});
+}
+
+FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Floats params, Bytes packed,
+                      bool rounded) {
   const Kernel& kernel = kernel_by_name(kernel_name);
   const NetworkShape shape = to_shape(sizes);
   check_length(params.size(), static_cast<size_t>(shape.size()), "params");
@@ -139,10 +148,12 @@ FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Fl
   Aligned<PackedObservation> observation(reinterpret_cast<const PackedObservation*>(packed.data()), count);
   Aligned<float> weights(params.data(), params.size());
   Aligned<float> folded(HIDDEN);
+  Aligned<float> paired(static_cast<size_t>(shape.pairs()));
+  const ActingNetwork network = {weights.get(), folded.get(), rounded ? paired.get() : nullptr};
   std::vector<float> output(count * OUTPUTS);
-  kernel.fold_bias(shape, weights.get(), folded.get());
+  kernel.derive(shape, network);
   for (size_t i = 0; i < count; ++i) {
-    kernel.forward(shape, weights.get(), folded.get(), observation.get()[i], output.data() + i * OUTPUTS);
+    kernel.forward(shape, network, observation.get()[i], output.data() + i * OUTPUTS);
   }
   return to_numpy(output.data(), {count, size_t{OUTPUTS}});
 }
@@ -224,8 +235,12 @@ void bind_learning(nb::module_& module) {
   learning.def("pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
                "Packed observations (n, 192) from reading + 1 and type of each ray, touch bits and dense entries.");
   learning.def("unpack", unpack_all, nb::arg("shape"), nb::arg("observation"), "Full observations (n, size).");
+  learning.def("pair_weights", pair_all, nb::arg("first"), nb::arg("second"),
+               "Two weights in the bits of each float: the lower 16 are the second in bfloat16, the whole is near the "
+               "first.");
   learning.def("forward", forward_all, nb::arg("kernel"), nb::arg("shape"), nb::arg("params"), nb::arg("observation"),
-               "Mean (2) and value of each packed observation: (n, 3).");
+               nb::arg("rounded") = false,
+               "Mean (2) and value of each packed observation: (n, 3), by weights as they are or rounded to bfloat16.");
   learning.def("gradient", gradient, nb::arg("kernel"), nb::arg("shape"), nb::arg("config"), nb::arg("params"),
                nb::arg("observation"), nb::arg("action"), nb::arg("log_prob"), nb::arg("advantage"), nb::arg("target"),
                nb::arg("order"), "Gradient and (policy, value, entropy) of the minibatch of the samples in `order`.");

@@ -227,9 +227,9 @@ class PythonSimulation {
 
 /// Arrays that have one row per slot; all others are flat.
 bool is_by_slot(const std::string& name) {
-  static const std::set<std::string> names = {"alive",   "living", "free",        "eaten",        "genome",
-                                              "touch",   "params", "folded_bias", "first_moment", "second_moment",
-                                              "updates", "action", "log_prob",    "value",        "reward"};
+  static const std::set<std::string> names = {
+      "alive",          "living",       "free",          "eaten",   "genome", "touch",    "params", "folded_bias",
+      "paired_weights", "first_moment", "second_moment", "updates", "action", "log_prob", "value",  "reward"};
   return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
 }
 

@@ -28,12 +28,12 @@ HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lane
 /// A ray misses a circle whose far side lies before the ray's start. There is no branch, since which circle crosses any
 /// of 16 rays is hard to guess. Nor is there much to wait for, so each circle asks for a row of what is read `next`.
 HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const int32_t* circle, int32_t circles,
-                                  const float* next, RayLanes& rays) {
+                                  const Rows& next, int32_t first_row, RayLanes& rays) {
   const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
   const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y);
   for (int32_t i = 0; i < circles; ++i) {
     const int32_t at = circle[i];
-    ask_for(next + i % ROWS_PER_ARC * HIDDEN, HIDDEN);
+    ask_for(next.first + (first_row + i % ROWS_PER_ARC) * next.width, next.width);
     const Lanes x = broadcast(scene.circle_x[at]) - eye_x;
     const Lanes y = broadcast(scene.circle_y[at]) - eye_y;
     const Lanes radius = broadcast(scene.circle_radius[at]);
@@ -93,7 +93,7 @@ HEDON_FN void cast_rays(const RayScene& scene, const Eye& eye, const Sighted& si
       const Lanes cosine = load(eye.ray_cosine + a * 16), sine = load(eye.ray_sine + a * 16);
       RayLanes rays{cosine * forward_x - sine * forward_y, cosine * forward_y + sine * forward_x, broadcast(NOTHING),
                     zero};
-      cast_at_circles(scene, eye, sighted.circle[a], sighted.circles[a], eye.next + a * ROWS_PER_ARC * HIDDEN, rays);
+      cast_at_circles(scene, eye, sighted.circle[a], sighted.circles[a], eye.next, a * ROWS_PER_ARC, rays);
       cast_at_segments(scene, eye, eye.arc[a], rays);
       const LaneMask found = both(rays.distance <= length, first_lanes(eye.rays - a * 16));
       readings = select(found, broadcast(2.0f) - rays.distance / length, zero);

@@ -50,6 +50,12 @@ struct RayScene {
   float segment_type;
 };
 
+/// HIDDEN rows of floats, one after another.
+struct Rows {
+  const float* first;
+  int32_t width;
+};
+
 inline constexpr int RAY_ARCS = PACKED_RAYS / 16;
 
 /// The sector of the plane that 16 neighboring rays can reach: directions of its edges, 0 where it is not convex.
@@ -68,7 +74,7 @@ struct Eye {
   float length;  ///< of a ray, from its start [u]
   int32_t self;  ///< index of the agent's own circle, which hides nothing from it; -1 where it has none
   Arc arc[RAY_ARCS];
-  const float* next;  ///< (64, 64) what is read once the rays are cast: asked for meanwhile, a row per circle
+  Rows next;  ///< what is read once the rays are cast: asked for meanwhile, a row per circle
 
   HEDON_INLINE int32_t arcs() const { return (rays + 15) / 16; }
 };
@@ -82,12 +88,12 @@ struct Sighted {
 struct Kernel {
   const char* name;
 
-  /// Folds the -1 of all ray channels into the first bias: folded[j] = b1[j] - sum of w1[row, j] over all ray rows.
-  void (*fold_bias)(const NetworkShape& shape, const float* params, float* folded);
+  /// Pairs the weights, unless `network.paired` is null, and folds the bias; to be done when parameters change.
+  void (*derive)(const NetworkShape& shape, const ActingNetwork& network);
 
-  /// Mean (2) and value (1) for one observation; `folded` (64) comes from `fold_bias`.
-  void (*forward)(const NetworkShape& shape, const float* params, const float* folded,
-                  const PackedObservation& observation, float* output);
+  /// Mean (2) and value (1) for one observation.
+  void (*forward)(const NetworkShape& shape, const ActingNetwork& network, const PackedObservation& observation,
+                  float* output);
 
   /// Loss and gradient of one minibatch given by `order[0 .. minibatch_size)`; `gradient` has `shape.size()` floats.
   PpoLoss (*gradient)(const NetworkShape& shape, const LearningConfig& config, const float* params,

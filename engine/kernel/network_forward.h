@@ -5,6 +5,7 @@
 
 #include "kernel/kernel.h"
 #include "lanes/elementary.h"
+#include "learning/weight_pair.h"
 
 namespace hedon {
 namespace {
@@ -12,16 +13,48 @@ namespace {
 inline constexpr int LANES = 16;
 inline constexpr int WIDTH = HIDDEN / LANES;  ///< lanes in a row of hidden units
 
+/// Rows of 64 numbers.
+struct PlainRows {
+  const float* first;
+
+  HEDON_INLINE PlainRows after(int row) const { return {first + row * HIDDEN}; }
+
+  /// C lanes of a row from a column on.
+  template <int C>
+  HEDON_INLINE void read(int row, int column, Lanes* to) const {
+    const float* const from = first + row * HIDDEN + column;
+    unroll<C>([&](auto c) HEDON_INLINED { to[c] = load(from + c * LANES); });
+  }
+};
+
+/// Rows of 64 weights in pairs: each one with that 16 columns further.
+struct PairedRows {
+  const float* first;
+
+  HEDON_INLINE PairedRows after(int row) const { return {first + row * (HIDDEN / 2)}; }
+
+  template <int C>
+  HEDON_INLINE void read(int row, int column, Lanes* to) const {
+    static_assert(C % 2 == 0);
+    const float* const from = first + row * (HIDDEN / 2) + column / 2;
+    unroll<C / 2>([&](auto c) HEDON_INLINED {
+      to[2 * c] = load(from + c * LANES);
+      to[2 * c + 1] = lower_half(to[2 * c]);
+    });
+  }
+};
+
 /// Adds A·B to a tile of R rows and C lanes of columns. begin(r, c) gives what a sum starts from, end(r, c, sum) takes
-/// it. a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE b   rows of 64, from the tile's first column
-template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Begin, class End>
-HEDON_INLINE void multiply_tile(const float* a, const float* b, int inner, const Begin& begin, const End& end) {
+/// it. a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE
+template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Matrix, class Begin, class End>
+HEDON_INLINE void multiply_tile(const float* a, const Matrix& b, int column, int inner, const Begin& begin,
+                                const End& end) {
   Lanes total[R][C];
   unroll<R>([&](auto r) HEDON_INLINED { unroll<C>([&](auto c) HEDON_INLINED { total[r][c] = begin(r, c); }); });
 #pragma GCC unroll 2
   for (int k = 0; k < inner; ++k) {
     Lanes row[C];
-    unroll<C>([&](auto c) HEDON_INLINED { row[c] = load(b + k * HIDDEN + c * LANES); });
+    b.template read<C>(k, column, row);
     unroll<R>([&](auto r) HEDON_INLINED {
       const Lanes x = broadcast(a[r * ROW_STRIDE + k * INNER_STRIDE]);
       unroll<C>([&](auto c) HEDON_INLINED { total[r][c] = multiply_add(x, row[c], total[r][c]); });
@@ -32,14 +65,14 @@ HEDON_INLINE void multiply_tile(const float* a, const float* b, int inner, const
 
 /// All of A·B: `rows` rows by 64 columns, in tiles of R rows and C lanes; what is left over in tiles of fewer rows.
 /// begin(row, column) and end(row, column, sum) as above, with the column counted in floats.
-template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Begin, class End>
-HEDON_INLINE void multiply(const float* a, const float* b, int rows, int inner, const Begin& begin, const End& end,
+template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Matrix, class Begin, class End>
+HEDON_INLINE void multiply(const float* a, const Matrix& b, int rows, int inner, const Begin& begin, const End& end,
                            int first = 0) {
   int row = first;
   for (; row + R <= rows; row += R) {
     for (int column = 0; column < HIDDEN; column += C * LANES) {
       multiply_tile<R, C, ROW_STRIDE, INNER_STRIDE>(
-          a + row * ROW_STRIDE, b + column, inner,
+          a + row * ROW_STRIDE, b, column, inner,
           [&](auto r, auto c) HEDON_INLINED { return begin(row + r, column + c * LANES); },
           [&](auto r, auto c, Lanes total) HEDON_INLINED { end(row + r, column + c * LANES, total); });
     }
@@ -49,18 +82,34 @@ HEDON_INLINE void multiply(const float* a, const float* b, int rows, int inner, 
   }
 }
 
-HEDON_FN void fold_bias(const NetworkShape& shape, const float* params, float* folded) {
-  Lanes bias[WIDTH];
-  unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = load(params + shape.b1() + c * LANES); });
+/// See `ActingNetwork::folded`. w1   the rows that will be read
+template <class Matrix>
+HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Matrix& w1, float* folded) {
+  Lanes bias[WIDTH], row[WIDTH];
+  PlainRows{b1}.read<WIDTH>(0, 0, bias);
   const ObservationShape& sizes = shape.observation;
   // Ray by ray, not row by row: the sum rounds the same wherever the rows lie.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
-      const float* row = params + shape.w1() + sizes.ray_entry(r, type) * HIDDEN;
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = bias[c] - load(row + c * LANES); });
+      w1.template read<WIDTH>(sizes.ray_entry(r, type), 0, row);
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = bias[c] - row[c]; });
     }
   }
   unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded + c * LANES, bias[c]); });
+}
+
+/// See `Kernel::derive`.
+HEDON_FN void derive(const NetworkShape& shape, const ActingNetwork& network) {
+  const float* const b1 = network.params + shape.b1();
+  if (network.paired == nullptr) {
+    fold_bias(shape, b1, PlainRows{network.params + shape.w1()}, network.folded);
+    return;
+  }
+  for (int32_t pair = 0; pair < shape.pairs(); pair += LANES) {
+    const float* const first = network.params + 2 * pair;
+    for (int i = 0; i < LANES; ++i) network.paired[pair + i] = pair_weights(first[i], first[LANES + i]);
+  }
+  fold_bias(shape, b1, PairedRows{network.paired}.after(shape.w1() / HIDDEN), network.folded);
 }
 
 /// Whether ray r hit the same type in all of S observations. Neighbors in time mostly agree, so the branch is cheap.
@@ -75,8 +124,8 @@ HEDON_INLINE bool same_type(const PackedObservation* const* observation, int32_t
 /// The first hidden layer of S observations at once: one row-addition per ray, per touch and per dense entry. A row
 /// that all of them read is loaded once.
 /// hidden   (S, 64), after the tanh
-template <int S>
-HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, const float* folded,
+template <int S, class Matrix>
+HEDON_INLINE void first_layer(const NetworkShape& shape, const Matrix& w1, const float* folded,
                               const PackedObservation* const* observation, float* hidden) {
   const ObservationShape& sizes = shape.observation;
   Lanes total[S][WIDTH];
@@ -86,32 +135,27 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const float* params, co
   const auto add_row = [&](auto s, float x, const Lanes* row) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(broadcast(x), row[c], total[s][c]); });
   };
-  const auto load_row = [&](const float* at, Lanes* row) HEDON_INLINED {
-    unroll<WIDTH>([&](auto c) HEDON_INLINED { row[c] = load(at + c * LANES); });
-  };
-  const float* const w1 = params + shape.w1();
   Lanes row[WIDTH];
   for (int32_t r = 0; r < sizes.rays; ++r) {
     if (same_type<S>(observation, r)) {
-      load_row(w1 + sizes.ray_entry(r, observation[0]->ray_type[r]) * HIDDEN, row);
+      w1.template read<WIDTH>(sizes.ray_entry(r, observation[0]->ray_type[r]), 0, row);
       unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->ray[r], row); });
     } else {
       unroll<S>([&](auto s) HEDON_INLINED {
-        load_row(w1 + sizes.ray_entry(r, observation[s]->ray_type[r]) * HIDDEN, row);
+        w1.template read<WIDTH>(sizes.ray_entry(r, observation[s]->ray_type[r]), 0, row);
         add_row(s, observation[s]->ray[r], row);
       });
     }
   }
-  const float* group = w1 + sizes.ray_entries() * HIDDEN;
+  const int32_t touch = sizes.ray_entries(), dense = touch + sizes.touches;
   unroll<S>([&](auto s) HEDON_INLINED {
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
-      const float* row = group + lowest_bit(bits) * HIDDEN;
-      unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = total[s][c] + load(row + c * LANES); });
+      w1.template read<WIDTH>(touch + lowest_bit(bits), 0, row);
+      unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = total[s][c] + row[c]; });
     }
   });
-  group += sizes.touches * HIDDEN;
-  for (int32_t d = 0; d < sizes.dense; ++d, group += HIDDEN) {
-    load_row(group, row);
+  for (int32_t d = 0; d < sizes.dense; ++d) {
+    w1.template read<WIDTH>(dense + d, 0, row);
     unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->dense[d], row); });
   }
   unroll<S>([&](auto s) HEDON_INLINED {
@@ -125,7 +169,8 @@ HEDON_INLINE void second_layer(const NetworkShape& shape, const float* params, c
                                float* hidden2) {
   const float* bias = params + shape.b2();
   multiply<Shape::rows, Shape::lanes, HIDDEN, 1>(
-      hidden1, params + shape.w2(), count, HIDDEN, [&](int, int column) HEDON_INLINED { return load(bias + column); },
+      hidden1, PlainRows{params + shape.w2()}, count, HIDDEN,
+      [&](int, int column) HEDON_INLINED { return load(bias + column); },
       [&](int row, int column, Lanes total)
           HEDON_INLINED { store(hidden2 + row * HIDDEN + column, tanh_lanes(total)); });
 }
@@ -143,18 +188,31 @@ HEDON_INLINE void heads(const NetworkShape& shape, const float* params, const fl
   unroll<OUTPUTS>([&](auto o) HEDON_INLINED { output[o] = sum(total[o]) + params[shape.b3() + o]; });
 }
 
-template <class Shape>
-HEDON_FN void forward(const NetworkShape& shape, const float* params, const float* folded,
-                      const PackedObservation& observation, float* output) {
+/// weights   rows of w1, of b1, and of w2, as in `network.params` or rounded
+template <class Shape, class Matrix>
+HEDON_INLINE void forward_by(const NetworkShape& shape, const ActingNetwork& network, const Matrix& weights,
+                             const PackedObservation& observation, float* output) {
   alignas(64) float hidden1[HIDDEN];
   alignas(64) float hidden2[HIDDEN];
   const PackedObservation* one = &observation;
-  first_layer<1>(shape, params, folded, &one, hidden1);
+  const float* const bias = network.params + shape.b2();
+  first_layer<1>(shape, weights.after(shape.w1() / HIDDEN), network.folded, &one, hidden1);
   multiply<1, Shape::forward_lanes, HIDDEN, 1>(
-      hidden1, params + shape.w2(), 1, HIDDEN,
-      [&](int, int column) HEDON_INLINED { return load(params + shape.b2() + column); },
+      hidden1, weights.after(shape.w2() / HIDDEN), 1, HIDDEN,
+      [&](int, int column) HEDON_INLINED { return load(bias + column); },
       [&](int, int column, Lanes total) HEDON_INLINED { store(hidden2 + column, tanh_lanes(total)); });
-  heads(shape, params, hidden2, output);
+  heads(shape, network.params, hidden2, output);
+}
+
+/// See `Kernel::forward`.
+template <class Shape>
+HEDON_FN void forward(const NetworkShape& shape, const ActingNetwork& network, const PackedObservation& observation,
+                      float* output) {
+  if (network.paired == nullptr) {
+    forward_by<Shape>(shape, network, PlainRows{network.params}, observation, output);
+  } else {
+    forward_by<Shape>(shape, network, PairedRows{network.paired}, observation, output);
+  }
 }
 
 }  // namespace

@@ -136,11 +136,12 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
   const PackedObservation* observation[BLOCK];
   gather(batch, order, count, share, block, observation);
 
+  const PlainRows w1 = {params + shape.w1()};
   int s = 0;
   for (; s + Shape::samples <= count; s += Shape::samples) {
-    first_layer<Shape::samples>(shape, params, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+    first_layer<Shape::samples>(shape, w1, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
   }
-  for (; s < count; ++s) first_layer<1>(shape, params, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+  for (; s < count; ++s) first_layer<1>(shape, w1, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
   second_layer<Shape>(shape, params, memory.hidden1, count, memory.hidden2);
   const int padded = (count + LANES - 1) / LANES * LANES;
   for (s = 0; s < padded; ++s) {
@@ -154,12 +155,13 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
   heads_backward(shape, params, block, count, memory.hidden2, gradient);
   float* const w2 = gradient + shape.w2();
   multiply<Shape::rows, Shape::lanes, 1, HIDDEN>(
-      memory.hidden1, memory.hidden2, HIDDEN, count,
+      memory.hidden1, PlainRows{memory.hidden2}, HIDDEN, count,
       [&](int row, int column) HEDON_INLINED { return load(w2 + row * HIDDEN + column); },
       [&](int row, int column, Lanes total) HEDON_INLINED { store(w2 + row * HIDDEN + column, total); });
   // Each tile reads and writes its own part of hidden1, which nothing else needs any more.
   multiply<Shape::rows, Shape::lanes, HIDDEN, 1>(
-      memory.hidden2, memory.w2_transposed, count, HIDDEN, [&](int, int) HEDON_INLINED { return broadcast(0.0f); },
+      memory.hidden2, PlainRows{memory.w2_transposed}, count, HIDDEN,
+      [&](int, int) HEDON_INLINED { return broadcast(0.0f); },
       [&](int row, int column, Lanes total) HEDON_INLINED {
         float* const at = memory.hidden1 + row * HIDDEN + column;
         const Lanes h = load(at);
@@ -173,7 +175,7 @@ template <class Shape>
 HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
                                        const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
   const PpoScratch memory = split_scratch(scratch);
-  fold_bias(shape, params, memory.folded);
+  fold_bias(shape, params + shape.b1(), PlainRows{params + shape.w1()}, memory.folded);
   transpose(params + shape.w2(), HIDDEN, memory.w2_transposed);
   for (int32_t i = 0; i < shape.size(); i += LANES) store(gradient + i, broadcast(0.0f));
 

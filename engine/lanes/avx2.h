@@ -59,6 +59,11 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   return {scale_exponent_of_8(a.low, shifted.low), scale_exponent_of_8(a.high, shifted.high)};
 }
 
+HEDON_INLINE __m256 lower_half_of_8(__m256 a) {
+  return _mm256_castsi256_ps(_mm256_slli_epi32(_mm256_castps_si256(a), 16));
+}
+HEDON_INLINE Lanes lower_half(Lanes a) { return {lower_half_of_8(a.low), lower_half_of_8(a.high)}; }
+
 HEDON_INLINE LaneMask first_lanes(int32_t count) {
   const __m256 lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256 end = _mm256_set1_ps(static_cast<float>(count));

@@ -46,6 +46,11 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   return {_mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(a.v), n))};
 }
 
+/// The lower 16 bits of each lane as the upper bits of a float: see `learning/weight_pair.h`.
+HEDON_INLINE Lanes lower_half(Lanes a) {
+  return {_mm512_castsi512_ps(_mm512_slli_epi32(_mm512_castps_si512(a.v), 16))};
+}
+
 /// The lanes before `count`.
 HEDON_INLINE LaneMask first_lanes(int32_t count) {
   return count >= 16 ? LaneMask{0xFFFF} : static_cast<LaneMask>((1u << count) - 1u);

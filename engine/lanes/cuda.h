@@ -84,6 +84,17 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   });
 }
 
+HEDON_INLINE Lanes lower_half(Lanes a) {
+  return each_lane([&](int i) {
+    uint32_t bits;
+    memcpy(&bits, &a.v[i], sizeof bits);
+    bits <<= 16;
+    float half;
+    memcpy(&half, &bits, sizeof half);
+    return half;
+  });
+}
+
 HEDON_INLINE LaneMask first_lanes(int32_t count) { return count >= 16 ? 0xFFFFu : (1u << count) - 1u; }
 
 HEDON_INLINE int32_t write_indices(int32_t* to, int32_t first, uint32_t bits) {

@@ -93,6 +93,11 @@ HEDON_INLINE Lanes scale_exponent(Lanes a, Lanes shifted) {
   });
 }
 
+HEDON_INLINE Lanes lower_half(Lanes a) {
+  return each_part([&](int i)
+                       HEDON_INLINED { return reinterpret_cast<Float4>(reinterpret_cast<Int4>(a.part[i]) << 16); });
+}
+
 HEDON_INLINE LaneMask first_lanes(int32_t count) {
   LaneMask mask;
   for (int i = 0; i < 16; ++i) mask.part[i / 4][i % 4] = i < count ? -1 : 0;

@@ -25,6 +25,14 @@ struct NetworkShape {
   HEDON_INLINE int32_t b3() const { return w3() + OUTPUTS * HIDDEN; }      ///< (3)
   HEDON_INLINE int32_t log_sd() const { return b3() + OUTPUTS; }           ///< (2)
   HEDON_INLINE int32_t size() const { return b3() + 16; }
+  HEDON_INLINE int32_t pairs() const { return b2() / 2; }  ///< of the weights before b2, by rows of 64
+};
+
+/// What an agent acts with: its parameters, and what `Kernel::derive` makes of them.
+struct ActingNetwork {
+  const float* params;
+  float* folded;  ///< (64) b1, less the -1 that all ray channels read: folded[j] = b1[j] - sum of w1[row, j] over rays
+  float* paired;  ///< (pairs) w1 and w2 rounded, see `weight_pair.h`; null where agents act with the parameters
 };
 
 }  // namespace hedon

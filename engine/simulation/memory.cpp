@@ -46,6 +46,8 @@ void set_counts(World& world, int members) {
   state.food_stock.count = kinds;
   state.params.count = state.first_moment.count = state.second_moment.count = slots * params;
   state.folded_bias.count = slots * HIDDEN;
+  const bool rounded = world.config->learning.acting_weights == ActingWeights::bfloat16;
+  state.paired_weights.count = rounded ? slots * shape.network.pairs() : 0;
   state.updates.count = slots;
   state.observation.count = rows + slots;
   state.action.count = rows * ACTIONS;

@@ -275,8 +275,7 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
-  for (const int32_t slot : extent.slots)
-    target.kernel->fold_bias(shape_.network, target.params(slot), target.folded_bias(slot));
+  for (const int32_t slot : extent.slots) target.kernel->derive(shape_.network, target.network(slot));
   restore_pairs(in, target, extent);
   return "";
 }

@@ -85,7 +85,8 @@ MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, in
   set_counts(world, threads);
   const auto bytes = [](const auto&... arrays) { return (laid_out_bytes(arrays) + ...); };
   const WorldState& state = world.state;
-  const int64_t networks = bytes(state.params, state.folded_bias, state.first_moment, state.second_moment);
+  const int64_t networks =
+      bytes(state.params, state.folded_bias, state.paired_weights, state.first_moment, state.second_moment);
   const int64_t rollouts = bytes(state.observation, state.action, state.log_prob, state.value, state.reward);
   const int64_t physics = lay_out(world.state.physics, nullptr) + lay_out(world.physics_scratch, nullptr);
   const int64_t rest = lay_out_world(world, nullptr) - networks - rollouts - physics;

@@ -28,7 +28,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
     note_start(world, slot);
     const PackedObservation& next = world.observation(slot, shape.steps) = observe(world, slot, group.rank());
     float output[16];
-    world.kernel->forward(shape.network, world.params(slot), world.folded_bias(slot), next, output);
+    world.kernel->forward(shape.network, world.network(slot), next, output);
 
     const int64_t row = slot * int64_t{shape.steps};
     const int64_t first = int64_t{slot} * shape.network.size();
@@ -45,7 +45,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
                               static_cast<uint32_t>(clock.step)};
     learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride,
           learner);
-    world.kernel->fold_bias(shape.network, learner.params, world.folded_bias(slot));
+    world.kernel->derive(shape.network, world.network(slot));
   });
   group.once([&] {
     world.counters().learners += learners;

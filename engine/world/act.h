@@ -16,7 +16,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
   const WorldState& state = world.state;
   const NetworkShape& network = world.shape->network;
   float output[16];
-  world.kernel->forward(network, world.params(slot), world.folded_bias(slot), observation, output);
+  world.kernel->forward(network, world.network(slot), observation, output);
   const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(state.life[slot].agent_id),
                             static_cast<uint32_t>(world.clock().step)};
   const Random4 bits = random.draw(0);

@@ -49,7 +49,7 @@ HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int
   const NetworkShape& network = world.shape->network;
   float* params = world.params(slot);
   init_network(network, RandomStream{world.seed, Purpose::network, static_cast<uint32_t>(id), 0}, params);
-  world.kernel->fold_bias(network, params, world.folded_bias(slot));
+  world.kernel->derive(network, world.network(slot));
   const int64_t first = int64_t{slot} * network.size();
   for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
   state.updates[slot] = 0;

@@ -11,6 +11,14 @@
 
 namespace hedon {
 
+/// The weights of the square layer that the agent in `slot` acts with.
+HEDON_FN Rows square_layer(const World& world, int32_t slot) {
+  const ActingNetwork network = world.network(slot);
+  const int32_t at = world.shape->network.w2();
+  if (network.paired == nullptr) return {network.params + at, HIDDEN};
+  return {network.paired + at / 2, HIDDEN / 2};
+}
+
 /// The eye of the agent in `slot`, which looks along `forward`.
 HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
   const SensorConfig& sensor = world.config->sensor;
@@ -26,7 +34,7 @@ HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
           sensor.ray_length,
           world.scene.own[slot],
           {},
-          world.params(slot) + world.shape->network.w2()};
+          square_layer(world, slot)};
   if (!constants.arc_convex) return eye;
   for (int32_t a = 0; a < eye.arcs(); ++a) {
     const Vec2 right = ray_direction(constants, a * 16, forward), left = ray_direction(constants, a * 16 + 15, forward);

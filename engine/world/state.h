@@ -102,11 +102,12 @@ struct WorldState {
   Array<FoodStock> food_stock;  // (kinds)
 
   // Learners, by slot.
-  Array<float> params;         // (slots, params)
-  Array<float> folded_bias;    // (slots, 64) derived from params
-  Array<float> first_moment;   // (slots, params)
-  Array<float> second_moment;  // (slots, params)
-  Array<int64_t> updates;      // (slots) Adam steps done in this life
+  Array<float> params;          // (slots, params)
+  Array<float> folded_bias;     // (slots, 64) derived from params
+  Array<float> paired_weights;  // (slots, pairs) derived from params; none where agents act with params themselves
+  Array<float> first_moment;    // (slots, params)
+  Array<float> second_moment;   // (slots, params)
+  Array<int64_t> updates;       // (slots) Adam steps done in this life
 
   // Rollouts of the current window, by slot, then by step. One more observation serves as bootstrap.
   Array<PackedObservation> observation;  // (slots, rollout_steps + 1)
@@ -121,8 +122,8 @@ struct WorldState {
   Array<float> event_genome;   // (events, genes)
 
   HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
-               params, folded_bias, first_moment, second_moment, updates, observation, action, log_prob, value, reward,
-               event, event_eaten, event_genome)
+               params, folded_bias, paired_weights, first_moment, second_moment, updates, observation, action, log_prob,
+               value, reward, event, event_eaten, event_genome)
 };
 
 }  // namespace hedon

@@ -77,7 +77,12 @@ struct World {
   }
 
   HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->network.size()]; }
-  HEDON_FN float* folded_bias(int32_t slot) const { return &state.folded_bias[int64_t{slot} * HIDDEN]; }
+  /// What the agent in `slot` acts with.
+  HEDON_FN ActingNetwork network(int32_t slot) const {
+    const bool rounded = config->learning.acting_weights == ActingWeights::bfloat16;
+    float* paired = rounded ? &state.paired_weights[int64_t{slot} * shape->network.pairs()] : nullptr;
+    return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], paired};
+  }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genome.size()]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->kinds]; }
   HEDON_FN PackedObservation& observation(int32_t slot, int64_t t) const {

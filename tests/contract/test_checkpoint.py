@@ -8,7 +8,7 @@ LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 WINDOW = 64
 
 # How each array of the state gets into a checkpoint. An array that stands nowhere here would be forgotten.
-DERIVED = {"alive", "living", "free", "folded_bias"}
+DERIVED = {"alive", "living", "free", "folded_bias", "paired_weights"}
 TAKEN_BY_READER = {"event", "event_eaten", "event_genome"}
 FROM_CONFIG = {"physics.walls"}
 IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}

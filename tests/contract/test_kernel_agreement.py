@@ -53,9 +53,10 @@ def test_agreement_with_portable(kernel: str, shape: Sizes):
         np.testing.assert_allclose(seen, expected_seen, rtol=1e-4, atol=1e-5, err_msg=name)
         scale = max(np.abs(expected).max(), 1e-3)
         np.testing.assert_allclose(slope, expected, rtol=2e-3, atol=2e-5 * scale, err_msg=name)
-        output = learning.forward(kernel, shape, case.params, case.observation)
-        expected_output = learning.forward("portable", shape, case.params, case.observation)
-        np.testing.assert_allclose(output, expected_output, rtol=1e-4, atol=1e-4, err_msg=name)
+        for rounded in (False, True):
+            output = learning.forward(kernel, shape, case.params, case.observation, rounded)
+            expected_output = learning.forward("portable", shape, case.params, case.observation, rounded)
+            np.testing.assert_allclose(output, expected_output, rtol=1e-4, atol=1e-4, err_msg=name)
 
 
 @pytest.mark.skipif("avx512" not in KERNELS, reason="this processor has no AVX-512")
@@ -66,8 +67,9 @@ def test_avx2_and_avx512_give_the_same_bits(shape: Sizes, target: str):
         one, other = (gradient(kernel, case, critic_target=target) for kernel in ("avx2", "avx512"))
         np.testing.assert_array_equal(one[0].view(np.uint32), other[0].view(np.uint32))
         assert one[1] == other[1]
-        outputs = [learning.forward(k, shape, case.params, case.observation) for k in ("avx2", "avx512")]
-        np.testing.assert_array_equal(outputs[0].view(np.uint32), outputs[1].view(np.uint32))
+        for rounded in (False, True):
+            outputs = [learning.forward(k, shape, case.params, case.observation, rounded) for k in ("avx2", "avx512")]
+            np.testing.assert_array_equal(outputs[0].view(np.uint32), outputs[1].view(np.uint32))
     case = random_case(6, shape, 256)
     rng = np.random.default_rng(7)
     order = np.stack([rng.permutation(256) for _ in range(4)]).astype(np.int32)

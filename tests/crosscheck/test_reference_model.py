@@ -8,6 +8,7 @@ from dataclasses import fields
 import numpy as np
 import ppo_reference
 import pytest
+from acting_weights import as_read
 from reference_draw import normals
 from reference_model import COUNTED, Agent, Deed, Model, Stock, World
 from worlds import set_scene
@@ -161,7 +162,7 @@ def assert_close(actual, expected, tolerance):
 def assert_policy(model, before, observations, params, rows):
     """Actions, their log-probabilities and the values follow from the observations and the networks."""
     for agent, observation, weights, action, log_prob, value in zip(
-        before.agents, observations.astype(float), params.astype(float), *rows, strict=True
+        before.agents, observations.astype(float), as_read(params).astype(float), *rows, strict=True
     ):
         layers = ppo_reference.split(weights, len(observation))
         output = ppo_reference.forward(weights, observation[None, :])[2][0]

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import ppo_reference
 import pytest
+from acting_weights import as_read
 from worlds import QUICK, make_simulation
 
 from hedon import _engine
@@ -81,7 +82,7 @@ def test_a_window_of_learning(case):
         np.testing.assert_array_equal(seen, [*mine["observation"], next_seen[i]])
 
         bootstrap = _engine.learning.forward(
-            simulation.engine.kernel, shape, mine["params"], np.ascontiguousarray(packed[i, -1:])
+            simulation.engine.kernel, shape, mine["params"], np.ascontiguousarray(packed[i, -1:]), rounded=True
         )[0, 2]
         expected = _engine.learning.learn(
             simulation.engine.kernel,
@@ -122,7 +123,8 @@ def test_the_first_update_is_that_of_plain_ppo(case):
         agent_id, mine = int(agents["agent_id"][i]), told[int(agents["agent_id"][i])]
         x, params = np.array(mine["observation"], float), mine["params"].astype(float)
         reward, value = (np.array(mine[name], float) for name in ("reward", "value"))
-        bootstrap = ppo_reference.forward(params, world.observations()[i : i + 1].astype(float))[2][0, 2]
+        acting = as_read(mine["params"]).astype(float)
+        bootstrap = ppo_reference.forward(acting, world.observations()[i : i + 1].astype(float))[2][0, 2]
         advantage, next_value, later = np.zeros(WINDOW), bootstrap, 0.0
         for t in reversed(range(WINDOW)):
             later *= settings["gamma"] * settings["gae_lambda"]

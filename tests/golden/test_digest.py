@@ -16,29 +16,30 @@ PRESETS = ("baseline", "small", "relocation", "poison")
 STEPS = 1100  # one whole window with its learning, and the beginning of the next
 
 
-def digest(preset: str, fidelity: str, kernel: str) -> str:
+def digest(preset: str, fidelity: str, weights: str, kernel: str) -> str:
     """The digest of one short life."""
+    acting = f'learning.acting_weights="{weights}"'
     critic = 'learning.critic_target="batch_mean"' if fidelity == "released" else 'learning.critic_target="per_state"'
-    simulation = make_simulation(critic, preset=preset, seeds=(1,), threads=2, kernel=kernel)
+    simulation = make_simulation(critic, acting, preset=preset, seeds=(1,), threads=2, kernel=kernel)
     simulation.run(STEPS)
     return simulation.worlds[0].digest()
 
 
-def cases() -> list[tuple[str, str]]:
+def cases() -> list[tuple[str, str, str]]:
     """Conditions whose lives are recorded."""
-    return [*((preset, "corrected") for preset in PRESETS), ("baseline", "released")]
+    lives = [*((preset, "corrected") for preset in PRESETS), ("baseline", "released")]
+    return [(*life, weights) for weights in ("float32", "bfloat16") for life in lives]
 
 
 @pytest.mark.parametrize("kernel", _engine.kernel.kernel_names())
-@pytest.mark.parametrize(("preset", "fidelity"), cases())
-def test_short_lives_keep_their_bits(preset, fidelity, kernel):
+@pytest.mark.parametrize(("preset", "fidelity", "weights"), cases())
+def test_short_lives_keep_their_bits(preset, fidelity, weights, kernel):
     recorded = json.loads(GOLDEN.read_text())[kernel]
-    assert digest(preset, fidelity, kernel) == recorded[f"{preset}-{fidelity}"]
+    assert digest(preset, fidelity, weights, kernel) == recorded[f"{preset}-{fidelity}-{weights}"]
 
 
 if __name__ == "__main__":
     table = {
-        kernel: {f"{preset}-{fidelity}": digest(preset, fidelity, kernel) for preset, fidelity in cases()}
-        for kernel in _engine.kernel.kernel_names()
+        kernel: {"-".join(case): digest(*case, kernel) for case in cases()} for kernel in _engine.kernel.kernel_names()
     }
     GOLDEN.write_text(json.dumps(table, indent=2) + "\n")

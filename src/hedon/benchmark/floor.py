@@ -9,6 +9,8 @@ HIDDEN = 64
 OUTPUTS = 3
 """Two means and a value."""
 FLOAT_BYTES = 4
+WEIGHT_BYTES = {"float32": 4, "bfloat16": 2}
+"""Of a weight of the hidden layers, by `learning.acting_weights`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +47,9 @@ def step_floor(
     Learning: each of a window's learners passes its rollout `update_epochs` times, in minibatches: with the baseline
     40 updates of 256 samples, of 33 kflop each (see `network_flop`). The work of a window is spread over its steps.
 
-    Forward: each agent acts by weights of its own, which do not stay in the cache of a core: the same rows, the
-    folded bias, 64 × 64, and the heads with all biases are read in float32, 25 kB with 24 rays. The reads or the
-    operations count, whichever take longer.
+    Forward: each agent acts by weights of its own, which do not stay in the cache of a core: the same rows and 64 × 64
+    in the precision of `learning.acting_weights`, the folded bias and the heads with all biases in float32, 13 kB with
+    24 rays and bfloat16. The reads or the operations count, whichever take longer.
 
     Not counted, so with a floor of 0: elementwise functions, Adam, sampling, rays, touch, physics, life, food, and
     meetings of threads.
@@ -63,8 +65,9 @@ def step_floor(
     samples = learners * config.learning.update_epochs * config.learning.rollout_steps
     learning_flop_per_step = samples * (forward_flop + backward_flop) / config.learning.rollout_steps
 
+    heads = OUTPUTS * HIDDEN
     biases = HIDDEN + HIDDEN + OUTPUTS
-    weights = forward_flop // 2
-    reading = alive * FLOAT_BYTES * (weights + biases) / (cache_read_gbytes_per_s * 1e9)
+    hidden_bytes = WEIGHT_BYTES[config.learning.acting_weights] * (forward_flop // 2 - heads)
+    reading = alive * (hidden_bytes + FLOAT_BYTES * (heads + biases)) / (cache_read_gbytes_per_s * 1e9)
     computing = alive * forward_flop / (multiply_add_gflops * 1e9)
     return Floor(learning_flop_per_step / (multiply_add_gflops * 1e9), max(reading, computing))

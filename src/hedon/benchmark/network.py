@@ -32,7 +32,8 @@ def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
     observation = np.ascontiguousarray(np.resize(seen, (FORWARD_ROWS // (16 if plan.quick else 1), seen.shape[1])))
 
     def act(kernel: str) -> np.ndarray:
-        return _engine.learning.forward(kernel, shape(config), params, observation)
+        rounded = config.learning.acting_weights == "bfloat16"
+        return _engine.learning.forward(kernel, shape(config), params, observation, rounded)
 
     for kernel in plan.kernels:
         output = act(kernel)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, EITHER, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,3 +71,11 @@ class LearningConfig:
             PAPER + '; the code amounts to "batch_mean"',
         ),
     ] = "per_state"
+    acting_weights: Annotated[
+        Literal["float32", "bfloat16"],
+        Doc(
+            "precision in which agents read the weights of both hidden layers when they act; they learn in float32",
+            "",
+            OURS + ", for speed; the code acts in float32",
+        ),
+    ] = "bfloat16"

@@ -34,9 +34,16 @@ def test_the_floor_is_that_of_the_work_by_the_rates():
     )
     # 127 learners · 40 updates · 256 samples · 33,152 operations by 200e9/s, over 1,024 steps.
     assert floor.learning_seconds == pytest.approx(127 * 40 * 256 * 33_152 / 200e9 / 1024)
-    # 150 agents read 6,144 weights, 64 folded and 64 square biases, and 3 of the heads, 4 bytes each.
+    # 150 agents read 29 · 64 + 64 · 64 weights of 2 bytes; 192 of the heads, 64 folded and 64 square biases, and 3 of
+    # the heads, 4 bytes each.
+    assert floor.forward_seconds == pytest.approx(150 * (2 * 5_952 + 4 * 323) / 50e9)
+    assert floor.seconds == pytest.approx(0.2105e-3 + 0.0396e-3, rel=1e-3)
+
+
+def test_the_floor_of_acting_by_float32_counts_every_weight_in_full():
+    exact = load_config("baseline", overrides=('learning.acting_weights="float32"',))
+    floor = step_floor(exact, alive=150, learners=127, multiply_add_gflops=200, cache_read_gbytes_per_s=50)
     assert floor.forward_seconds == pytest.approx(150 * 4 * 6_275 / 50e9)
-    assert floor.seconds == pytest.approx(0.2105e-3 + 0.0753e-3, rel=1e-3)
 
 
 def test_acting_is_bound_by_operations_where_reads_are_fast():
@@ -91,7 +98,7 @@ def test_tiles_repeat_a_scene_side_by_side():
 
 
 def test_a_size_that_finds_no_memory_says_so(monkeypatch):
-    monkeypatch.setattr(growth, "memory_bytes", lambda field: 30_000_000)
+    monkeypatch.setattr(growth, "memory_bytes", lambda field: 40_000_000)
     rows = growth.measure(make_plan(threads="1", quick=True), NO_RATES)
     assert [row["slots"] for row in rows if "refused" in row] == [400]
     assert "needs 0.1 GB of memory, and 0.0 GB are free" in rows[-1]["refused"]
