@@ -12,7 +12,7 @@ from hedon.analysis.analysis_table import cells
 from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
-from hedon.analysis.item import entropy, fault, noise, released, supply
+from hedon.analysis.item import acting, entropy, fault, noise, released, supply
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.topic.result import ResultTable
@@ -20,7 +20,7 @@ from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
 
-ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY]
+ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY, *acting.ACTING]
 
 
 @pytest.fixture(scope="module")
@@ -201,6 +201,17 @@ def test_entropy_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     assert (food["change"], food["change_low"], food["change_high"]) == pytest.approx((0.5, 0.5, 0.5))
     assert (food["seeds"], food["low"], food["scale"]) == (2, None, "ratio")
     assert rows["w_food"]["change"] == 0.0
+
+
+def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
+    doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in worlds]
+    tables, drawn = made(acting.ACTING[0], {acting.FULL: worlds, acting.HALF: doubled})
+    assert [figure.name for figure in drawn] == ["acting_courses"]
+    rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
+    assert rows["food_step"]["change"] == pytest.approx(0.5)
+    assert (rows["lifetime"]["change"], rows["lifetime"]["low"]) == pytest.approx((1.0, 1.0))
+    precisions = [arm.config("text").learning.acting_weights for arm in acting.ARMS]
+    assert precisions == [acting.FULL, acting.HALF]
 
 
 def test_one_seed_of_each_arm_may_be_missing(worlds: list[WorldRecord]) -> None:

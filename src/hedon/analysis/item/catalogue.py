@@ -1,5 +1,6 @@
 """All items of the reproduction, by name and in the order in which they are shown."""
 
+from hedon.analysis.item.acting import ACTING
 from hedon.analysis.item.drift import DRIFT
 from hedon.analysis.item.entropy import ENTROPY
 from hedon.analysis.item.evolved_weight import WEIGHTS
@@ -16,6 +17,6 @@ from hedon.analysis.item.supply import SUPPLY
 from hedon.analysis.item.weight_history import HISTORIES
 
 _PAPER = (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS)
-_STUDIES = (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY)
+_STUDIES = (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY, *ACTING)
 
 ITEMS: dict[str, Item] = {item.name: item for item in (*_PAPER, *_STUDIES)}

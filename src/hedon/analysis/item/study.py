@@ -1,6 +1,6 @@
 """What the studies share: figures of all worlds of their arms, and a note of what is missing."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hedon.analysis.interval import SHOWN_FROM, Interval, mean_interval
@@ -41,6 +41,43 @@ def shown_interval(values: Sequence[float | None], response: Response | None = N
         mean, low, high = (response.unscaled(number) for number in (logs.mean, logs.low, logs.high))
         found = Interval(mean, low, high, logs.worlds)
     return found if found.worlds >= SHOWN_FROM else Interval(found.mean, None, None, found.worlds)
+
+
+def read_change(before: str, after: str) -> str:
+    """How the rows of `change` are to be read."""
+    return (
+        f"Means over worlds; change: {after} against {before}, seed by seed, as a difference or, for lifetimes and "
+        "rates of food, a ratio (then all means are geometric); its 95 % interval is Student's t over seeds, from "
+        "three on. change_low and change_high are the least and the largest of single seeds."
+    )
+
+
+def change(rows: Sequence[dict[str, Any]], response: Response, before: str, after: str) -> Iterator[dict[str, Any]]:
+    """One response of two arms and its change seed by seed, where both arms or one of them have it.
+
+    Args:
+        rows: of `world_rows`.
+        response: one of those that the rows hold.
+        before: label of the arm that the change is against.
+        after: label of the arm that is changed.
+    """
+    by_arm = {
+        label: {row["seed"]: row[response.name] for row in rows if row["arm"] == label} for label in (before, after)
+    }
+    means = {label: shown_interval(list(values.values()), response).mean for label, values in by_arm.items()}
+    if all(mean is None for mean in means.values()):
+        return
+    changes = [
+        response.scaled(value) - response.scaled(old)
+        for seed, value in by_arm[after].items()
+        if value is not None and (old := by_arm[before].get(seed)) is not None
+    ]
+    found = shown_interval(changes)
+    low, high = (found.low, found.high) if response.sure else (None, None)
+    values = {"change": found.mean, "low": low, "high": high}
+    values |= {"change_low": min(changes, default=None), "change_high": max(changes, default=None)}
+    head = {"response": response.name} | means | {"scale": "ratio" if response.ratio else "difference"}
+    yield head | {name: response.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
 
 
 def missing_note(material: Material, arms: Sequence[Arm], scale: Scale) -> str:
