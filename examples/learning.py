@@ -1,6 +1,7 @@
 """Do agents learn? Immortal, childless agents with a fixed reward for food, against agents with no reward at all.
 
-Runs every combination of observation scaling and critic, several worlds each, and writes a figure and a table:
+Runs every combination of observation scaling and critic, and one with weights of 32 bits for acting, several worlds
+each, and writes a figure and a table:
 
     python examples/learning.py --windows 60 --seeds 5 --out docs/results/learning
 """
@@ -39,6 +40,7 @@ class Condition:
     reward: float
     scaling: str
     critic: str
+    acting: str = "bfloat16"
 
     @property
     def overrides(self) -> tuple[str, ...]:
@@ -48,11 +50,13 @@ class Condition:
             f"genome.initial_mean_food={self.reward}",
             f'sensor.scaling="{self.scaling}"',
             f'learning.critic_target="{self.critic}"',
+            f'learning.acting_weights="{self.acting}"',
         )
 
 
 CONDITIONS = (
     Condition("food reward, raw, critic per state", 1.0, "raw", "per_state"),
+    Condition("the same, acting by float32", 1.0, "raw", "per_state", "float32"),
     Condition("food reward, raw, critic batch mean", 1.0, "raw", "batch_mean"),
     Condition("food reward, unit, critic per state", 1.0, "unit", "per_state"),
     Condition("food reward, unit, critic batch mean", 1.0, "unit", "batch_mean"),
@@ -90,7 +94,7 @@ def main() -> None:
     seeds = list(range(1, options.seeds + 1))
 
     figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
-    colors = ("#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#555555", "#aaaaaa")
+    colors = ("#0072b2", "#009e73", "#56b4e9", "#d55e00", "#e69f00", "#555555", "#aaaaaa")
     numbers = {"hedon": hedon.__version__, "seeds": seeds, "windows": options.windows, "conditions": {}}
     ends = (slice(0, 3), slice(-10, None))
     for condition, color in zip(CONDITIONS, colors, strict=True):
