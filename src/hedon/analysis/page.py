@@ -15,10 +15,9 @@ from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
 from hedon.config import dump_toml, load_config
-from hedon.config.dump import diff, digest
+from hedon.config.dump import diff
 from hedon.config.load import PRESETS
 from hedon.config.problem import format_value
-from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
 
@@ -95,7 +94,6 @@ def runs_context(runs: Sequence[Run]) -> dict[str, Any]:
             {
                 "path": run.path.name,
                 "status": run.manifest.status,
-                "other_settings": run.manifest.config_digest not in (None, digest(load_config(run.path / CONFIG))),
                 "damaged": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
                 "manifest": json.dumps(plain(asdict(run.manifest)), indent=2, ensure_ascii=False),
             }

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -130,22 +129,12 @@ def _check_config(folder: _Folder) -> None:
         folder.config = config
         return
     if manifest.config_digest is not None and digest(config) != manifest.config_digest:
-        folder.findings.append(Finding(CONFIG, _other_digest(manifest)))
+        folder.findings.append(Finding(CONFIG, "was changed: its digest is not the one in the manifest"))
     elif (tuple(config.food), config.genome.neutral_count) != (manifest.food_kinds, manifest.neutral_count):
         what = "the kinds of food or the neutral markers are not those of the config"
         folder.findings.append(Finding(MANIFEST, what))
     else:
         folder.config = config
-
-
-def _other_digest(manifest: Manifest) -> str:
-    here = version("hedon")
-    if manifest.hedon_version in (None, here):
-        return "was changed: its digest is not the one in the manifest"
-    return (
-        f"was written by hedon {manifest.hedon_version}, whose settings are not all those of {here}, or changed since: "
-        f"install hedon {manifest.hedon_version} to check it"
-    )
 
 
 def _check_checkpoints(folder: _Folder) -> None:
@@ -160,7 +149,7 @@ def _check_checkpoints(folder: _Folder) -> None:
             folder.findings.append(Finding(name, f"cannot be used: {text}"))
             continue
         if manifest is not None and manifest.config_digest not in (None, digest(config)):
-            folder.findings.append(Finding(name, f"its config {_other_digest(manifest)}"))
+            folder.findings.append(Finding(name, "is of another config than the manifest says"))
         elif manifest is not None and checkpoint.head.seeds != manifest.seeds:
             folder.findings.append(Finding(name, "is of other seeds than the manifest says"))
         else:

@@ -17,7 +17,6 @@ from hedon.analysis.figure_survival import draw_survival
 from hedon.analysis.page import FigureFile, html_page
 from hedon.analysis.report import write_report
 from hedon.analysis.style import svg_bytes, weight_colors, weight_titles
-from hedon.config import digest, load_config
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 
@@ -106,16 +105,6 @@ def test_the_same_records_give_the_same_page(analysis: Analysis) -> None:
     assert first.svg.startswith(b"<?xml")
     again = analyze(analysis.runs)
     assert html_page(analysis, [first]) == html_page(again, [second])
-
-
-def test_a_page_says_where_settings_are_not_those_of_the_manifest(tmp_path: Path) -> None:
-    folder = write_run(tmp_path / "run", intervals=5, worlds=1)
-    manifest = json.loads((folder / "manifest.json").read_text())
-    for known, told in ((digest(load_config(folder / "config.toml")), False), ("0" * 64, True)):
-        (folder / "manifest.json").write_text(json.dumps(manifest | {"config_digest": known}))
-        write_report(open_run(folder))
-        for page in ("report.html", "report.md"):
-            assert ("not those of its manifest" in (folder / page).read_text()) == told
 
 
 def test_changed_settings_and_damaged_files_are_shown(tmp_path: Path) -> None:
