@@ -240,7 +240,7 @@ void bind_learning(nb::module_& module) {
                "first.");
   learning.def("forward", forward_all, nb::arg("kernel"), nb::arg("shape"), nb::arg("params"), nb::arg("observation"),
                nb::arg("rounded") = false,
-               "Mean (2) and value of each packed observation: (n, 3), by weights as they are or rounded to bfloat16.");
+               "Mean (2) and value of each packed observation: (n, 3), by weights as they are or rounded in pairs.");
   learning.def("gradient", gradient, nb::arg("kernel"), nb::arg("shape"), nb::arg("config"), nb::arg("params"),
                nb::arg("observation"), nb::arg("action"), nb::arg("log_prob"), nb::arg("advantage"), nb::arg("target"),
                nb::arg("order"), "Gradient and (policy, value, entropy) of the minibatch of the samples in `order`.");

@@ -15,7 +15,7 @@ namespace hedon {
 struct CudaShape {
   static constexpr int rows = 2;
   static constexpr int lanes = 1;
-  static constexpr int forward_lanes = 2;
+  static constexpr int forward_lanes = 2;  // even, for weights in pairs
   static constexpr int samples = 1;
   static constexpr int row_samples = 1;
   static constexpr int row_lanes = 1;

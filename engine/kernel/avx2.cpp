@@ -10,7 +10,7 @@ namespace hedon {
 struct Avx2Shape {
   static constexpr int rows = 6;           ///< of a product's tile
   static constexpr int lanes = 1;          ///< of 16 columns in a tile
-  static constexpr int forward_lanes = 4;  ///< the same for a single row
+  static constexpr int forward_lanes = 4;  ///< the same for a single row; even, for weights in pairs
   static constexpr int samples = 1;        ///< that go through the first layer together
   static constexpr int row_samples = 2;    ///< that go back through it together
   static constexpr int row_lanes = 2;      ///< of 16 columns in that

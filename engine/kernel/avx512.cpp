@@ -10,7 +10,7 @@ namespace hedon {
 struct Avx512Shape {
   static constexpr int rows = 4;           ///< of a product's tile
   static constexpr int lanes = 4;          ///< of 16 columns in a tile
-  static constexpr int forward_lanes = 4;  ///< the same for a single row
+  static constexpr int forward_lanes = 4;  ///< the same for a single row; even, for weights in pairs
   static constexpr int samples = 4;        ///< that go through the first layer together
   static constexpr int row_samples = 4;    ///< that go back through it together
   static constexpr int row_lanes = 4;      ///< of 16 columns in that

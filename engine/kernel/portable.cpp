@@ -9,7 +9,7 @@ namespace hedon {
 struct PortableShape {
   static constexpr int rows = 2;           ///< of a product's tile
   static constexpr int lanes = 1;          ///< of 16 columns in a tile
-  static constexpr int forward_lanes = 2;  ///< the same for a single row
+  static constexpr int forward_lanes = 2;  ///< the same for a single row; even, for weights in pairs
   static constexpr int samples = 1;        ///< that go through the first layer together
   static constexpr int row_samples = 2;    ///< that go back through it together
   static constexpr int row_lanes = 1;      ///< of 16 columns in that

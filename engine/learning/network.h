@@ -25,7 +25,9 @@ struct NetworkShape {
   HEDON_INLINE int32_t b3() const { return w3() + OUTPUTS * HIDDEN; }      ///< (3)
   HEDON_INLINE int32_t log_sd() const { return b3() + OUTPUTS; }           ///< (2)
   HEDON_INLINE int32_t size() const { return b3() + 16; }
-  HEDON_INLINE int32_t pairs() const { return b2() / 2; }  ///< of the weights before b2, by rows of 64
+  HEDON_INLINE int32_t pairs() const {
+    return b2() / 2;
+  }  ///< of all before b2: rows of 64 that stand where those of the parameters do, b1 unused
 };
 
 /// What an agent acts with: its parameters, and what `Kernel::derive` makes of them.

@@ -34,6 +34,21 @@ def left_alone(steps, preset="baseline"):
     return simulation.worlds[0]
 
 
+@pytest.mark.parametrize("weights", ["float32", "bfloat16"])
+def test_weights_for_acting_are_derived_from_what_is_restored(weights):
+    other = "float32" if weights == "bfloat16" else "bfloat16"
+    first = make_simulation(*LIVELY, f'learning.acting_weights="{other}"', seeds=(3,))
+    first.run(100)
+    lives = [make_simulation(*LIVELY, f'learning.acting_weights="{weights}"', seeds=(3,)) for _ in range(2)]
+    lives[1].run(5)  # whatever was there before is gone
+    for life in lives:
+        life.engine.restore(0, first.engine.save(0))
+        life.run(50)
+    first.run(50)
+    ends = [life.worlds[0].digest() for life in lives]
+    assert ends[0] == ends[1] != first.worlds[0].digest()
+
+
 @pytest.mark.parametrize(
     ("saved_at", "preset"),
     [

@@ -26,7 +26,7 @@ def pair_weights(first: Annotated[NDArray[numpy.float32], dict(shape=(None,), or
 
 def forward(kernel: str, shape: tuple[int, int, int, int], params: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], observation: Annotated[NDArray[numpy.uint8], dict(shape=(None, 192), order='C', device='cpu', writable=False)], rounded: bool = False) -> NDArray[numpy.float32]:
     """
-    Mean (2) and value of each packed observation: (n, 3), by weights as they are or rounded to bfloat16.
+    Mean (2) and value of each packed observation: (n, 3), by weights as they are or rounded in pairs.
     """
 
 def gradient(kernel: str, shape: tuple[int, int, int, int], config: dict, params: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], observation: Annotated[NDArray[numpy.uint8], dict(shape=(None, 192), order='C', device='cpu', writable=False)], action: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], log_prob: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], advantage: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], target: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], order: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.appetite import AppetiteBin
 from hedon.analysis.style import BLUE, PALE, VERMILION, new_figure, say_empty, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line
+from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _COLORS = (BLUE, VERMILION)
 _TICKS = (-10, -1, -0.1, 0, 0.1, 1, 10)
@@ -50,10 +50,10 @@ def draw_appetite(bins: Mapping[str, Sequence[Sequence[AppetiteBin]]], histories
 def _draw_history(axes: Axes, histories: Mapping[str, pl.DataFrame]) -> None:
     axes.set_title("weight of food, mean of the living", fontsize=9)
     draw_zero_line(axes)
+    end = max(map(last_step, histories.values()), default=0.0)
     for color, (label, rows) in zip(_COLORS, histories.items(), strict=False):
-        draw_traces(axes, rows, "w_normal_mean", color, label)
-    if histories:
-        draw_time_axis(axes, max(histories.values(), key=lambda rows: rows["step"].to_numpy().max(initial=0)))
+        draw_traces(axes, rows, "w_normal_mean", color, label, end=end)
+        draw_time_axis(axes, rows, end)
 
 
 def _mean(worlds: Sequence[Sequence[AppetiteBin]]) -> tuple[np.ndarray, np.ndarray]:

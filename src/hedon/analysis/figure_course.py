@@ -6,24 +6,25 @@ import polars as pl
 from matplotlib.figure import Figure
 
 from hedon.analysis.style import SEED_COLORS, new_figure, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces
+from hedon.analysis.trace import draw_time_axis, draw_traces, last_step
 
 
 def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str]) -> Figure:
     """A panel per quantity, a color per arm: thick the mean over its worlds, with its interval, thin the worlds.
 
     Args:
-        histories: per arm, of `population.history`; at least one.
+        histories: per arm, of `population.history`, with intervals of equal length; at least one.
         panels: columns of the histories, with the title of each.
     """
+    end = max(last_step(rows) for rows in histories.values())
     with styled():
         figure = new_figure(3.2 * len(panels), 3.0)
         axes = figure.subplots(1, len(panels), squeeze=False)[0]
         for panel, (column, title) in zip(axes, panels.items(), strict=True):
             panel.set_title(title, fontsize=9)
             for color, (label, rows) in zip(SEED_COLORS, histories.items(), strict=False):
-                draw_traces(panel, rows, column, color, label)
-            draw_time_axis(panel, max(histories.values(), key=lambda rows: rows["step"].to_numpy().max(initial=0)))
+                draw_traces(panel, rows, column, color, label, end=end)
+            draw_time_axis(panel, next(iter(histories.values())), end)
             panel.set_ylim(bottom=0)
         axes[-1].legend(loc="best")
     return figure

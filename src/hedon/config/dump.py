@@ -9,6 +9,10 @@ from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
+EARLIER = {"learning.acting_weights": "float32"}
+"""What runs did before there was a setting. A complete file that lacks it was written then and means this; and digests
+leave the setting out where it says this, so that those of earlier runs hold."""
+
 _HEAD = "# Complete: every setting stands here, and nothing is taken from the preset or the fidelity.\n"
 
 
@@ -50,7 +54,11 @@ def digest(config: Config) -> str:
     Returns:
         SHA-256, 64 hexadecimal digits.
     """
-    seen = [[path, value] for path, value in flatten(config).items() if not path.endswith(".color")]
+    seen = [
+        [path, value]
+        for path, value in flatten(config).items()
+        if not path.endswith(".color") and (path, value) not in EARLIER.items()
+    ]
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
 
 

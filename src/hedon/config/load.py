@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import Config
-from hedon.config.dump import digest
+from hedon.config.dump import EARLIER, digest
 from hedon.config.layer import Table, settle_food, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
@@ -48,11 +48,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     if problems:
         raise ConfigError(origin, problems)
     name = {"name": str(source) if path is None else path.stem}
-    merged = stack([name, *below, own, *tables])
-    merged.pop("complete", None)
-    problems = list(settle_food(merged))
-    if problems:
-        raise ConfigError(origin, problems)
+    merged = _settled([name, *below, own, *tables], origin)
     return from_tables(merged, origin + " with --set" if tables else origin)
 
 
@@ -66,8 +62,7 @@ def parse_config(text: str, origin: str) -> Config:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
-    tables.pop("complete", None)
-    return from_tables(tables, origin)
+    return from_tables(_settled([_earlier(), tables], origin), origin)
 
 
 def is_modified(config: Config) -> bool:
@@ -116,7 +111,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
         if fidelity not in (None, own.get("fidelity")):
             message = "the file is complete, so no fidelity can be laid below it; start from its preset instead"
             problems.append(Problem("--fidelity", message, fidelity))
-        return []
+        return [_earlier()]
     if "complete" in own:
         problems.append(Problem("complete", "must be true or left out", format_value(own["complete"])))
     own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
@@ -128,6 +123,24 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
     if not all(good):
         return []
     return [*_preset_layers(own["preset"]), _settings_of(_FOLDER / "overlays" / f"{own['fidelity']}.toml")]
+
+
+def _settled(layers: list[Table], origin: str) -> Table:
+    merged = stack(layers)
+    merged.pop("complete", None)
+    problems = list(settle_food(merged))
+    if problems:
+        raise ConfigError(origin, problems)
+    return merged
+
+
+def _earlier() -> Table:
+    """The layer below a complete file: what it means by a setting that there was not when it was written."""
+    tables: Table = {}
+    for path, value in EARLIER.items():
+        section, name = path.split(".")
+        tables.setdefault(section, {})[name] = value
+    return tables
 
 
 def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Problem]) -> bool:

@@ -11,6 +11,7 @@ from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_to
 from hedon.config import field as doc
 from hedon.config.config import Config
 from hedon.config.dump import flatten, section_paths
+from hedon.config.load import parse_config
 
 
 def reload(config: Config, folder: Path) -> Config:
@@ -94,6 +95,19 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
     changed = value != setting.default
     assert diff(load_config("baseline"), config) == ([(path, setting.default, value)] if changed else [])
     assert (digest(config) != digest(load_config("baseline"))) is changed
+
+
+def test_a_file_of_an_earlier_version_means_what_was_done_then(tmp_path: Path) -> None:
+    text = dump_toml(load_config("baseline"))
+    line = next(line for line in text.splitlines() if line.startswith("acting_weights"))
+    path = tmp_path / "config.toml"
+    path.write_text(text.replace(f"{line}\n", ""))
+    then = load_config(path)
+    assert then.learning.acting_weights == parse_config(path.read_text(), "text").learning.acting_weights == "float32"
+    assert load_config("baseline").learning.acting_weights == "bfloat16"
+    # As the manifest of a baseline of version 0.1.0 has it.
+    assert digest(then) == "e251e82e84bd584bab134676fc8f2070cac36d22643794bb8970d082e52c6ae2"
+    assert digest(then) != digest(load_config("baseline"))
 
 
 def test_digest_knows_what_matters() -> None:

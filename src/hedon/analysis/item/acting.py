@@ -1,12 +1,15 @@
-"""Study: does it matter that agents act by weights of 16 bits?"""
+"""Study: does it matter that agents act by weights of 16 bits?
+
+What would matter, as it was fixed before both arms were compared: a lifetime or a rate of food that differs by a tenth,
+ten agents alive, or a weight that differs by 1, a twentieth of the range. An interval that lies within these bounds
+says that it does not matter; one that reaches beyond leaves it open.
+"""
 
 from collections.abc import Iterator
 
-import polars as pl
-
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_course import draw_courses
-from hedon.analysis.item.census import present, sentences
+from hedon.analysis.item.census import present, sentences, stack, steps_reached, world_indices
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import change, missing_note, read_change, world_rows
 from hedon.analysis.population import history
@@ -31,11 +34,11 @@ def make_acting(material: Material) -> Iterator[NamedFigure | ResultTable]:
     worlds = present(ARMS, material)
     rows = world_rows(material, ARMS, RESPONSES)
     if worlds:
-        tables = {
-            label: pl.concat(w.population.with_columns(world=pl.lit(i, pl.Int32)) for i, w in enumerate(found))
+        indices, end = world_indices(worlds.values()), max(steps_reached(found) for found in worlds.values())
+        courses = {
+            label: history(stack(found, "population", indices), ("normal",), points=50, end=end)
             for label, found in worlds.items()
         }
-        courses = {label: history(population, ("normal",), points=50) for label, population in tables.items()}
         question = "Do worlds fare alike, whichever weights their agents act by?"
         yield NamedFigure("acting_courses", question, draw_courses(courses, _PANELS))
     yield table(

@@ -7,7 +7,7 @@ import polars as pl
 from hedon.analysis.appetite import WINDOWS, appetite, half_way_weight
 from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.figure_appetite import draw_appetite
-from hedon.analysis.item.census import present, sentences
+from hedon.analysis.item.census import present, sentences, stack, world_indices
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import change, missing_note, read_change, world_rows
 from hedon.analysis.population import history
@@ -66,8 +66,7 @@ def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
 
 def _course(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
     """The mean weight of food over time."""
-    populations = [world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
-    return history(pl.concat(populations), ("normal",), ("w_normal",))
+    return history(stack(worlds, "population", world_indices([worlds])), ("normal",), ("w_normal",))
 
 
 ENTROPY: tuple[Item, ...] = (
