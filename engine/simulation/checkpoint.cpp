@@ -39,11 +39,11 @@ struct PairImpulse {
   }
 };
 
-/// Adds who pushes whom, and how hard, sorted by the ranks of those who push. Pairs without impulse are as good as
+/// Takes who pushes whom, and how hard, sorted by the ranks of those who push. Pairs without impulse are as good as
 /// none. find(second, &other) gives the name of a pair's second, or false where it is gone.
-template <class Find>
+template <class Find, class Take>
 void save_pairs(const World& world, const std::vector<int32_t>& rank, const PairList& list, int kind, Find&& find,
-                Checkpoint& out) {
+                Take&& take) {
   const NeighborList& neighbors = world.state.physics.neighbors;
   std::vector<PairImpulse> pairs;
   const int32_t count = list.start[neighbors.head[0].bodies];
@@ -64,8 +64,8 @@ void save_pairs(const World& world, const std::vector<int32_t>& rank, const Pair
     impulse.insert(impulse.end(), {pair.normal, pair.tangent});
   }
   const int64_t rows = static_cast<int64_t>(pairs.size());
-  out.push_back(save_list(PAIR_NAMES[kind], who, {rows, 2}));
-  out.push_back(save_list(IMPULSE_NAMES[kind], impulse, {rows, 2}));
+  take(save_list(PAIR_NAMES[kind], who, {rows, 2}));
+  take(save_list(IMPULSE_NAMES[kind], impulse, {rows, 2}));
 }
 
 /// The place of each slot in the living order; -1 for the dead, and for newborns, whom no list knows yet.
@@ -79,20 +79,18 @@ std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
   return rank;
 }
 
-}  // namespace
-
-Checkpoint Simulation::save(int index) const {
-  const World& world = worlds_[static_cast<size_t>(index)];
+/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for one only.
+template <class Take>
+void save_each(const World& world, Take&& take) {
   const Extent extent = extent_of(world);
-  Checkpoint out;
   for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     SavedArray array = make_saved<T>(name, rows.shape());
     const size_t bytes = rows.row_bytes();
     for (int64_t i = 0; i < rows.count; ++i)
       memcpy(array.bytes.data() + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
-    out.push_back(std::move(array));
+    take(std::move(array));
   });
-  out.push_back(save_list("food.slot", extent.foods, {static_cast<int64_t>(extent.foods.size())}));
+  take(save_list("food.slot", extent.foods, {static_cast<int64_t>(extent.foods.size())}));
 
   const NeighborList& list = world.state.physics.neighbors;
   const std::vector<int32_t> rank = listed_ranks(world, extent);
@@ -108,22 +106,15 @@ Checkpoint Simulation::save(int index) const {
     *other = segment;
     return true;
   };
-  save_pairs(world, rank, list.bodies, 0, body, out);
-  save_pairs(world, rank, list.circles, 1, circle, out);
-  save_pairs(world, rank, list.walls, 2, wall, out);
-  return out;
+  save_pairs(world, rank, list.bodies, 0, body, take);
+  save_pairs(world, rank, list.circles, 1, circle, take);
+  save_pairs(world, rank, list.walls, 2, wall, take);
 }
 
-uint64_t Simulation::digest(int index) const { return digest_checkpoint(save(index)); }
-
-uint64_t digest_checkpoint(const Checkpoint& checkpoint) {
-  // Multiply and shift, eight bytes at a time: it has to tell states apart, not to resist an attacker.
-  uint64_t hash = 0x9E3779B97F4A7C15u;
-  const auto mix = [&hash](uint64_t word) {
-    hash = (hash ^ word) * 0xD6E8FEB86659FD93u;
-    hash ^= hash >> 32;
-  };
-  for (const SavedArray& array : checkpoint) {
+/// Multiply and shift, eight bytes at a time: it has to tell states apart, not to resist an attacker.
+class Hash {
+ public:
+  void add(const SavedArray& array) {
     const size_t bytes = array.bytes.size();
     mix(bytes);
     for (size_t at = 0; at < bytes; at += 8) {
@@ -132,7 +123,29 @@ uint64_t digest_checkpoint(const Checkpoint& checkpoint) {
       mix(word);
     }
   }
-  return hash;
+  uint64_t value() const { return value_; }
+
+ private:
+  void mix(uint64_t word) {
+    value_ = (value_ ^ word) * 0xD6E8FEB86659FD93u;
+    value_ ^= value_ >> 32;
+  }
+
+  uint64_t value_ = 0x9E3779B97F4A7C15u;
+};
+
+}  // namespace
+
+Checkpoint Simulation::save(int index) const {
+  Checkpoint out;
+  save_each(worlds_[static_cast<size_t>(index)], [&](SavedArray&& array) { out.push_back(std::move(array)); });
+  return out;
+}
+
+uint64_t Simulation::digest(int index) const {
+  Hash hash;
+  save_each(worlds_[static_cast<size_t>(index)], [&](const SavedArray& array) { hash.add(array); });
+  return hash.value();
 }
 
 }  // namespace hedon

@@ -49,7 +49,7 @@ def bench(
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step
-      growth    one world without learning, up to 500 times as large; minutes, and 15 GB
+      growth    one world without learning, up to 500 times as large; minutes, and 21 GB
 
     Repeats are taken in turn, and times are medians with quartiles, since machines are shared: compare
     figures within one run. Every part checks what it measured; if that is wrong, the exit code is 1.

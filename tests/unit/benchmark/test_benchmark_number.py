@@ -98,7 +98,7 @@ def test_tiles_repeat_a_scene_side_by_side():
 
 
 def test_a_size_that_finds_no_memory_says_so(monkeypatch):
-    monkeypatch.setattr(growth, "memory_bytes", lambda field: 40_000_000)
+    monkeypatch.setattr(growth, "memory_bytes", lambda field: 49_000_000)
     rows = growth.measure(make_plan(threads="1", quick=True), NO_RATES)
     assert [row["slots"] for row in rows if "refused" in row] == [400]
     assert "needs 0.1 GB of memory, and 0.0 GB are free" in rows[-1]["refused"]
