@@ -3,7 +3,7 @@
 Runs every combination of observation scaling and critic, and one with weights of 32 bits for acting, several worlds
 each, and writes a figure and a table:
 
-    python examples/learning.py --windows 60 --seeds 5 --out docs/results/learning
+    python examples/learning.py --windows 60 --seeds 10 --out docs/results/learning
 """
 
 import argparse
