@@ -6,8 +6,10 @@ import numpy as np
 
 from hedon import _engine
 from hedon.benchmark.check import check_world, require
+from hedon.benchmark.floor import FLOAT_BYTES
 from hedon.benchmark.machine import Calibration, memory_bytes
 from hedon.benchmark.measure import Row, Table, median, seconds_of
+from hedon.benchmark.network import shape
 from hedon.benchmark.plan import Plan, PlanError
 from hedon.benchmark.scene import peopled, scene_of
 from hedon.config.arena import walls
@@ -26,8 +28,6 @@ MAX_PIECE_STEPS = 200
 ROLLOUT_ROWS = 2_400_000
 """Slots times steps: 500 MB of rollouts at every size, and half a million agent-steps in each piece."""
 PARTS = ("sense_and_act", "physics", "life")
-NETWORK_BYTES = 50_000
-"""Of one agent's network, rounded up: to check how a world ends, one array of all networks at a time is copied."""
 
 
 def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
@@ -90,7 +90,8 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
             "bytes_per_slot": bytes_needed(bare, threads[-1]) / slots,
             "bytes_per_slot_with_rollouts": bytes_needed(full, threads[-1]) / slots,
         }
-        wanted = needed + slots * NETWORK_BYTES
+        # To check how a world ends, one array of all networks at a time is copied.
+        wanted = needed + slots * FLOAT_BYTES * _engine.learning.param_count(shape(config))
         if wanted > free:
             rows.append({**head, "refused": f"needs {wanted / 1e9:.1f} GB of memory, and {free / 1e9:.1f} GB are free"})
             continue

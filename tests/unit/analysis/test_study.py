@@ -214,6 +214,15 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     assert precisions == [acting.FULL, acting.HALF]
 
 
+def test_courses_of_unequal_length_share_one_axis(worlds: list[WorldRecord]) -> None:
+    short = [world.until(1024) for world in worlds]  # alone it would be drawn in steps, not in thousands
+    _, drawn = made(acting.ACTING[0], {acting.FULL: worlds, acting.HALF: short})
+    for axes in drawn[0].figure.axes:
+        ends = [float(np.max(line.get_xdata())) for line in axes.lines]
+        assert max(ends) <= axes.get_xlim()[1] < 100
+        assert min(ends) < 5
+
+
 def test_one_seed_of_each_arm_may_be_missing(worlds: list[WorldRecord]) -> None:
     tables, _ = made(entropy.ENTROPY[0], {entropy.WITH: worlds[:1], entropy.WITHOUT: worlds[2:]})
     assert tables["entropy"].rows["seeds"].to_list()[0] == 0
