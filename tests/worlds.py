@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hedon import _engine
-from hedon.config.arena import outer_count, walls
 from hedon.config.load import load_config
-from hedon.config.native import engine_config
+from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
 
 QUICK = ("learning.rollout_steps=64", "learning.minibatch_size=32", "learning.update_epochs=2")
@@ -27,17 +26,13 @@ def make_simulation(
     return Simulation(load_config(preset, overrides=overrides), seeds, threads, kernel)
 
 
-def make_engine(*overrides: str, slot_order: Sequence[int] = (), seeds: Sequence[int] = (1,)) -> Any:
+def make_engine(
+    *overrides: str, slot_order: Sequence[int] = (), seeds: Sequence[int] = (1,), flush_denormals: bool = True
+) -> Any:
     """The bare engine, for what the Python class does not offer."""
-    config = load_config("baseline", overrides=overrides)
+    given = engine_input(load_config("baseline", overrides=overrides))
     return _engine.Simulation(
-        engine_config(config),
-        walls(config.arena),
-        outer_count(config.arena),
-        list(seeds),
-        1,
-        "",
-        list(slot_order),
+        given.settings, given.walls, given.outer_walls, list(seeds), 1, "", list(slot_order), flush_denormals
     )
 
 

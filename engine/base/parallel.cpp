@@ -3,27 +3,14 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/float_mode.h"
+
 namespace hedon {
-namespace {
-
-/// Rounds to nearest and flushes denormals to zero while it lives, then restores what the thread had: other libraries
-/// change these, and Adam's fading moments would otherwise crawl through denormal numbers.
-class FloatMode {
- public:
-#if defined(__SSE__)
-  FloatMode() : saved_(__builtin_ia32_stmxcsr()) {
-    __builtin_ia32_ldmxcsr(0x9fc0);
-  }  // all exceptions masked, FTZ, DAZ, nearest
-  ~FloatMode() { __builtin_ia32_ldmxcsr(saved_); }
-
- private:
-  unsigned saved_;
-#else
-  FloatMode() {}
-#endif
-};
-
-}  // namespace
 
 int available_processors() {
   cpu_set_t set;
@@ -32,58 +19,72 @@ int available_processors() {
   return count > 0 ? static_cast<int>(count) : 1;
 }
 
-Pool::Pool(int size) : process_(getpid()) {
-  threads_.reserve(static_cast<size_t>(size - 1));
-  for (int rank = 1; rank < size; ++rank) threads_.emplace_back([this, rank] { work(rank); });
+/// What the threads meet at.
+struct Pool::Shared {
+  std::vector<std::thread> threads;
+  std::mutex mutex;
+  std::condition_variable wake, done;
+  const std::function<void(int)>* job = nullptr;
+  uint64_t round = 0;
+  int busy = 0;
+  bool stop = false;
+  bool flush;
+};
+
+Pool::Pool(int size, bool flush) : size_(size), process_(getpid()), shared_(std::make_unique<Shared>()) {
+  shared_->flush = flush;
+  shared_->threads.reserve(static_cast<size_t>(size - 1));
+  for (int rank = 1; rank < size; ++rank)
+    shared_->threads.emplace_back([shared = shared_.get(), rank] { work(*shared, rank); });
 }
 
 Pool::~Pool() {
   if (forked()) {
-    for (std::thread& thread : threads_) thread.detach();
+    // Nobody may touch it: a condition variable with sleepers waits for them when it is destroyed, and here they will
+    // never wake.
+    static_cast<void>(shared_.release());
     return;
   }
   {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->stop = true;
   }
-  wake_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  shared_->wake.notify_all();
+  for (std::thread& thread : shared_->threads) thread.join();
 }
 
 bool Pool::forked() const { return getpid() != process_; }
 
 void Pool::run(const std::function<void(int)>& job) {
+  Shared& shared = *shared_;
   {
-    const std::lock_guard lock(mutex_);
-    job_ = &job;
-    busy_ = size() - 1;
-    ++round_;
+    const std::lock_guard lock(shared.mutex);
+    shared.job = &job;
+    shared.busy = size_ - 1;
+    ++shared.round;
   }
-  wake_.notify_all();
-  {
-    const FloatMode mode;
-    job(0);
-  }
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return busy_ == 0; });
+  shared.wake.notify_all();
+  job(0);
+  std::unique_lock lock(shared.mutex);
+  shared.done.wait(lock, [&] { return shared.busy == 0; });
 }
 
-void Pool::work(int rank) {
-  const FloatMode mode;
+void Pool::work(Shared& shared, int rank) {
+  const FloatMode mode(shared.flush);
   uint64_t seen = 0;
   for (;;) {
     const std::function<void(int)>* job;
     {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, [&] { return stop_ || round_ != seen; });
-      if (stop_) return;
-      seen = round_;
-      job = job_;
+      std::unique_lock lock(shared.mutex);
+      shared.wake.wait(lock, [&] { return shared.stop || shared.round != seen; });
+      if (shared.stop) return;
+      seen = shared.round;
+      job = shared.job;
     }
     (*job)(rank);
     {
-      const std::lock_guard lock(mutex_);
-      if (--busy_ == 0) done_.notify_one();
+      const std::lock_guard lock(shared.mutex);
+      if (--shared.busy == 0) shared.done.notify_one();
     }
   }
 }

@@ -1,13 +1,9 @@
 /// A small pool of threads that all run one function: the members of a simulation's teams.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include <memory>
 
 namespace hedon {
 
@@ -17,12 +13,13 @@ int available_processors();
 /// Threads that sleep until `run`, in which the caller works too. Joined in the destructor.
 class Pool {
  public:
-  explicit Pool(int size);
+  /// flush  see `FloatMode`
+  Pool(int size, bool flush);
   ~Pool();
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  int size() const { return static_cast<int>(threads_.size()) + 1; }
+  int size() const { return size_; }
 
   /// True in a process that was forked from the pool's own: its threads do not exist there.
   bool forked() const;
@@ -31,16 +28,12 @@ class Pool {
   void run(const std::function<void(int)>& job);
 
  private:
-  void work(int rank);
+  struct Shared;
+  static void work(Shared& shared, int rank);
 
-  std::vector<std::thread> threads_;
-  std::mutex mutex_;
-  std::condition_variable wake_, done_;
-  const std::function<void(int)>* job_ = nullptr;
-  uint64_t round_ = 0;
-  int busy_ = 0;
-  bool stop_ = false;
+  int size_;
   int64_t process_;
+  std::unique_ptr<Shared> shared_;
 };
 
 }  // namespace hedon

@@ -42,7 +42,7 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"contact_outside_skin", "A body moved further than the neighbor list allows for.",
      "Raise physics.neighbor_skin or lower physics.max_speed."},
     {"event_overflow", "More births or deaths between two reads than the event buffer holds.",
-     "Read the events more often."},
+     "Read them more often: `World.deaths` takes them."},
     {"not_finite", "A number of the state is not finite.",
      "Look at the named agent; lower learning.learning_rate or the forces."},
     {"outside_arena", "A body left the arena.", "Lower physics.max_speed, physics.dt or the forces."},

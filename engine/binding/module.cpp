@@ -1,10 +1,26 @@
 /// The Python module `hedon._engine`. Each part of the engine adds its own functions, so that tests drive the parts.
 #include <nanobind/nanobind.h>
 
+#include "binding/error.h"
 #include "binding/parts.h"
+
+namespace {
+
+/// Turns `EngineError` into the one of the package.
+void translate(const std::exception_ptr& pointer, void*) {
+  try {
+    std::rethrow_exception(pointer);
+  } catch (const hedon::EngineError& error) {
+    const nanobind::object type = nanobind::module_::import_("hedon.error").attr("EngineError");
+    PyErr_SetString(type.ptr(), error.what());
+  }
+}
+
+}  // namespace
 
 NB_MODULE(_engine, module) {
   module.doc() = "The native engine of hedon: the simulation and nothing else.";
+  nanobind::register_exception_translator(translate);
   hedon::bind_kernel(module);
   hedon::bind_learning(module);
   hedon::bind_physics(module);

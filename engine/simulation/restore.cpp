@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/float_mode.h"
 #include "simulation/saved.h"
 #include "simulation/simulation.h"
 
@@ -254,6 +255,7 @@ void restore_pairs(const Inspector& in, const World& world, const Extent& extent
 }  // namespace
 
 std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
+  const FloatMode mode(flush_);
   World& target = world(index);
   const WorldState& state = target.state;
   Inspector in(target, checkpoint);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <deque>
 
+#include "base/float_mode.h"
 #include "world/population.h"
 
 namespace hedon {
@@ -47,16 +48,18 @@ int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
 
 Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
                        const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-                       const std::vector<int32_t>& slot_order)
+                       const std::vector<int32_t>& slot_order, bool flush)
     : config_(config),
-      shape_(make_shape(config, static_cast<int32_t>(walls.size()), outer_walls)),
-      constants_(make_constants(config)),
       kernel_(kernel),
+      flush_(flush),
       walls_(std::move(walls)),
       slot_order_(slot_order),
       worlds_(seeds.size()),
       seconds_(seeds.size()),
       paces_(seeds.size()) {
+  const FloatMode mode(flush_);
+  shape_ = make_shape(config_, static_cast<int32_t>(walls_.size()), outer_walls);
+  constants_ = make_constants(config_);
   for (size_t i = 0; i < worlds_.size(); ++i) {
     World& world = worlds_[i];
     world.config = &config_;
@@ -70,12 +73,13 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     begin(world);
     found(world);
   }
-  pool_ = std::make_unique<Pool>(threads);
+  pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
 }
 
 MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
+  const FloatMode mode;
   const WorldShape shape = make_shape(config, walls, walls);
   const WorldConstants constants = make_constants(config);
   World world{};
@@ -121,6 +125,7 @@ void Simulation::empty(World& world) {
 }
 
 bool Simulation::set_scene(int index, const SceneInput& scene) {
+  const FloatMode mode(flush_);
   World& target = world(index);
   if (scene.x.count > shape_.slots) return false;
   std::vector<int32_t> count(static_cast<size_t>(shape_.kinds));
@@ -172,6 +177,7 @@ void Simulation::run(int64_t steps) {
   for (int team = 0; team < shared; ++team)
     teams[static_cast<size_t>(team)].size = first_thread(team + 1) - first_thread(team);
 
+  const FloatMode mode(flush_);
   pool_->run([&](int thread) {
     for (int i = next.fetch_add(1); i < alone; i = next.fetch_add(1)) {
       advance_with(Team(single[static_cast<size_t>(thread)], 0), thread, going[static_cast<size_t>(i)], steps);

@@ -36,13 +36,16 @@ struct MemoryNeed {
   HEDON_FIELDS(MemoryNeed, networks, rollouts, physics, rest)
 };
 
+/// Each call sets the floating-point mode that it needs and gives the caller's back.
 class Simulation {
  public:
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
+  /// flush   whether denormals are flushed to zero; it changes no result
+  /// What is given must have passed `check_config` and `check_company`.
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-             const std::vector<int32_t>& slot_order);
+             const std::vector<int32_t>& slot_order, bool flush = true);
 
   /// Bytes that a simulation reserves: to be compared with what the machine has, before it is made.
   static MemoryNeed bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
@@ -68,6 +71,7 @@ class Simulation {
   World& world(int index) { return worlds_[static_cast<size_t>(index)]; }
   const WorldShape& shape() const { return shape_; }
   const WorldConfig& config() const { return config_; }
+  bool flush() const { return flush_; }
   const Kernel& kernel() const { return *kernel_; }
   const Pool& pool() const { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
@@ -82,6 +86,7 @@ class Simulation {
   WorldShape shape_;
   WorldConstants constants_;
   const Kernel* kernel_;
+  bool flush_;
   std::vector<Segment> walls_;
   std::vector<int32_t> slot_order_;
   std::vector<Memory> memory_;

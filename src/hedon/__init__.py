@@ -14,11 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hedon.config import Config, ConfigError, dump_toml, load_config
+    from hedon.error import ArgumentError, EngineError, HedonError
     from hedon.experiment.branch import branch
+    from hedon.experiment.memory import MemoryNeedError
     from hedon.experiment.plan import RunPlan
     from hedon.experiment.resume import resume
     from hedon.experiment.run import run
     from hedon.experiment.simulation import Simulation, World
+    from hedon.record.error import RecordError
     from hedon.record.reader import Run, open_run
 
 __version__ = version("hedon")
@@ -28,6 +31,11 @@ _HOME = {
     "ConfigError": "hedon.config",
     "dump_toml": "hedon.config",
     "load_config": "hedon.config",
+    "ArgumentError": "hedon.error",
+    "EngineError": "hedon.error",
+    "HedonError": "hedon.error",
+    "MemoryNeedError": "hedon.experiment.memory",
+    "RecordError": "hedon.record.error",
     "RunPlan": "hedon.experiment.plan",
     "branch": "hedon.experiment.branch",
     "resume": "hedon.experiment.resume",
@@ -39,8 +47,13 @@ _HOME = {
 }
 
 __all__ = [
+    "ArgumentError",
     "Config",
     "ConfigError",
+    "EngineError",
+    "HedonError",
+    "MemoryNeedError",
+    "RecordError",
     "Run",
     "RunPlan",
     "Simulation",

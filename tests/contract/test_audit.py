@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.error import EngineError
+from hedon.experiment.simulation import Simulation
 
 WINDOW = 64
 SAFE = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, "food.normal.growth_rate=0", "energy.basic_cost=0.001")
@@ -70,7 +71,7 @@ def test_a_slot_held_twice_is_named(world):
     poke(world, "living", 1, slot_of(world, 0))
     with pytest.raises(EngineError, match=r"slots_inconsistent.*replay-fault"):
         world.run(1)
-    with pytest.raises(RuntimeError, match="slots are inconsistent"):
+    with pytest.raises(EngineError, match="slots are inconsistent"):
         world.engine.save(0)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from worlds import QUICK, make_engine, make_simulation
 
-from hedon.experiment.simulation import EngineError
+from hedon.error import EngineError
 
 STEPS = 200  # three windows of 64 and a rest
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")

@@ -6,9 +6,10 @@ from typer.testing import CliRunner
 
 from hedon.check.run import check_run
 from hedon.cli.main import app
+from hedon.error import EngineError
 from hedon.experiment.fault import replay_fault
 from hedon.experiment.resume import resume
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import load_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_paths, fault_paths

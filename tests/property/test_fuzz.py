@@ -22,9 +22,9 @@ from hedon.config.dump import dump_toml
 from hedon.config.field import leaves
 from hedon.config.load import PRESETS, load_config
 from hedon.config.problem import ConfigError
-from hedon.error import HedonError
+from hedon.error import EngineError, HedonError
 from hedon.experiment.memory import memory_needed
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.experiment.simulation import Simulation
 from hedon.record.folder import holds_run
 
 EXAMPLES = int(os.environ.get("HEDON_FUZZ", "0"))

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import QUICK, make_simulation
 
-from hedon.experiment.simulation import EngineError
+from hedon.error import EngineError
 
 CROWD = ("arena.width=220", "arena.height=180", "motor.min_force=20", "food.normal.initial_count=12")
 LIVELY = (*QUICK, *CROWD, "birth.kappa=0.02", "hazard.kappa=0.2", "population.capacity=60")

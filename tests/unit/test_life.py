@@ -6,7 +6,7 @@ from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scen
 
 from hedon.analysis.demography import birth_rate, hazard
 from hedon.config.load import load_config
-from hedon.experiment.simulation import EngineError
+from hedon.error import EngineError
 
 SAFE = (*DEATHLESS, *CHILDLESS)
 

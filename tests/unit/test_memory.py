@@ -66,7 +66,8 @@ def test_memory_that_the_system_refuses_is_an_error_not_a_crash():
     code = """
 import resource
 from hedon.config.load import load_config
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.error import EngineError
+from hedon.experiment.simulation import Simulation
 resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
 try:
     Simulation(load_config("baseline"), range(100), 1)

@@ -23,15 +23,26 @@ def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int)
     Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.
     """
 
+class FloatMode:
+    """Context manager: this thread computes with floats as the engine does."""
+
+    def __init__(self) -> None: ...
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, *error: object) -> None: ...
+
 class Simulation:
     """
-    Many worlds under one config. Views are read-only and valid until the next `run`.
+    Many worlds under one config. Views are read-only and valid until the next `run`. EngineError: it runs in another thread, or this process was forked from the one that made it.
     """
 
-    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = []) -> None: ...
+    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = [], flush_denormals: bool = True) -> None: ...
 
     def run(self, steps: int) -> None:
-        """Advances every world that is not over; releases the interpreter lock."""
+        """
+        Advances every world that is not over; releases the interpreter lock. Ctrl-C raises KeyboardInterrupt.
+        """
 
     def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """Columns of the agents that died since the last call."""

@@ -24,7 +24,7 @@ from hedon.record.snapshot import load_snapshot
 HTML, MARKDOWN = "report.html", "report.md"
 
 
-def write_report(*runs: Run, folder: Path | None = None) -> list[Path]:
+def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
     """Writes the report of some runs, over those that are there.
 
     Damaged parts are left out; the summary names them. The picture of a world needs `final.npz`.
@@ -40,7 +40,7 @@ def write_report(*runs: Run, folder: Path | None = None) -> list[Path]:
     Raises:
         RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
     """
-    folder = folder or (runs[0].path if len(runs) == 1 else Path("report"))
+    folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
     analysis = analyze(runs)
     faults: list[RecordError] = []
     try:

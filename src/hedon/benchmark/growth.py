@@ -12,9 +12,8 @@ from hedon.benchmark.measure import Row, Table, median, seconds_of
 from hedon.benchmark.network import shape
 from hedon.benchmark.plan import Plan, PlanError
 from hedon.benchmark.scene import peopled, scene_of
-from hedon.config.arena import walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
+from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
 
 TILES = ((1, 1), (2, 5), (10, 10), (20, 25))
@@ -145,7 +144,8 @@ def _measure_one(plan: Plan, config: Config, tiles: tuple[int, int], threads: in
 
 def bytes_needed(config: Config, threads: int) -> int:
     """What one world reserves [byte]."""
-    return sum(_engine.memory_needed(engine_config(config), len(walls(config.arena)), 1, threads).values())
+    given = engine_input(config)
+    return sum(_engine.memory_needed(given.settings, len(given.walls), 1, threads).values())
 
 
 def table(rows: list[Row], _: Calibration) -> Table:

@@ -62,7 +62,7 @@ class _Folder:
         return len(self.findings) - before
 
 
-def check_run(path: Path) -> Verdict:
+def check_run(path: Path | str) -> Verdict:
     """Checks a run's folder; reads it only, and needs no engine.
 
     Args:
@@ -74,6 +74,7 @@ def check_run(path: Path) -> Verdict:
     Raises:
         RecordError: It is not the folder of a run.
     """
+    path = Path(path)
     require_unicode(path)
     if not holds_run(path):
         open_run(path)  # says what it is instead, and which may have been meant

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import MAX_STEPS, Checkpoint, Threads, conduct
+from hedon.cli.run import Checkpoint, Threads, conduct
+from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 

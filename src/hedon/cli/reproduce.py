@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import MAX_STEPS, Threads, parse_seeds
+from hedon.cli.run import Threads, parse_seeds
 from hedon.error import HedonError
+from hedon.experiment.argument import MAX_STEPS
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -10,7 +10,9 @@ import typer
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
+from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, different, seed_list
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
+from hedon.text import brief
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -18,8 +20,9 @@ if TYPE_CHECKING:
 
 DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
-MAX_SEED = 2**63 - 1
-MAX_STEPS = 2**31 - 1
+
+MAX_DIGITS = 40
+"""Of a seed that is read at all: leading zeros are fine."""
 
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
@@ -94,27 +97,29 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
         console.print(f"Go on with: hedon resume {folder}", soft_wrap=True)
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
     show_report(plan.out, console)
-    console.print(f"Make them again with: uv run hedon report {folder}", soft_wrap=True)
+    console.print(f"Make them again with: hedon report {folder}", soft_wrap=True)
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
     """Seeds from "7", "1-5" or "1,4,7-9".
 
     Raises:
-        RunError: The text is no such list, a seed is out of range, or one appears twice.
+        RunError: The text is no such list, or a seed is out of range.
+        ArgumentError: There are too many, or one appears twice.
     """
     seeds: list[int] = []
-    for item in text.split(","):
-        first, dash, last = item.strip().partition("-")
+    for item in map(str.strip, text.split(",")):
+        first, dash, last = item.partition("-")
+        if not first and last.isdecimal():
+            raise RunError(f"--seeds: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
         if not first.isdecimal() or (dash and not last.isdecimal()):
-            raise RunError(f"--seeds: {text!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+            raise RunError(f"--seeds: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+        if max(len(first), len(last)) > MAX_DIGITS:
+            raise RunError(f"--seeds: a seed of {max(len(first), len(last)):,} digits is beyond {MAX_SEED}")
         low, high = int(first), int(last or first)
-        if high < low or high > MAX_SEED or high - low >= 10_000:
+        if high < low or high > MAX_SEED or high - low >= MAX_WORLDS:
             raise RunError(
-                f"--seeds: {item.strip()!r} is not a range of seeds from 0 to {MAX_SEED}, at most 10,000 of them"
+                f"--seeds: {item!r} is not a range of seeds from 0 to {MAX_SEED}, at most {MAX_WORLDS:,} of them"
             )
         seeds += range(low, high + 1)
-    twice = sorted({seed for seed in seeds if seeds.count(seed) > 1})
-    if twice:
-        raise RunError(f"--seeds: {twice[0]} appears twice; equal seeds give equal worlds")
-    return tuple(seeds)
+    return different(seed_list(seeds))

@@ -32,10 +32,11 @@ def contradictions(config: Config) -> Iterator[Problem]:
 
 
 def _names(config: Config) -> Iterator[Problem]:
-    for field in PROVENANCE:
+    for field in PROVENANCE:  # folders of runs are named by them
         text = getattr(config, field)
-        if not text or len(text) > 200 or not text.isprintable():
-            yield Problem(field, "must be a text of 1 to 200 printable characters", format_value(text))
+        if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", text):
+            rule = 'must be of letters, digits, "-", "_" and ".", at most 80, and not begin with a "."'
+            yield Problem(field, rule, format_value(text))
 
 
 def _rounding(config: Config) -> Iterator[Problem]:

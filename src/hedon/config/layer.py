@@ -33,8 +33,8 @@ def settle_food(tables: Table) -> Iterator[Problem]:
     every = food.pop(EVERY, {})
     if not isinstance(every, dict):
         yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))
+    others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
     for kind, value in list(food.items()):
-        others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
         if value is False:
             del food[kind]
         elif isinstance(value, dict) and "energy" not in value:

@@ -1,6 +1,7 @@
 """From a preset or a file to a config: preset, then fidelity, then the file, then single overrides."""
 
-import tomllib
+import re
+import unicodedata
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -11,7 +12,9 @@ from hedon.config.dump import EARLIER, digest
 from hedon.config.layer import Table, settle_food, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import from_tables
+from hedon.error import ArgumentError
 
 _FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "baseline"
@@ -34,20 +37,23 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 
     Raises:
         ConfigError: There is no such preset or file, or anything in it is wrong; all problems at once.
+        ArgumentError: An argument has another type.
     """
+    texts = _texts(overrides)
     path = _path_of(source)
     origin = str(path or source)
-    own = {"preset": source} if path is None else _read(path)
-    over = [parse_override(text) for text in overrides]
+    own = {"preset": source} if path is None else read_toml(path)
+    over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
     tables = [item for item in over if not isinstance(item, Problem)]
+    require_plain(tables, "--set")
     problems += [
         _not_settable(name) for table in tables for name in ("preset", "fidelity", "complete") if name in table
     ]
     below = _layers_below(own, fidelity, problems)
     if problems:
         raise ConfigError(origin, problems)
-    name = {"name": str(source) if path is None else path.stem}
+    name = {"name": str(source) if path is None else _name_of(path)}
     merged = _settled([name, *below, own, *tables], origin)
     return from_tables(merged, origin + " with --set" if tables else origin)
 
@@ -58,11 +64,7 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Anything in it is wrong or missing.
     """
-    try:
-        tables = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
-    return from_tables(_settled([_earlier(), tables], origin), origin)
+    return from_tables(_settled([_earlier(), parse_toml(text, origin)], origin), origin)
 
 
 def is_modified(config: Config) -> bool:
@@ -75,34 +77,39 @@ def is_modified(config: Config) -> bool:
 @cache
 def describe_preset(name: str) -> str:
     """What a preset is, in one sentence."""
-    return _read(_FOLDER / "presets" / f"{name}.toml")["description"]
+    return read_toml(_FOLDER / "presets" / f"{name}.toml")["description"]
 
 
 @cache
 def describe_fidelity(name: str) -> str:
     """What a fidelity is, in one sentence."""
-    return _read(_FOLDER / "overlays" / f"{name}.toml")["description"]
+    return read_toml(_FOLDER / "overlays" / f"{name}.toml")["description"]
+
+
+def _texts(overrides: Iterable[str]) -> list[str]:
+    texts = [overrides] if isinstance(overrides, str) else list(overrides)
+    for text in texts:
+        if not isinstance(text, str):
+            raise ArgumentError(f"overrides: each must be a text such as energy.initial=20, not {text!r}")
+    return texts
+
+
+def _name_of(path: Path) -> str:
+    """What a file that gives no name calls its runs: its own name, in letters that any folder's name can have."""
+    plain = unicodedata.normalize("NFKD", path.stem).encode("ascii", "ignore").decode()
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", plain).strip(".-")[:80] or "config"
 
 
 def _path_of(source: str | Path) -> Path | None:
     """The file that a source names, or None for a preset."""
+    if not isinstance(source, str | Path):
+        raise ArgumentError(f"source: must be the name of a preset or the path of a file, not {source!r}")
     if isinstance(source, Path) or source.endswith(".toml") or "/" in source:
         return Path(source)
     if source not in PRESETS:
         known = "there is no such preset (there is " + ", ".join(PRESETS) + "); a file's name ends with .toml"
         raise ConfigError(source, [Problem("", known, nearest=nearest(source, PRESETS))])
     return None
-
-
-def _read(path: Path) -> Table:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(str(path), [Problem("", f"cannot be read: {error.strerror}")]) from None
-    except UnicodeDecodeError:
-        raise ConfigError(str(path), [Problem("", "cannot be read: it is not a text in UTF-8")]) from None
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(str(path), [Problem("", f"is not valid TOML: {error}")]) from None
 
 
 def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
@@ -163,6 +170,6 @@ def _preset_layers(name: str) -> list[Table]:
 
 
 def _settings_of(path: Path) -> Table:
-    tables = _read(path)
+    tables = read_toml(path)
     tables.pop("description")
     return tables

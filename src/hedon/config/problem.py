@@ -7,6 +7,10 @@ from difflib import get_close_matches
 from typing import Any
 
 from hedon.error import HedonError
+from hedon.text import LINE, brief
+
+SHOWN = 20
+"""Problems that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +30,15 @@ class Problem:
     nearest: str | None = None
 
     def __str__(self) -> str:
-        place = f"{self.path} = {self.value}" if self.value is not None else self.path
+        path = brief(self.path)
+        place = f"{path} = {brief(self.value)}" if self.value is not None else path
         hint = f"; did you mean {self.nearest}?" if self.nearest else ""
-        return f"{place}: {self.message}{hint}" if place else f"{self.message}{hint}"
+        message = brief(self.message, 2 * LINE)
+        return f"{place}: {message}{hint}" if place else f"{message}{hint}"
 
 
 class ConfigError(HedonError):
-    """A config that cannot be used. It names all problems at once.
+    """A config that cannot be used. It names all problems at once, in its text the first ones and how many there are.
 
     Attributes:
         origin: The preset or file that was read.
@@ -42,11 +48,12 @@ class ConfigError(HedonError):
     def __init__(self, origin: str, problems: Iterable[Problem]) -> None:
         self.origin = origin
         self.problems = tuple(problems)
-        lines = [str(problem) for problem in self.problems]
-        if len(lines) == 1:
-            super().__init__(f"{origin}: {lines[0]}")
+        count, lines = len(self.problems), [str(problem) for problem in self.problems[:SHOWN]]
+        if count == 1:
+            super().__init__(f"{brief(origin)}: {lines[0]}")
         else:
-            super().__init__("\n  ".join([f"{origin}: {len(lines)} problems", *lines]))
+            more = [f"and {count - SHOWN:,} more"] if count > SHOWN else []
+            super().__init__("\n  ".join([f"{brief(origin)}: {count:,} problems", *lines, *more]))
 
 
 def format_value(value: Any) -> str:

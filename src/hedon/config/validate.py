@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
@@ -11,6 +12,9 @@ from hedon.config.check import contradictions
 from hedon.config.config import Config
 from hedon.config.field import Setting, find, sections, settings
 from hedon.config.problem import ConfigError, Problem, format_path, format_value, nearest
+from hedon.config.toml import require_plain
+from hedon.error import ArgumentError
+from hedon.text import brief
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -27,14 +31,17 @@ def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
     Raises:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another.
     """
+    require_plain(tables, origin)
     config, errors = _try(tables)
     problems = list(dict.fromkeys(_problem(details) for details in errors))
     if errors:
         # What is wrong by itself is set aside, so that what contradicts among the rest is told at once as well.
         config, _ = _try(_without(tables, [details["loc"] for details in errors]))
     if config is not None:
-        wrong = [problem.path for problem in problems]
-        problems += [each for each in contradictions(config) if not any(_overlap(each.path, path) for path in wrong)]
+        wrong = [_parts(problem.path) for problem in problems]
+        problems += [
+            each for each in contradictions(config) if not any(_overlap(_parts(each.path), path) for path in wrong)
+        ]
     if problems or config is None:
         raise ConfigError(origin, problems)
     return config
@@ -45,22 +52,32 @@ def _try(tables: Mapping[str, Any]) -> "tuple[Config | None, list[ErrorDetails]]
 
     try:
         # By way of JSON: only there does a strict validator take tables for dataclasses, lists for tuples.
-        return _validator().validate_json(json.dumps(tables, default=str)), []
+        return _validator().validate_json(json.dumps(tables, default=_plain)), []
     except ValidationError as error:
         return None, error.errors(include_url=False)
 
 
-def _overlap(path: str, other: str) -> bool:
+def _plain(value: Any) -> Any:
+    """NumPy's numbers as Python's, anything else as text, which no setting takes by mistake."""
+    return value.item() if hasattr(value, "item") else str(value)
+
+
+def _parts(path: str) -> list[str]:
+    return re.split(r"[.\[]", path)
+
+
+def _overlap(path: list[str], other: list[str]) -> bool:
     """Whether two paths name the same setting, or one the other's section."""
-    a, b = (re.split(r"[.\[]", each) for each in (path, other))
-    return all(x == y for x, y in zip(a, b, strict=False))
+    return all(x == y for x, y in zip(path, other, strict=False))
 
 
 def _without(tables: Mapping[str, Any], locations: Sequence[Sequence[str | int]]) -> dict[str, Any]:
     """A copy of nested tables without the settings at these places."""
-    kept = {}
+    kept, below = {}, defaultdict(list)
+    for location in locations:
+        below[location[0]].append(location[1:])
     for name, value in tables.items():
-        inner = [location[1:] for location in locations if location[0] == name]
+        inner = below[name]
         if isinstance(value, Mapping) and all(inner):
             kept[name] = _without(value, inner)
         elif not inner:
@@ -73,7 +90,10 @@ def validated(config: Config, origin: str = "config") -> Config:
 
     Raises:
         ConfigError: As `from_tables`.
+        ArgumentError: It is no `Config`.
     """
+    if not isinstance(config, Config):
+        raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
     return from_tables(asdict(config), origin)
 
 

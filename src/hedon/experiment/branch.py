@@ -7,6 +7,7 @@ from pathlib import Path
 from hedon.config.config import Config
 from hedon.config.dump import diff, digest
 from hedon.config.load import load_config
+from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
@@ -51,8 +52,8 @@ class BranchPlan:
 
 
 def plan_branch(
-    folder: Path,
-    out: Path | None = None,
+    folder: Path | str,
+    out: Path | str | None = None,
     overrides: Sequence[str] = (),
     at: int | None = None,
     steps: int | None = None,
@@ -61,17 +62,19 @@ def plan_branch(
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> BranchPlan:
     """Looks at a run and says how a branch of it would begin; changes nothing. Arguments and errors as of `branch`."""
+    folder = argument.folder("folder", folder)
     old = open_run(folder).manifest
     config = load_config(folder / CONFIG)
     changed = load_config(folder / CONFIG, overrides=overrides)
-    checkpoint, _ = find_checkpoint(folder, at)
+    step = None if at is None else argument.integer("at", at, 0, argument.MAX_STEPS)
+    checkpoint, _ = find_checkpoint(folder, step)
     if checkpoint is None:
         raise RecordError(f"{folder} keeps no checkpoint to branch off from")
     name = f"the checkpoint of {folder}"
     check_head(checkpoint.head, config, old.seeds, name)
     _check_shape(config, changed)
     step = checkpoint.head.step
-    total = old.steps_asked if steps is None else steps
+    total = old.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
     if total <= step:
         raise RecordError(
             f"{name} is at step {step:,}: a branch needs more steps in all than that, and {total:,} were asked for; "
@@ -95,8 +98,8 @@ def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
 
 
 def branch(
-    folder: Path,
-    out: Path | None = None,
+    folder: Path | str,
+    out: Path | str | None = None,
     overrides: Sequence[str] = (),
     at: int | None = None,
     steps: int | None = None,
@@ -128,6 +131,7 @@ def branch(
         RecordError: The checkpoint is not there or does not fit, or a changed setting would change the shape of a
             world's arrays; the message names it.
         ConfigError: An override is wrong.
+        ArgumentError: A number is out of bounds.
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """

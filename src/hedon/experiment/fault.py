@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hedon.config.load import load_config
+from hedon.error import EngineError
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG
 from hedon.record.reader import open_run
@@ -30,7 +31,7 @@ class FaultReplay:
     start: int
 
 
-def replay_fault(folder: Path, threads: int = 0) -> FaultReplay:
+def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
     """Goes on from the newest checkpoint of a run that stopped at a fault, to the fault. Changes nothing.
 
     Args:
@@ -41,6 +42,7 @@ def replay_fault(folder: Path, threads: int = 0) -> FaultReplay:
         RecordError: The run recorded no fault, or its checkpoint does not fit.
         ConfigError: Its config cannot be read.
     """
+    folder = Path(folder)
     manifest = open_run(folder).manifest
     if manifest.fault is None:
         raise RecordError(f"{folder} recorded no fault: it is {manifest.status}")
@@ -58,7 +60,7 @@ def replay_fault(folder: Path, threads: int = 0) -> FaultReplay:
             simulation.run(min(PIECE, end - step))
             step += PIECE
             for world in simulation.worlds:
-                simulation.engine.take_rows(world.index)
+                world.deaths()
     except EngineError as error:
         return FaultReplay(manifest.fault, str(error), start)
     return FaultReplay(manifest.fault, None, start)

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hedon import _engine
-from hedon.config.arena import walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
 from hedon.error import HedonError
+from hedon.experiment.native import engine_input
 from hedon.record.schema import run_tables
 from hedon.record.writer import PART_ROWS
 
@@ -30,7 +29,8 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
         worlds: How many of them.
         threads: Threads to use; 0 for all processors.
     """
-    need = _engine.memory_needed(engine_config(config), len(walls(config.arena)), worlds, threads)
+    given = engine_input(config)
+    need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
     tables = run_tables(tuple(config.food), config.genome.neutral_count).values()
     # A checkpoint waits for the disk as a copy of all worlds, while one of them may be copied for its digest.
     learned = need["networks"] + need["rollouts"]

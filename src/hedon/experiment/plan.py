@@ -6,31 +6,68 @@ from pathlib import Path
 from typing import Protocol
 
 from hedon.config.config import Config
+from hedon.config.validate import validated
+from hedon.experiment.argument import (
+    MAX_SECONDS,
+    MAX_STEPS,
+    MAX_THREADS,
+    different,
+    folder,
+    integer,
+    number,
+    seed_list,
+)
 from hedon.experiment.sample import Rows
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class RunPlan:
-    """What to run.
+    """What to run. Everything is checked when a plan is made.
 
     Attributes:
         config: What the worlds are.
-        seeds: One world per seed.
+        seeds: One world per seed; given as any sequence of different whole numbers from 0 to 2^63 − 1.
         steps: Steps of each world, in all.
-        out: The run's folder; must not hold a run already.
+        out: The run's folder; given as a path or a text. It must not hold a run already.
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; 0 for none.
         checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: Something else is.
     """
 
     config: Config
     seeds: tuple[int, ...]
     steps: int
     out: Path
-    threads: int = 0
-    frames: int = 0
-    checkpoint_seconds: float = CHECKPOINT_SECONDS
+    threads: int
+    frames: int
+    checkpoint_seconds: float
+
+    def __init__(
+        self,
+        config: Config,
+        seeds: Sequence[int],
+        steps: int,
+        out: Path | str,
+        threads: int = 0,
+        frames: int = 0,
+        checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    ) -> None:
+        checked = {
+            "config": validated(config),
+            "seeds": different(seed_list(seeds)),
+            "steps": integer("steps", steps, 1, MAX_STEPS),
+            "out": folder("out", out),
+            "threads": integer("threads", threads, 0, MAX_THREADS),
+            "frames": integer("frames", frames, 0, MAX_STEPS),
+            "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds, 0.0, MAX_SECONDS),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 
 
-def replay_run(folder: Path, threads: int = 0) -> tuple[tuple[Finding, ...], str]:
+def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...], str]:
     """Computes a run again, from the oldest checkpoint that it keeps to its end, and compares.
 
     Args:
@@ -24,6 +24,7 @@ def replay_run(folder: Path, threads: int = 0) -> tuple[tuple[Finding, ...], str
     Returns:
         What differs, and in a sentence what was compared.
     """
+    folder = Path(folder)
     run = open_run(folder)
     steps = max(run.manifest.steps_done, default=0)
     kept = [int(path.stem.removeprefix("step-")) for path in checkpoint_paths(folder)]

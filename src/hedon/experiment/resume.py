@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hedon.config.load import load_config
+from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
@@ -49,7 +50,7 @@ class Resumption:
 
 @contextmanager
 def hold(
-    folder: Path, steps: int | None = None, threads: int = 0, checkpoint_seconds: float = CHECKPOINT_SECONDS
+    folder: Path | str, steps: int | None = None, threads: int = 0, checkpoint_seconds: float = CHECKPOINT_SECONDS
 ) -> Iterator[Resumption]:
     """Takes hold of a run's folder and says how the run would go on. Changes nothing by itself; see `go_on`.
 
@@ -63,7 +64,9 @@ def hold(
         RecordError: It is no run, is in use, has no step left to do, or its checkpoint does not fit; the message says
             why.
         ConfigError: Its config cannot be read.
+        ArgumentError: A number is out of bounds.
     """
+    folder = argument.folder("folder", folder)
     open_run(folder)  # before the lock, which would make the folder
     with FolderLock(folder):
         manifest = open_run(folder).manifest
@@ -72,7 +75,7 @@ def hold(
         if checkpoint is not None:
             check_head(checkpoint.head, config, manifest.seeds, f"the checkpoint of {folder}")
             verify_parts(folder, checkpoint.head.parts)
-        total = manifest.steps_asked if steps is None else steps
+        total = manifest.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
         plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds)
         notes = [f"{fault}: going on from the one before" for fault in faults]
         found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
@@ -81,7 +84,7 @@ def hold(
 
 
 def resume(
-    folder: Path,
+    folder: Path | str,
     steps: int | None = None,
     threads: int = 0,
     display: Display | None = None,
@@ -101,6 +104,7 @@ def resume(
 
     Raises:
         RecordError: As `hold`; or the folder cannot be written.
+        ArgumentError: As `hold`.
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """

@@ -2,21 +2,24 @@
 
 import time
 from collections.abc import Iterator
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 
 from hedon.config.dump import dump_toml
+from hedon.error import ArgumentError, EngineError
 from hedon.experiment.interrupt import Interrupts, count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
-from hedon.experiment.simulation import EngineError, Simulation
+from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.snapshot import save_snapshot
 from hedon.record.writer import Writer
+from hedon.text import brief
 
 PIECE_SECONDS = 0.2
 """Longest time in the engine without a look at the keyboard [s]."""
@@ -36,6 +39,8 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
+    if not isinstance(plan, RunPlan):
+        raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads)
@@ -70,10 +75,10 @@ def drive(
     seconds, step, status = start.seconds, start.step, "failed"
     due = _Due(plan.checkpoint_seconds)
     try:
-        recorder.living()
         recorder.checkpoint(step, seconds)
         for step in _steps(simulation, plan, start.step, interrupted):
             seconds = start.seconds + time.perf_counter() - begun
+            writer.require_folder()
             recorder.deaths()
             if step % plan.config.learning.rollout_steps == 0:
                 recorder.interval()
@@ -95,8 +100,9 @@ def drive(
             raise EngineError(f"{error} The state of its worlds could not be kept: {lost}") from error
         raise
     finally:
-        recorder.living()
-        manifest = last_manifest(manifest, simulation, status, seconds, writer)
+        with suppress(RecordError) if status == "failed" else nullcontext():  # what went wrong first is on its way
+            recorder.living()
+            manifest = last_manifest(manifest, simulation, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
     return manifest
 

@@ -8,17 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon import _engine
-from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
-from hedon.error import HedonError
+from hedon.error import ArgumentError
+from hedon.experiment.argument import MAX_THREADS, integer, seed_list
+from hedon.experiment.native import engine_input
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
-
-
-class EngineError(HedonError):
-    """What the engine reports: a world that cannot go on, or an instruction set that this processor lacks."""
+MAX_WORLD_SEED = 2**64 - 1
+"""Largest seed of a world; the records of a run hold half as many."""
+MAX_RUN_STEPS = 2**62
 
 
 class Simulation:
@@ -39,36 +38,43 @@ class Simulation:
             the one that the environment variable HEDON_KERNEL names.
 
     Raises:
-        EngineError: The kernel is unknown or not for this processor, or the initial agents or foods find no place.
+        ConfigError: A setting is wrong.
+        ArgumentError: Another argument is.
+        EngineError: The kernel is unknown or not for this processor, there is too little memory, or the initial agents
+            or foods find no place.
+
+    Every method, and those of its worlds, raise EngineError while the simulation runs in another thread, and in a
+    process that was forked from the one that made it: its threads do not exist there.
     """
 
     def __init__(self, config: Config, seeds: Sequence[int], threads: int = 0, kernel: str = "") -> None:
-        self.config = config
-        self.seeds = tuple(seeds)
+        given = engine_input(config)
+        self.config = given.config
+        self.seeds = seed_list(seeds, MAX_WORLD_SEED)
+        threads = integer("threads", threads, 0, MAX_THREADS)
+        if not isinstance(kernel, str):
+            raise ArgumentError(f"kernel: must be the name of an instruction set, not {kernel!r}")
         kernel = kernel or os.environ.get(KERNEL_VARIABLE, "")
-        native, segments, outer = engine_config(config), walls(config.arena), outer_count(config.arena)
-        try:
-            self.engine = _engine.Simulation(native, segments, outer, list(seeds), threads, kernel)
-        except (RuntimeError, ValueError) as error:
-            raise EngineError(str(error)) from None
-        self.worlds = tuple(World(self.engine, i, config, seed) for i, seed in enumerate(seeds))
+        self.engine = _engine.Simulation(
+            given.settings, given.walls, given.outer_walls, list(self.seeds), threads, kernel
+        )
+        self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
 
     def run(self, steps: int) -> None:
         """Advances every world that is not extinct; learning happens at the end of each window.
 
-        Other Python threads go on meanwhile.
+        Other Python threads go on meanwhile. Ctrl-C in the main thread is heard within a fraction of a second, or when
+        the learning at the end of a window is done; the worlds are whole then, and can go on.
 
         Args:
             steps: How many steps; any number, not only whole windows.
 
         Raises:
-            EngineError: A world reports an error; it names the world, the step and the agent. Or the simulation is
-                running in another thread.
+            ArgumentError: `steps` is no whole number, or negative.
+            EngineError: A world reports an error; it names the world, the step and the agent.
+            KeyboardInterrupt: Ctrl-C was pressed; fewer steps than asked for were made.
         """
-        try:
-            self.engine.run(steps)
-        except RuntimeError as error:
-            raise EngineError(str(error)) from None
+        self.engine.run(integer("steps", steps, 0, MAX_RUN_STEPS))
 
     @property
     def extinct(self) -> bool:
@@ -146,6 +152,13 @@ class World:
         for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
             rows[name] = self.view(f"physics.bodies.{name}")[living]
         return rows
+
+    def deaths(self) -> dict[str, NDArray[Any]]:
+        """Takes what is known of each agent that died since the last call, (deaths,) each, with `genome`.
+
+        The engine has room for 16 deaths per slot: who runs a world for long calls this between runs.
+        """
+        return self._engine.take_rows(self.index)
 
     def foods(self) -> dict[str, NDArray[Any]]:
         """Kind (index in the config's order) and place [u] of each food present, (foods,) each."""

@@ -4,6 +4,8 @@ from hedon.config import ConfigError, load_config
 
 NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
 
+NAME_RULE = 'must be of letters, digits, "-", "_" and ".", at most 80, and not begin with a "."'
+
 
 @pytest.mark.parametrize(
     ("overrides", "line"),
@@ -92,8 +94,12 @@ NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8
             ["learning.adam_beta2=0.999999999"],
             "learning.adam_beta2 = 0.999999999: is 1 in the engine's 32-bit numbers, but must be a number >= 0 and < 1",
         ),
-        (['name=""'], 'name = "": must be a text of 1 to 200 printable characters'),
-        (['name="a\\tb"'], 'name = "a\\tb": must be a text of 1 to 200 printable characters'),
+        (['name=""'], f'name = "": {NAME_RULE}'),
+        (['name="a\\tb"'], f'name = "a\\tb": {NAME_RULE}'),
+        (['name="../up"'], f'name = "../up": {NAME_RULE}'),
+        (['name="/etc/x"'], f'name = "/etc/x": {NAME_RULE}'),
+        (['name=".hidden"'], f'name = ".hidden": {NAME_RULE}'),
+        (['name="' + "a" * 81 + '"'], f'name = "{"a" * 81}": {NAME_RULE}'),
     ],
 )
 def test_each_contradiction(overrides: list[str], line: str) -> None:

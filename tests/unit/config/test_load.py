@@ -174,8 +174,18 @@ def test_complete_file_takes_no_fidelity(write: Write) -> None:
 
 
 def test_name_can_be_given(write: Write) -> None:
-    assert load_config(write('name = "My run"\n')).name == "My run"
-    assert load_config("small", overrides=['name="second try"']).name == "second try"
+    assert load_config(write('name = "My-run.2"\n')).name == "My-run.2"
+    assert load_config("small", overrides=['name="second"']).name == "second"
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [("größe (2).toml", "groe-2"), ("my.v2.toml", "my.v2"), ("..toml", "config"), ("蝶.toml", "config")],
+)
+def test_a_file_without_a_name_gives_one_that_folders_can_have(tmp_path: Path, file: str, name: str) -> None:
+    path = tmp_path / file
+    path.write_text('preset = "small"\n')
+    assert load_config(path).name == name
 
 
 def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Write) -> None:

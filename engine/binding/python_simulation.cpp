@@ -1,0 +1,164 @@
+#include "binding/python_simulation.h"
+
+#include <nanobind/stl/string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+
+#include "base/float_mode.h"
+#include "binding/config.h"
+#include "binding/error.h"
+#include "simulation/config_check.h"
+
+namespace nb = nanobind;
+
+namespace hedon {
+namespace {
+
+constexpr double PIECE_SECONDS =
+    0.2;  ///< longest time without a look at the keyboard, but for the learning of a window
+
+const Kernel* need_kernel(const std::string& name) {
+  const Kernel* kernel = find_kernel(name.c_str());
+  if (kernel != nullptr) return kernel;
+  std::string known;
+  for (const char* const* at = kernel_names(); *at != nullptr; ++at)
+    known += std::string(known.empty() ? "" : ", ") + *at;
+  throw EngineError("kernel '" + name + "' is unknown or not for this processor, which can run: " + known);
+}
+
+/// Refuses what this machine cannot hold, before anything is reserved.
+void need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
+  const MemoryNeed need =
+      Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
+  const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
+  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed > present) {
+    char text[160];
+    snprintf(text, sizeof text,
+             "the worlds need %.1f GB of memory, and this machine has %.1f GB: lower population.capacity, "
+             "learning.rollout_steps or the number of seeds",
+             needed / 1e9, present / 1e9);
+    throw EngineError(text);
+  }
+  // A limit on addresses (ulimit -v) shows only when they are asked for.
+  const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
+  void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (probe == MAP_FAILED)
+    throw EngineError("the system gives the worlds no memory, though there is enough: look at `ulimit -v`");
+  munmap(probe, bytes);
+}
+
+std::vector<Segment> to_segments(const WallsIn& walls) {
+  std::vector<Segment> segments;
+  for (size_t i = 0; i < walls.shape(0); ++i)
+    segments.push_back({{walls(i, 0), walls(i, 1)}, {walls(i, 2), walls(i, 3)}});
+  return segments;
+}
+
+/// Marks a simulation as free again, however the call ends.
+struct Running {
+  std::atomic<bool>& mark;
+  ~Running() { mark.store(false); }
+};
+
+void need(const std::string& complaint) {
+  if (!complaint.empty()) throw EngineError(complaint);
+}
+
+}  // namespace
+
+WorldConfig need_config(nb::dict config) {
+  const FloatMode mode;
+  const WorldConfig known = to_config<WorldConfig>(config);
+  need(check_config(known));
+  return known;
+}
+
+PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer_walls,
+                                   const std::vector<uint64_t>& seeds, int threads, const std::string& kernel,
+                                   const std::vector<int32_t>& slot_order, bool flush_denormals) {
+  const FloatMode mode;
+  const WorldConfig known = need_config(config);
+  const std::vector<Segment> segments = to_segments(walls);
+  const int used = count_threads(threads);
+  need(check_company(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
+  need_memory(known, segments.size(), seeds.size(), used);
+  try {
+    simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
+                                               need_kernel(kernel), slot_order, flush_denormals);
+  } catch (const std::system_error& error) {
+    throw EngineError("the system gives no " + std::to_string(used) + " threads (" + error.what() +
+                      "): ask for fewer, or look at `ulimit -u` and `ulimit -v`");
+  }
+  raise_faults();
+}
+
+Simulation& PythonSimulation::get() {
+  if (simulation_->pool().forked())
+    throw EngineError(
+        "this process was forked from the one that made the simulation, and the simulation's threads do not exist "
+        "here: make a new simulation in this process");
+  if (running_.load()) throw EngineError("busy: the simulation is running in another thread");
+  return *simulation_;
+}
+
+World& PythonSimulation::world(int index) {
+  Simulation& simulation = get();
+  if (index < 0 || index >= simulation.world_count()) throw nb::index_error("no world of that index");
+  return simulation.world(index);
+}
+
+World& PythonSimulation::slotted(int index) {
+  World& from = world(index);
+  if (from.fault().status == Status::slots_inconsistent) throw EngineError("the world's slots are inconsistent");
+  return from;
+}
+
+void PythonSimulation::run(int64_t steps) {
+  using Clock = std::chrono::steady_clock;
+  Simulation& simulation = get();
+  if (steps < 0) throw EngineError("steps = " + std::to_string(steps) + ": must be at least 0");
+  if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
+  const Running mark{running_};
+  while (steps > 0) {
+    const int64_t count = std::min(piece_, steps);
+    const Clock::time_point begun = Clock::now();
+    {
+      const nb::gil_scoped_release release;
+      simulation.run(count);
+    }
+    steps -= count;
+    raise_faults();
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+    // Towards the full time, at most fourfold: a piece with the learning of a window says little of the next.
+    const double next = static_cast<double>(count) * PIECE_SECONDS / std::max(seconds, 1e-9);
+    if (count == piece_) piece_ = static_cast<int64_t>(std::clamp(next, 1.0, 4.0 * static_cast<double>(piece_)));
+  }
+}
+
+/// The one place that turns a world's status into an exception: the earliest, however many steps were run at once.
+void PythonSimulation::raise_faults() {
+  Simulation& simulation = *simulation_;
+  int first = -1;
+  for (int i = 0; i < simulation.world_count(); ++i) {
+    const Fault& fault = simulation.world(i).fault();
+    if (fault.status != Status::ok && (first < 0 || fault.step < simulation.world(first).fault().step)) first = i;
+  }
+  if (first < 0) return;
+  const Fault& fault = simulation.world(first).fault();
+  const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
+  std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) + ", step " +
+                        std::to_string(fault.step) + ", value " + std::to_string(fault.value);
+  if (fault.agent_id >= 0) message += ", agent " + std::to_string(fault.agent_id);
+  if (fault.other_id >= 0) message += ", with agent " + std::to_string(fault.other_id);
+  message += ", windows completed: " + std::to_string(fault.step / simulation.shape().steps);
+  throw EngineError(message + ". " + text.remedy);
+}
+
+}  // namespace hedon

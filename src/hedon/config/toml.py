@@ -1,0 +1,90 @@
+"""From a TOML file or text to plain tables: of a size and depth that a config can have, or refused by name."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hedon.config.layer import Table
+from hedon.config.problem import ConfigError, Problem
+
+MAX_BYTES = 1_000_000
+"""Size of the largest config file [byte]; the largest that can be run has some 30,000."""
+MAX_VALUES = 5_000
+"""Names and values in all the tables and lists of a config; the most walls and centers there can be make 1,500."""
+MAX_DEPTH = 8
+"""Tables and lists within each other; settings need five."""
+MAX_INTEGER = 2**63
+"""TOML's integers have 64 bits."""
+
+
+def read_toml(path: Path) -> Table:
+    """Reads a file.
+
+    Raises:
+        ConfigError: it cannot be read, or is no TOML that could be a config.
+    """
+    origin = str(path)
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise ConfigError(origin, [Problem("", f"cannot be read: {error.strerror}")]) from None
+    except ValueError as error:  # a path with a null character
+        raise ConfigError(origin, [Problem("", f"cannot be read: {error}")]) from None
+    if len(content) > MAX_BYTES:
+        raise ConfigError(origin, [Problem("", f"is larger than a config can be ({MAX_BYTES:,} bytes)")])
+    try:
+        text = content.decode("utf-8-sig")  # some editors write a byte order mark
+    except UnicodeDecodeError:
+        raise ConfigError(origin, [Problem("", "cannot be read: it is not a text in UTF-8")]) from None
+    return parse_toml(text.replace("\r\n", "\n"), origin)
+
+
+def parse_toml(text: str, origin: str) -> Table:
+    """Reads a text; `origin` is what an error calls it.
+
+    Raises:
+        ConfigError: It is no TOML that could be a config.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
+    except RecursionError:
+        raise ConfigError(origin, [_TOO_DEEP]) from None
+    except ValueError:  # Python reads no integer of thousands of digits
+        raise ConfigError(origin, [Problem("", f"holds an integer that has more digits than {MAX_INTEGER}")]) from None
+    require_plain(tables, origin)
+    return tables
+
+
+def require_plain(tables: Any, origin: str) -> None:
+    """Refuses tables that are deeper or larger than a config can be, and integers that TOML does not have.
+
+    Raises:
+        ConfigError: They are.
+    """
+    problems = list(_oversize(tables))
+    if problems:
+        raise ConfigError(origin, problems)
+
+
+_TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} levels")
+
+
+def _oversize(tables: Any) -> Iterator[Problem]:
+    level, count = [tables], 0
+    for _ in range(MAX_DEPTH + 1):
+        values = [value for each in level for value in (each.values() if isinstance(each, dict) else each)]
+        count += len(values)
+        if count > MAX_VALUES:
+            yield Problem("", f"holds more than {MAX_VALUES:,} names and values, which no config has")
+            return
+        if any(isinstance(value, int) and abs(value) >= MAX_INTEGER for value in values):
+            yield Problem("", f"holds an integer beyond ± {MAX_INTEGER}")
+            return
+        level = [value for value in values if isinstance(value, dict | list | tuple)]
+        if not level:
+            return
+    yield _TOO_DEEP

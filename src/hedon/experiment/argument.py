@@ -1,0 +1,84 @@
+"""Arguments from Python and from the command line, checked where all pass: numbers, seeds, folders."""
+
+from collections.abc import Iterable
+from operator import index
+from pathlib import Path
+from typing import Any
+
+from hedon.error import ArgumentError
+from hedon.text import brief
+
+MAX_SEED = 2**63 - 1
+"""Largest seed of a run: records keep seeds as 64-bit integers with a sign."""
+MAX_WORLDS = 10_000
+MAX_STEPS = 2**31 - 1
+MAX_THREADS = 1024
+MAX_SECONDS = 1e9
+
+
+def integer(name: str, value: Any, low: int, high: int) -> int:
+    """A whole number within bounds; NumPy's are taken too.
+
+    Raises:
+        ArgumentError: It is none.
+    """
+    if not hasattr(value, "__index__") or isinstance(value, bool) or not low <= index(value) <= high:
+        raise ArgumentError(f"{name} = {_text(value)}: must be a whole number from {low:,} to {high:,}")
+    return index(value)
+
+
+def number(name: str, value: Any, low: float, high: float) -> float:
+    """A number within bounds.
+
+    Raises:
+        ArgumentError: It is none.
+    """
+    if not hasattr(value, "__float__") or isinstance(value, bool) or not low <= float(value) <= high:
+        raise ArgumentError(f"{name} = {_text(value)}: must be a number from {low:g} to {high:g}")
+    return float(value)
+
+
+def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
+    """Seeds, one per world.
+
+    Raises:
+        ArgumentError: It is no list of whole numbers, it is empty or too long, or a seed is out of bounds.
+    """
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
+        raise ArgumentError(f"seeds = {_text(values)}: must be a list of whole numbers, one per world, such as [1, 2]")
+    seeds = tuple(integer("seeds", value, 0, largest) for value in values)
+    if not 1 <= len(seeds) <= MAX_WORLDS:
+        raise ArgumentError(f"seeds: there must be from 1 to {MAX_WORLDS:,}, one per world, not {len(seeds):,}")
+    return seeds
+
+
+def different(seeds: tuple[int, ...]) -> tuple[int, ...]:
+    """The same seeds, which must differ.
+
+    Raises:
+        ArgumentError: One appears twice.
+    """
+    seen: set[int] = set()
+    for seed in seeds:
+        if seed in seen:
+            raise ArgumentError(f"seeds: {seed} appears twice; equal seeds give equal worlds")
+        seen.add(seed)
+    return seeds
+
+
+def folder(name: str, value: Any) -> Path:
+    """A path, from a path or a text.
+
+    Raises:
+        ArgumentError: It is neither, or empty, or has a null character.
+    """
+    if not isinstance(value, str | Path) or not str(value) or "\0" in str(value):
+        raise ArgumentError(f"{name} = {_text(value)}: must be the path of a folder")
+    return Path(value)
+
+
+def _text(value: Any) -> str:
+    try:
+        return brief(repr(value), 60)
+    except ValueError:  # Python writes no integer of thousands of digits
+        return "an integer of thousands of digits"

@@ -1,0 +1,17 @@
+"""Text that comes from outside, made fit to be shown to a person."""
+
+LINE = 200
+"""Characters of a name or a value that a message shows; more would hide the message."""
+
+
+def printable(text: str) -> str:
+    r"""The text with characters that would not show, or would turn the order of others, as escapes such as \u202e.
+
+    Line breaks stay: messages have several lines.
+    """
+    return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text)
+
+
+def brief(text: str, limit: int = LINE) -> str:
+    """The text, or its beginning and its length where it has more than `limit` characters."""
+    return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"

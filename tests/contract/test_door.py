@@ -1,0 +1,190 @@
+"""The engine's own door: whatever config is put together in Python, it is refused by name or lived in, in any process.
+
+HEDON_DOOR=N tries N configs of each kind instead of the few of the suite.
+"""
+
+import dataclasses
+import os
+import random
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import pytest
+from worlds import make_engine
+
+import hedon
+from hedon import _engine
+from hedon.config.config import Config
+from hedon.config.field import leaves, sections, settings
+from hedon.config.load import PRESETS
+from hedon.error import EngineError
+from hedon.experiment.native import engine_input
+
+TRIALS = int(os.environ.get("HEDON_DOOR", "400"))
+SECONDS = 20.0
+"""Longest time of a trial: a hang, since each lives for a few steps."""
+
+
+def changed(config: Config, path: str, value: Any) -> Config:
+    """A config with one setting replaced, unchecked, as `dataclasses.replace` does it."""
+    section, _, name = path.rpartition(".")
+    if not section:
+        return dataclasses.replace(config, **{name: value})
+    head, *rest = section.split(".")
+    if head != "food":
+        return dataclasses.replace(config, **{head: dataclasses.replace(getattr(config, head), **{name: value})})
+    kind, *placement = rest
+    food = config.food[kind]
+    if placement:
+        new = dataclasses.replace(food, placement=dataclasses.replace(food.placement, **{name: value}))
+    else:
+        new = dataclasses.replace(food, **{name: value})
+    return dataclasses.replace(config, food={**config.food, kind: new})
+
+
+REPORTED = [
+    ("population.initial_count", 1000),
+    ("population.capacity", -5),
+    ("learning.minibatch_size", 0),
+    ("learning.minibatch_size", 63),
+    ("learning.minibatch_size", 48),
+    ("learning.rollout_steps", 0),
+    ("learning.rollout_steps", -64),
+    ("sensor.touch_sectors", 1000),
+    ("sensor.touch_sectors", -1),
+    ("sensor.ray_count", 33),
+    ("sensor.ray_length", float("nan")),
+    ("body.radius", -1),
+    ("food.normal.initial_count", 100_000),
+    ("food.normal.capacity", -1),
+    ("food.normal.placement.form", "gaussian"),
+]
+
+
+@pytest.mark.parametrize(("path", "value"), REPORTED)
+def test_what_no_world_can_be_is_refused_by_name(path, value):
+    config = changed(hedon.load_config("baseline"), path, value)
+    place = "food.normal" if path.startswith("food") else path
+    with pytest.raises(hedon.ConfigError, match=place.replace(".", r"\.")):
+        hedon.Simulation(config, [1])
+
+
+@pytest.mark.parametrize(("path", "value"), REPORTED)
+def test_the_engine_itself_refuses_them_too(path, value):
+    native = engine_input(hedon.load_config("baseline"))
+    table: Any = native.settings
+    *names, last = path.replace("food.normal", "food.0").split(".")
+    for name in names:
+        table = table[int(name) if name.isdigit() else name]
+    table[last] = value
+    with pytest.raises(EngineError, match=r"must be"):
+        _engine.Simulation(native.settings, native.walls, native.outer_walls, [1])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"seeds": []}, "seeds"),
+        ({"threads": 5000}, "threads"),
+        ({"outer_walls": 2}, "outer_walls"),
+        ({"outer_walls": 10**6}, "outer_walls"),
+        ({"slot_order": [0] * 200}, "slot_order"),
+        ({"slot_order": [1, 0]}, "slot_order"),
+        ({"walls": [[0.0, 0.0, float("nan"), 1.0]] * 4}, "walls"),
+        ({"walls": [[0.0, 0.0, 0.0, 0.0]] * 4}, "walls"),
+    ],
+)
+def test_what_comes_beside_a_config_is_checked(arguments, words):
+    import numpy as np
+
+    native = engine_input(hedon.load_config("baseline"))
+    given = {"walls": native.walls, "outer_walls": native.outer_walls, "seeds": [1], **arguments}
+    given["walls"] = np.asarray(given["walls"], np.float32)
+    with pytest.raises(EngineError, match=words):
+        _engine.Simulation(native.settings, **given)
+
+
+def test_the_engine_takes_whatever_the_settings_allow():
+    """Its own limits are nowhere narrower than those that people read."""
+    base = hedon.load_config("poison")
+    for path, setting, _ in leaves(base):
+        for bound in (setting.doc.range.ge, setting.doc.range.le):
+            if bound is None or setting.type not in (int, float):
+                continue
+            try:
+                given = engine_input(changed(base, path, setting.type(bound)))
+            except hedon.ConfigError:
+                continue  # it contradicts another setting
+            _engine.memory_needed(given.settings, len(given.walls), 1, 1)
+
+
+def test_every_integer_has_a_limit_in_the_engine():
+    native = engine_input(hedon.load_config("baseline")).settings
+    assert make_engine().world_count == 1
+    for section in sections(Config):
+        for name, setting in settings(sections(Config)[section].type).items():
+            if setting.type is not int or section in ("arena", "food"):
+                continue
+            table = {**native, section: {**native[section], name: -(2**31)}}
+            with pytest.raises(EngineError, match=rf"{section}\.{name} = -2147483648: must be from"):
+                _engine.memory_needed(table, 24, 1, 1)
+
+
+NASTY = [-1, 0, 1, 2, 3, 7, 16, 33, 48, 63, 64, 200, 1000, 2**31 - 1, 2**31, -(2**31), 2**63, 10**30]
+NASTY_FLOATS = [0.0, -0.0, -1.0, 1.0, 0.5, 2.5, 1e-45, 1e-30, 1e5, 1e30, 1e300, float("inf"), float("nan")]
+ODD = [None, "x", "", "death", True, (), (1.0, 2.0), ((1.0, 2.0),), {}, [], b"x", 1 + 2j, object()]
+
+
+def random_config(seed: int) -> Config:
+    """A preset with one to three settings replaced by anything, small enough to be lived in."""
+    draw = random.Random(seed)
+    config = hedon.load_config(
+        draw.choice(PRESETS),
+        overrides=["learning.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=1"],
+    )
+    paths = [path for path, _, _ in leaves(config)]
+    for _ in range(draw.randint(1, 3)):
+        config = changed(config, draw.choice(paths), draw.choice([*NASTY, *NASTY_FLOATS, *draw.sample(ODD, 3)]))
+    return config
+
+
+TRIAL = """
+    import signal, sys
+    import hedon
+    from contract.test_door import random_config, SECONDS
+
+    for seed in range(int(sys.argv[1]), int(sys.argv[2])):
+        print(seed, flush=True)
+        signal.alarm(int(SECONDS))  # ends the process, and so the test
+        config = random_config(seed)
+        try:
+            memory = sum(hedon.experiment.memory.memory_needed(config, 1, 1).values())
+            if memory > 2e9 or config.physics.substeps * config.population.initial_count > 5000:
+                continue
+            simulation = hedon.Simulation(config, [1], 1)
+            simulation.run(3)
+            if config.learning.rollout_steps * config.learning.update_epochs <= 1000:
+                simulation.run(30)
+        except hedon.HedonError as error:
+            assert str(error).strip()
+    print("done", flush=True)
+"""
+
+
+def test_random_configs_are_refused_by_name_or_lived_in():
+    """In a process of its own: a signal or a hang there is a failure here, and says which config it was."""
+    tests = Path(__file__).parents[1]
+    code = "import hedon.experiment.memory\n" + textwrap.dedent(TRIAL)
+    done = subprocess.run(
+        [sys.executable, "-c", code, "0", str(TRIALS)],
+        cwd=tests,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(tests)},
+    )
+    last = done.stdout.split()[-1] if done.stdout else ""
+    assert (done.returncode, last) == (0, "done"), f"config {last}: {done.stderr[-2000:]}"
