@@ -15,6 +15,15 @@ HEDON_INLINE double power(double base, int64_t exponent) {
   return result;
 }
 
+/// Below this a moment is 0: it moves nothing, and would fade through denormal numbers, which some processors flush to
+/// zero and others compute slowly. NaN stays NaN.
+constexpr float SMALLEST_MOMENT = 1e-30f;
+
+HEDON_INLINE Lanes without_tiny(Lanes moment) {
+  const Lanes limit = broadcast(SMALLEST_MOMENT);
+  return select(both(moment <= limit, broadcast(-SMALLEST_MOMENT) <= moment), broadcast(0.0f), moment);
+}
+
 /// One Adam step: p -= rate · m̂ / (sqrt(v̂) + ε). Source: Kingma and Ba (2015), algorithm 1.
 HEDON_FN void adam(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner) {
   const int64_t step = ++*learner.updates;
@@ -29,8 +38,8 @@ HEDON_FN void adam(const LearningConfig& config, int32_t size, const float* grad
   const Lanes rest2 = broadcast(1.0f - config.adam_beta2);
   for (int32_t i = 0; i < size; i += LANES) {
     const Lanes g = load(gradient + i);
-    const Lanes m = multiply_add(beta1, load(learner.first_moment + i), rest1 * g);
-    const Lanes v = multiply_add(beta2, load(learner.second_moment + i), rest2 * g * g);
+    const Lanes m = without_tiny(multiply_add(beta1, load(learner.first_moment + i), rest1 * g));
+    const Lanes v = without_tiny(multiply_add(beta2, load(learner.second_moment + i), rest2 * g * g));
     store(learner.first_moment + i, m);
     store(learner.second_moment + i, v);
     const Lanes divisor = multiply_add(square_root(v), root_scale, epsilon);
