@@ -9,14 +9,18 @@ from typing import Any
 from numpy.typing import NDArray
 
 from hedon.config.dump import dump_toml
+from hedon.error import EngineError
 from hedon.experiment.plan import Moment
 from hedon.experiment.sample import PopulationSampler, agent_rows, frame_rows
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import CheckpointHead, Sampled
 from hedon.record.writer import Writer
 
-LIVING_SECONDS = 30.0
-"""Time after which the file of the living agents is replaced [s]."""
+FLUSH_SECONDS = 30.0
+"""Time after which rows are written, and what readers see is renewed [s]."""
+FLUSH_GROWTH = 0.005
+"""The same as a share of the session so far. A part costs some 10 kB for its footer and an open file for each reader:
+so parts come less often as a run grows older, some hundreds of them in a run of many hours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,15 +56,18 @@ class Recorder:
         self.samplers = [PopulationSampler(world, at) for world, at in zip(simulation.worlds, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
         self.first = start.step
-        self.living_due = 0.0
+        self.begun = time.perf_counter()
+        self.flush_due = 0.0
         self.shown = False
 
     def deaths(self) -> None:
         """Writes those who died since the last call. The engine has room for some, so this is done in every piece."""
-        for i, world in enumerate(self.simulation.worlds):
-            lives = self.simulation.engine.take_rows(i)
+        for world in self.simulation.worlds:
+            lives = world.deaths()
             if len(lives["agent_id"]):
                 self.writer.append("agents", agent_rows(world, lives))
+        if time.perf_counter() >= self.flush_due:
+            self.living()
 
     def interval(self) -> None:
         """Writes one population row per world that moved since its last one."""
@@ -70,18 +77,18 @@ class Recorder:
             self.rows[i] = sampler.row()
             sampler.advance()
             self.writer.append("population", self.rows[i])
-        if time.perf_counter() >= self.living_due:
-            self.living()
         if not self.shown:  # the first rows reach the disk at once, so that a reader sees that the run is on
+            self.living()
             self.writer.flush()
             self.shown = True
 
     def living(self) -> None:
-        """Replaces the file of the living agents."""
-        self.living_due = time.perf_counter() + LIVING_SECONDS
+        """Writes all rows so far, and the living: the moment that readers see. The deaths so far must be written."""
+        now = time.perf_counter()
+        self.flush_due = now + max(FLUSH_SECONDS, FLUSH_GROWTH * (now - self.begun))
         rows = []
         for world in self.simulation.worlds:
-            with suppress(RuntimeError):  # a world that stopped since its slots are inconsistent
+            with suppress(EngineError):  # a world that stopped since its slots are inconsistent
                 rows.append(agent_rows(world, self.simulation.engine.living_rows(world.index)))
         self.writer.replace_living(*rows)
 
@@ -94,6 +101,7 @@ class Recorder:
 
     def checkpoint(self, step: int, seconds: float) -> None:
         """Keeps all that it takes to go on from here. Deaths and frames of this step must have been written."""
+        self.living()
         self.writer.save_checkpoint(*self._saved(step, seconds))
 
     def fault(self, seconds: float) -> None:
@@ -107,7 +115,7 @@ class Recorder:
         arrays: dict[str, NDArray[Any]] = {}
         digests = [""] * len(simulation.worlds)
         for i, world in enumerate(simulation.worlds):
-            with suppress(RuntimeError):  # a world that stopped since its slots are inconsistent
+            with suppress(EngineError):  # a world that stopped since its slots are inconsistent
                 arrays |= {f"{i}/{name}": array for name, array in simulation.engine.save(i).items()}
                 digests[i] = world.digest()
         head = CheckpointHead(

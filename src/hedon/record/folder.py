@@ -1,5 +1,6 @@
 """Where the files of a run lie."""
 
+import os
 import shlex
 from pathlib import Path
 
@@ -11,6 +12,8 @@ SNAPSHOT = "final.npz"
 SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
+PARTS_BEFORE = "parts"
+"""What the file of the living says of itself: how many parts hold those who died before it was written."""
 CHECKPOINTS = "checkpoints"
 FAULT = "fault"
 LOCK = ".lock"
@@ -30,6 +33,31 @@ def require_unicode(folder: Path) -> None:
     except UnicodeEncodeError:
         name = str(folder).encode("utf-8", "backslashreplace").decode()
         raise RecordError(f"{name}: the name of a run's folder must be UTF-8: choose or give it another") from None
+
+
+def require_plain(folder: Path) -> None:
+    """Refuses a run's folder in which anything is neither a file nor a folder: a symbolic link leads out of it.
+
+    The folder itself may be a link, and need not be there.
+
+    Raises:
+        RecordError: something is; the message names the first.
+    """
+    places = [folder]
+    while places:
+        try:
+            with os.scandir(places.pop()) as entries:
+                for entry in sorted(entries, key=lambda entry: entry.name):
+                    if entry.is_dir(follow_symlinks=False):
+                        places.append(Path(entry.path))
+                    elif not entry.is_file(follow_symlinks=False):
+                        kind = "a symbolic link" if entry.is_symlink() else "neither a file nor a folder"
+                        raise RecordError(
+                            f"{entry.path} is {kind}: hedon follows no link inside a run's folder; put what it points "
+                            "to in its place, or remove it"
+                        )
+        except OSError:  # not there, or not to be read: said by whoever reads or writes it
+            continue
 
 
 def holds_run(folder: Path) -> bool:
@@ -86,4 +114,4 @@ def fault_paths(folder: Path) -> list[Path]:
 
 def checkpoint_paths(folder: Path) -> list[Path]:
     """The checkpoints of a run, by step."""
-    return sorted((folder / CHECKPOINTS).glob("step-??????????.npz"))
+    return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_file())

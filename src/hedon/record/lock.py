@@ -1,15 +1,17 @@
-"""One run per folder: a lock that the operating system gives back when its process ends, however it ends."""
+"""Locks of folders, which the operating system gives back when their process ends, however it ends."""
 
 import errno
 import fcntl
 import json
 import os
 import socket
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 
 from hedon.record.error import RecordError
-from hedon.record.folder import LOCK, require_unicode
+from hedon.record.folder import LOCK, require_plain, require_unicode
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """What file systems answer that know no locks: there the user alone keeps two runs apart."""
@@ -24,15 +26,17 @@ class FolderLock:
         folder: made where it does not exist.
 
     Raises:
-        RecordError: another process holds it, the folder cannot be written, or its name is no UTF-8.
+        RecordError: another process holds it, the folder cannot be written or holds a symbolic link, or its name is no
+            UTF-8.
     """
 
     def __init__(self, folder: Path) -> None:
         require_unicode(folder)
+        require_plain(folder)
         path = folder / LOCK
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+            self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {folder}: {error}") from error
         try:
@@ -54,6 +58,25 @@ class FolderLock:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         os.close(self._descriptor)
+
+
+@contextmanager
+def one_writer(folder: Path) -> Iterator[None]:
+    """Lets one process at a time write a report into a folder, which it makes; the others wait.
+
+    The folder itself carries the lock, so that nothing is left in it.
+
+    Raises:
+        OSError: the folder cannot be made or opened.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def _write_owner(descriptor: int) -> None:

@@ -2,13 +2,23 @@
 
 import difflib
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import polars as pl
 
 from hedon.record.column import Table
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, LIVING, MANIFEST, holds_run, part_paths, require_unicode
+from hedon.record.folder import (
+    CONFIG,
+    LIVING,
+    MANIFEST,
+    PARTS_BEFORE,
+    holds_run,
+    part_paths,
+    require_plain,
+    require_unicode,
+)
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.schema import food_weight_names, neutral_names, run_tables, weight_names
 
@@ -48,16 +58,15 @@ class Run:
         return neutral_names(self.manifest.neutral_count)
 
     def agents(self, *, skip_damaged: bool = False) -> pl.DataFrame:
-        """All agents: the dead, in the order in which they were written, then those alive at the last flush.
+        """All agents of one moment: the dead, in the order in which they were written, then the living.
+
+        While a run goes on, this is the moment at which the living were last written; who died since counts as alive.
 
         Raises:
             RecordError: a part is damaged, and `skip_damaged` is false.
         """
-        table = self._tables["agents"]
-        # The living first: an agent that dies in between is then seen twice, and dropped below, never missed.
-        path = self.path / LIVING
-        living = _read([path] if path.exists() else [], table, skip_damaged)
-        dead = _read(part_paths(self.path, "agents"), table, skip_damaged)
+        living, parts = self._living(skip_damaged)
+        dead = _read(part_paths(self.path, "agents")[:parts], self._tables["agents"], skip_damaged)
         return pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
 
     def population(self, *, skip_damaged: bool = False) -> pl.DataFrame:
@@ -81,6 +90,20 @@ class Run:
         paths += [self.path / LIVING] if (self.path / LIVING).exists() else []
         return [path for path in paths if _fault(path) is not None]
 
+    def _living(self, skip_damaged: bool) -> tuple[pl.DataFrame, int | None]:
+        """The living, and how many parts hold the deaths before that moment; None for all that are there."""
+        table, path = self._tables["agents"], self.path / LIVING
+        if path.exists():
+            try:
+                content = BytesIO(path.read_bytes())  # at once: the file may be replaced meanwhile
+                rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
+                parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
+                return rows, None if parts is None else int(parts)
+            except (pl.exceptions.PolarsError, OSError, ValueError) as error:
+                if not skip_damaged:
+                    raise _damaged([f"{path} ({error})"]) from error
+        return pl.DataFrame(schema=table.polars_schema), None
+
     @property
     def _tables(self) -> dict[str, Table]:
         return run_tables(self.manifest.food_kinds, self.manifest.neutral_count)
@@ -90,10 +113,11 @@ def open_run(path: Path | str) -> Run:
     """Opens a run's folder.
 
     Raises:
-        RecordError: it is no run folder, or its manifest or config cannot be read.
+        RecordError: it is no run folder, its manifest or config cannot be read, or it holds a symbolic link.
     """
     folder = Path(path)
     require_unicode(folder)
+    require_plain(folder)
     if not (folder / MANIFEST).is_file():
         raise RecordError(f"{folder} is not a run folder: it has no {MANIFEST}{_nearest(folder)}")
     try:
@@ -111,10 +135,12 @@ def _read(paths: list[Path], table: Table, skip_damaged: bool) -> pl.DataFrame:
         except (pl.exceptions.PolarsError, OSError) as error:
             faults.append(f"{path} ({error})")
     if faults and not skip_damaged:
-        raise RecordError(
-            f"damaged part {'; '.join(faults)}: read the others with skip_damaged=True, or remove the file"
-        )
+        raise _damaged(faults)
     return pl.concat(frames)
+
+
+def _damaged(faults: list[str]) -> RecordError:
+    return RecordError(f"damaged part {'; '.join(faults)}: read the others with skip_damaged=True, or remove the file")
 
 
 def _fault(path: Path) -> str | None:

@@ -42,8 +42,6 @@ class Writer:
         config_text: the complete config, as TOML; where a run goes on, it stands there already.
         manifest: its food kinds and its number of neutral markers fix the columns.
         part_rows: rows after which a part is written at once.
-        flush_seconds: rows are on disk after this time at the latest [s]; after 200 times it, the wait
-            grows with the age of the run (0.5 %), so that a long run does not leave thousands of small parts.
         queue_size: calls that may wait for the thread.
         parts: for a run that goes on: the SHA-256 of each part that it has, in order, by table.
 
@@ -58,7 +56,6 @@ class Writer:
         manifest: Manifest,
         *,
         part_rows: int = PART_ROWS,
-        flush_seconds: float = 30.0,
         queue_size: int = 64,
         parts: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
@@ -68,7 +65,8 @@ class Writer:
             self._prepare(config_text, manifest)
         else:
             save_manifest(self.folder, manifest)
-        self._parts = PartWriter(self.folder, self.tables, part_rows, flush_seconds, parts)
+        self._parts = PartWriter(self.folder, self.tables, part_rows, parts)
+        self._folders = {path: _identity(path) for path in (self.folder, *(self.folder / name for name in self.tables))}
         self._queue: queue.Queue = queue.Queue(queue_size)
         self._fault: Exception | None = None
         self._saving = threading.Event()
@@ -92,7 +90,9 @@ class Writer:
         self._put((table, rows_to_frame(self.tables[table], rows)))
 
     def replace_living(self, *rows: Rows) -> None:
-        """Replaces the rows of the living agents of all worlds.
+        """Replaces the rows of the living agents of all worlds, with all rows given so far on disk before.
+
+        This is the moment that readers see. Call it now and then.
 
         Args:
             rows: rows of the table `agents`, for instance one mapping per world; none where nobody lives.
@@ -137,6 +137,7 @@ class Writer:
         Raises:
             RecordError: it cannot be written.
         """
+        self.require_folder()
         save_manifest(self.folder, manifest)
 
     def flush(self) -> None:
@@ -191,7 +192,19 @@ class Writer:
             raise RecordError(f"the writer of {self.folder} is closed")
         self._queue.put(item)
 
+    def require_folder(self) -> None:
+        """Notices at once that the folder is gone, and not only when the next rows are written.
+
+        Raises:
+            RecordError: it, or the folder of a table, was removed or replaced.
+        """
+        for path, identity in self._folders.items():
+            if _identity(path) != identity:
+                raise RecordError(f"{path} was removed or replaced while the run goes on: the run ends here")
+
     def _raise_fault(self) -> None:
+        if isinstance(self._fault, RecordError):
+            raise self._fault
         if self._fault is not None:
             raise RecordError(
                 f"cannot write records to {self.folder}: {self._fault}; what was written before is readable, and "
@@ -202,10 +215,7 @@ class Writer:
         """The thread: takes items until it is closed, also after a fault, so that no caller hangs."""
         item = None
         while item is not _CLOSE:
-            try:
-                item = self._queue.get(timeout=max(self._parts.seconds_to_flush(), 0.0))
-            except queue.Empty:
-                item = None
+            item = self._queue.get()
             if self._fault is None:
                 try:
                     self._handle(item)
@@ -215,6 +225,7 @@ class Writer:
                 item.set()
 
     def _handle(self, item: object) -> None:
+        self.require_folder()
         if isinstance(item, tuple):
             table, rows = item
             if table == "living":
@@ -226,6 +237,14 @@ class Writer:
             parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
             save_checkpoint(self.folder, Checkpoint(replace(item.head, parts=parts), item.arrays))
             self._saving.clear()
-        urgent = item is _CLOSE or isinstance(item, threading.Event)
-        if urgent or self._parts.seconds_to_flush() <= 0:
+        if item is _CLOSE or isinstance(item, threading.Event):
             self._parts.flush()
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What the file system knows a folder by; None where it is gone."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino

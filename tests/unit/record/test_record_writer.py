@@ -12,7 +12,6 @@ from synthetic_run import INTERVAL, SyntheticWorld, population_rows, write_run
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, holds_run, part_paths
 from hedon.record.manifest import Manifest
-from hedon.record.part_writer import PartWriter
 from hedon.record.reader import open_run
 from hedon.record.schema import run_tables
 from hedon.record.writer import Writer
@@ -47,7 +46,7 @@ def test_caller_may_reuse_its_arrays(tmp_path: Path) -> None:
 
 def test_parts_are_written_when_full_and_none_is_lost(tmp_path: Path) -> None:
     rows = population_rows([SyntheticWorld(0, 7).step()[1]] * 10)
-    with Writer(tmp_path / "run", "", MANIFEST, part_rows=25, flush_seconds=1e9, queue_size=2) as writer:
+    with Writer(tmp_path / "run", "", MANIFEST, part_rows=25, queue_size=2) as writer:
         for i in range(20):
             writer.append("population", rows | {"step": np.full(10, i)})
     assert len(part_paths(tmp_path / "run", "population")) == 7  # 6 of 30 rows, the rest at the end
@@ -57,45 +56,70 @@ def test_parts_are_written_when_full_and_none_is_lost(tmp_path: Path) -> None:
 
 def test_reader_sees_rows_while_the_run_goes_on(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
-    with Writer(tmp_path / "run", "", MANIFEST, flush_seconds=0.02) as writer:
+    with Writer(tmp_path / "run", "", MANIFEST) as writer:
         writer.append("population", population_rows([world.step()[1]]))
+        writer.replace_living(world.living_rows())
         run, deadline = open_run(tmp_path / "run"), time.monotonic() + 10
-        while run.population().is_empty():
+        while run.population().is_empty() or run.agents().is_empty():
             assert time.monotonic() < deadline
             time.sleep(0.01)
 
 
 def test_flush_returns_when_all_is_on_disk(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
-    with Writer(tmp_path / "run", "", MANIFEST, flush_seconds=1e9) as writer:
+    with Writer(tmp_path / "run", "", MANIFEST) as writer:
         writer.append("agents", world.step()[0])
         writer.replace_living(world.living_rows())
         writer.flush()
         assert open_run(tmp_path / "run").agents().height >= 50
 
 
-def test_an_agent_that_died_since_the_last_flush_appears_once(tmp_path: Path) -> None:
+def test_an_agent_that_died_counts_once(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7, birth_factor=0.0)
     with Writer(tmp_path / "run", "", MANIFEST) as writer:
         writer.replace_living(world.living_rows())
-        writer.flush()
         dead, _ = world.step()
         assert len(dead["agent_id"]) > 0
         writer.append("agents", dead)
+        writer.replace_living(world.living_rows())
         writer.flush()
         agents = open_run(tmp_path / "run").agents()
     assert sorted(agents["agent_id"]) == list(range(50))
     assert agents["death_step"].is_not_null().sum() == len(dead["agent_id"])
 
 
-def test_time_between_flushes_grows_with_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    now = [0.0]
-    monkeypatch.setattr("hedon.record.part_writer.monotonic", lambda: now[0])
-    parts = PartWriter(tmp_path, run_tables(("normal",), 1), 1000, 30.0)
-    assert parts.seconds_to_flush() == 30.0
-    now[0] = 36_000.0
-    parts.flush()
-    assert parts.seconds_to_flush() == pytest.approx(180.0)
+def test_what_a_reader_sees_is_one_moment(tmp_path: Path) -> None:
+    """Deaths that reach the disk after the living are not seen before the next living are: births would be missing."""
+    world = SyntheticWorld(0, 7)
+    with Writer(tmp_path / "run", "", MANIFEST, part_rows=1) as writer:
+        writer.replace_living(world.living_rows())
+        for _ in range(5):
+            dead, _ = world.step()
+            writer.append("agents", dead)
+            writer.flush()  # as a full part, or a checkpoint, does
+            before = set(open_run(tmp_path / "run").agents()["agent_id"])
+            assert before == set(range(len(before))), "an agent is missing"
+            writer.replace_living(world.living_rows())
+            writer.flush()
+            agents = open_run(tmp_path / "run").agents()
+            assert sorted(agents["agent_id"]) == list(range(agents.height))
+            assert set(agents.filter(pl.col("death_step").is_null())["agent_id"]) == set(
+                world.living_rows()["agent_id"].tolist()
+            )
+
+
+def test_a_folder_that_is_removed_or_replaced_is_noticed_at_once(tmp_path: Path) -> None:
+    writer = Writer(tmp_path / "run", "", MANIFEST)
+    writer.require_folder()
+    (tmp_path / "run").rename(tmp_path / "moved")
+    with pytest.raises(RecordError, match="was removed or replaced while the run goes on"):
+        writer.require_folder()
+    (tmp_path / "run" / "agents").mkdir(parents=True)
+    with pytest.raises(RecordError, match="was removed or replaced"):
+        writer.save_manifest(MANIFEST)
+    with pytest.raises(RecordError, match="was removed or replaced"):
+        writer.close()
+    assert [path.name for path in (tmp_path / "run").rglob("*")] == ["agents"], "nothing is written into the other"
 
 
 def test_refuses_a_folder_that_holds_a_run(tmp_path: Path) -> None:
@@ -218,7 +242,7 @@ def test_a_reader_never_sees_a_torn_file(tmp_path: Path) -> None:
     living = world.living_rows()
     faults: list[Exception] = []
     stop = threading.Event()
-    with Writer(tmp_path / "run", "", MANIFEST, part_rows=1, flush_seconds=0.0) as writer:
+    with Writer(tmp_path / "run", "", MANIFEST, part_rows=1) as writer:
 
         def read() -> None:
             run = open_run(tmp_path / "run")
