@@ -1,7 +1,7 @@
-"""Do agents learn? Immortal, childless agents with a fixed reward for food, against agents with no reward at all.
+"""Do agents learn? Compares agents with a fixed reward for food with agents that have no reward.
 
-Runs every combination of observation scaling and critic, and one with weights of 32 bits for acting, several worlds
-each, and writes a figure and a table:
+Agents neither die nor have children. The example runs every combination of observation scaling and critic, and one
+with weights of 32 bits for acting, each in several worlds, and writes a figure and a table:
 
     python examples/learning.py --windows 60 --seeds 10 --out docs/results/learning
 """
@@ -22,7 +22,7 @@ import hedon
 from hedon.config.load import load_config
 from hedon.experiment.simulation import Simulation
 
-# Nobody dies, nobody is born; food grows fast enough that supply does not hide skill.
+# No deaths and no births. Food grows fast, so that the supply does not limit what skilled agents eat.
 SETTING = (
     "hazard.kappa=0",
     "hazard.alpha_age=0",
