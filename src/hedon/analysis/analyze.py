@@ -13,6 +13,7 @@ from hedon.analysis.topic.topic import TOPICS, run_topics
 from hedon.analysis.world import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
+from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 
 ANALYSIS = "analysis"
@@ -60,9 +61,9 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
         table.rows.write_csv(buffer)
         contents[f"{name}.csv"] = buffer.getvalue()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            write_atomically(folder / name, lambda file, content=content: file.write(content))
+        with one_writer(folder):
+            for name, content in contents.items():
+                write_atomically(folder / name, lambda file, content=content: file.write(content))
     except OSError as error:
         raise RecordError(f"cannot write the analysis into {folder}: {error}") from error
     return [folder / name for name in contents]

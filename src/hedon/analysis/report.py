@@ -18,6 +18,7 @@ from hedon.analysis.summary import summarize
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES, SUMMARY
+from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.record.snapshot import load_snapshot
 
@@ -27,7 +28,8 @@ HTML, MARKDOWN = "report.html", "report.md"
 def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
     """Writes the report of some runs, over those that are there.
 
-    Damaged parts are left out; the summary names them. The picture of a world needs `final.npz`.
+    Where another report is being written into the same folder, this one waits for it. Damaged parts are left out; the
+    summary names them. The picture of a world needs `final.npz`.
 
     Args:
         runs: one or more.
@@ -41,17 +43,18 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
         RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
     """
     folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
-    analysis = analyze(runs)
     faults: list[RecordError] = []
     try:
-        summaries = [_write_summary(run) for run in runs]
-        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
-        figures = [_save(folder, group, named) for group, named in _figures(analysis, faults)]
-        answers = write_analysis(analysis, folder / ANALYSIS)[0]
-        pages = {HTML: html_page(analysis, figures), MARKDOWN: markdown_page(analysis, figures)}
-        for name, text in pages.items():
-            content = text.encode()
-            write_atomically(folder / name, lambda file, content=content: file.write(content))
+        with one_writer(folder):
+            analysis = analyze(runs)
+            summaries = [_write_summary(run) for run in runs]
+            (folder / FIGURES).mkdir(exist_ok=True)
+            figures = [_save(folder, group, named) for group, named in _figures(analysis, faults)]
+            answers = write_analysis(analysis, folder / ANALYSIS)[0]
+            pages = {HTML: html_page(analysis, figures), MARKDOWN: markdown_page(analysis, figures)}
+            for name, text in pages.items():
+                content = text.encode()
+                write_atomically(folder / name, lambda file, content=content: file.write(content))
     except OSError as error:
         raise RecordError(f"cannot write the report into {folder}: {error}") from error
     if faults:

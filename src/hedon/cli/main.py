@@ -1,7 +1,10 @@
 """The command `hedon`."""
 
+import errno
+import io
+import resource
 import sys
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -17,6 +20,14 @@ from hedon.cli.reproduce import reproduce
 from hedon.cli.resume import resume
 from hedon.cli.run import run
 from hedon.error import HedonError
+from hedon.text import printable
+
+NO_MEMORY = (
+    "the system gives no more memory: lower population.capacity, learning.rollout_steps or the number of seeds, "
+    "or look at `ulimit -v`"
+)
+ADDRESSES = 2_000_000_000
+"""What the libraries of a command reserve at most, before any world [byte]. Some of them abort where they get none."""
 
 app = typer.Typer(
     name="hedon",
@@ -74,14 +85,36 @@ def _hedon(
 
 def main() -> None:
     """Runs the command line; what the user can put right ends in one message and exit code 2."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a terminal or file that cannot show a "±" gets a "?"
+            stream.reconfigure(errors="replace")
+    _require_addresses()
     try:
         app()
     except HedonError as error:
-        typer.echo(f"hedon: {error}", err=True)
-        sys.exit(2)
+        fail(str(error))
     except OSError as error:
+        if error.errno == errno.ENOMEM:
+            fail(NO_MEMORY)
         if error.filename is None:
             raise
         # A path that the file system does not take, or may not be read: anywhere that a path is looked at.
-        typer.echo(f"hedon: {error.filename}: {error.strerror}", err=True)
-        sys.exit(2)
+        fail(f"{error.filename}: {error.strerror}")
+    except MemoryError:
+        fail(NO_MEMORY)
+
+
+def _require_addresses() -> None:
+    """Ends the command where a limit on addresses leaves no room for its libraries."""
+    allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if allowed != resource.RLIM_INFINITY and allowed < ADDRESSES:
+        fail(
+            f"`ulimit -v` allows this process {allowed / 1e9:.1f} GB of addresses, and hedon needs "
+            f"{ADDRESSES / 1e9:.0f} GB and more: raise the limit"
+        )
+
+
+def fail(message: str) -> NoReturn:
+    """Ends the command with a message and exit code 2. Names from outside may hold anything: it is made printable."""
+    typer.echo(f"hedon: {printable(message)}", err=True)
+    sys.exit(2)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
+from hedon.text import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -45,4 +46,4 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     for file in files[: len(runs)]:
         console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
     for file in files:
-        console.print(f"wrote {file}", soft_wrap=True)
+        console.print(f"wrote {printable(str(file))}", soft_wrap=True)

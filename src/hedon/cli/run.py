@@ -12,7 +12,7 @@ from hedon.cli.report import show_report
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, different, seed_list
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
-from hedon.text import brief
+from hedon.text import brief, printable
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -82,7 +82,7 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
     config, console = plan.config, make_console()
     worlds = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}"
     console.print(
-        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {plan.out}",
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {printable(str(plan.out))}",
         soft_wrap=True,
     )
     with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:

@@ -1,6 +1,7 @@
 """Whether a run fits into the memory of this machine: asked before it begins."""
 
 import os
+import resource
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -46,8 +47,11 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
 
 
 def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
-    """Bytes of memory that this process may come to use: of the machine, or of its container."""
+    """Bytes of memory that this process may come to use: of the machine, of its container, or by `ulimit -v`."""
     present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    addresses, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if addresses != resource.RLIM_INFINITY:
+        present = min(present, addresses)
     for path in limits:
         try:
             present = min(present, int(Path(path).read_text()))

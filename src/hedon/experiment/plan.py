@@ -81,6 +81,7 @@ class Moment:
         seconds: Time since the first step after `first` [s].
         rows: The last row of the table `population` of each world.
         extinct: The step at which each world died out, or None.
+        window: Steps of a window, at whose end agents learn.
     """
 
     first: int
@@ -89,6 +90,7 @@ class Moment:
     seconds: float
     rows: tuple[Rows, ...]
     extinct: tuple[int | None, ...]
+    window: int
 
 
 class Display(Protocol):

@@ -1,6 +1,7 @@
 """Shows how a run goes: a live table on a terminal, plain lines elsewhere."""
 
 import time
+from collections import deque
 from typing import IO, Any
 
 from rich.console import Console, Group
@@ -27,21 +28,30 @@ def duration(seconds: float) -> str:
 
 
 class _Speed:
-    """Steps per second over the last seconds, for a forecast that follows the population."""
+    """Steps per second over the last seconds, and at least over a window, since learning at its end takes most time."""
 
     SPAN = 10.0  # seconds
 
     def __init__(self) -> None:
-        self._seen: list[tuple[float, int]] = []
+        self._seen: deque[tuple[float, int]] = deque()
 
-    def update(self, moment: Moment) -> float:
+    def update(self, moment: Moment) -> float | None:
+        """The speed, or None before the first window of the session has ended."""
         if not self._seen:
             self._seen.append((0.0, moment.first))
         self._seen.append((moment.seconds, moment.step))
-        while len(self._seen) > 2 and self._seen[1][0] < moment.seconds - self.SPAN:
-            self._seen.pop(0)
+        while self._seen[1][0] < moment.seconds - self.SPAN and self._seen[1][1] <= moment.step - moment.window:
+            self._seen.popleft()
         (begun, first), (now, last) = self._seen[0], self._seen[-1]
-        return (last - first) / max(now - begun, 1e-9)
+        return (last - first) / max(now - begun, 1e-9) if last - first >= moment.window else None
+
+
+def _head(moment: Moment, speed: float | None, gap: str) -> str:
+    """Where the run is, how fast it goes and how long it will take."""
+    place = f"step {moment.step:,} of {moment.steps:,}"
+    if speed is None:
+        return f"{place}{gap}the speed is known after a window of {moment.window:,} steps"
+    return gap.join([place, f"{speed:,.0f} steps/s", f"{duration((moment.steps - moment.step) / speed)} left"])
 
 
 class LineDisplay:
@@ -66,8 +76,7 @@ class LineDisplay:
         if moment.seconds < self._due and moment.step < moment.steps:
             return
         self._due = moment.seconds + LINE_SECONDS
-        left = duration((moment.steps - moment.step) / speed) if speed > 0 else "?"
-        head = f"step {moment.step:,} of {moment.steps:,}  {speed:,.0f} steps/s  {left} left"
+        head = _head(moment, speed, "  ")
         for seed, row, extinct in zip(self._seeds, moment.rows, moment.extinct, strict=True):
             print(
                 f"{head}  seed {seed}: {_describe(row, extinct, self._weights)}",
@@ -111,9 +120,8 @@ class LiveDisplay:
         self._due = now + 0.2
         self._live.update(self._draw(moment, speed), refresh=True)
 
-    def _draw(self, moment: Moment, speed: float) -> Group:
-        left = duration((moment.steps - moment.step) / speed) if speed > 0 else "?"
-        head = Text(f"step {moment.step:,} of {moment.steps:,}   {speed:,.0f} steps/s   {left} left")
+    def _draw(self, moment: Moment, speed: float | None) -> Group:
+        head = Text(_head(moment, speed, "   "))
         bar = ProgressBar(total=moment.steps, completed=moment.step, width=72)
         table = Table(box=None, pad_edge=False, header_style="bold")
         for name in ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten"):

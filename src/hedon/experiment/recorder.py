@@ -134,4 +134,5 @@ class Recorder:
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows after `step` of `steps` steps, `seconds` into the session."""
         extinct = tuple(world.extinct_step for world in self.simulation.worlds)
-        return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct)
+        window = self.simulation.config.learning.rollout_steps
+        return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct, window)

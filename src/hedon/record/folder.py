@@ -112,6 +112,11 @@ def fault_paths(folder: Path) -> list[Path]:
     return sorted((folder / FAULT).glob("step-??????????.npz"))
 
 
+def misplaced_checkpoints(folder: Path) -> list[Path]:
+    """Folders where a checkpoint would stand: hedon makes none, and leaves them alone."""
+    return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_dir())
+
+
 def checkpoint_paths(folder: Path) -> list[Path]:
     """The checkpoints of a run, by step."""
     return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_file())

@@ -1,14 +1,25 @@
 """What a run was made with: enough to repeat it, to judge it and to read its tables."""
 
 import json
+import re
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import MANIFEST
 from hedon.record.schema import FORMAT_VERSION
+from hedon.text import LINE, brief
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+MAX_COLUMNS = 1000
+"""Food kinds and neutral markers that a manifest may name; each is a column of the tables."""
+MAX_NUMBER = 2**63 - 1
 
 STATUSES = ("running", "finished", "interrupted", "failed")
 
@@ -75,7 +86,7 @@ class Manifest:
         extinct_steps: per world the step at which nobody was left, or None.
         run_seconds: time spent in stepping, for steps per second; None where it was not measured [s]. What was
             taken back when the run was resumed does not count.
-        food_colors: color per food kind for figures, as Matplotlib reads it; empty for the default colors.
+        food_colors: color per food kind for figures, "#rrggbb"; empty for the default colors.
         frames: steps between two frames; 0 where none were asked for [step].
         sessions: one for each time that the run was started or resumed.
         parent: of a branch, the run that it branched off from; its folder, config_digest and step.
@@ -123,8 +134,29 @@ class Manifest:
             value = getattr(self, field.name)
             if isinstance(value, list):
                 object.__setattr__(self, field.name, tuple(value))
+        for problem in self._problems():
+            raise RecordError(f"manifest: {problem}")
+
+    def _problems(self) -> Iterator[str]:
+        """What no run can have been, and what tables and figures could not be made with."""
         if self.status not in STATUSES:
-            raise RecordError(f"manifest: status {self.status!r} is not one of {', '.join(STATUSES)}")
+            yield f"status {brief(repr(self.status))} is not one of {', '.join(STATUSES)}"
+        for kind in self.food_kinds:
+            if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind):
+                yield f"food_kinds: {brief(repr(kind))} is no name of a food kind"
+        for color in self.food_colors:
+            if not re.fullmatch(r"#[0-9a-fA-F]{6}", color):
+                yield f'food_colors: {brief(repr(color))} is no color "#rrggbb"'
+        for name, low, high, value in (
+            ("neutral_count", 0, MAX_COLUMNS, self.neutral_count),
+            ("food_kinds", 0, MAX_COLUMNS, len(self.food_kinds)),
+            ("steps_asked", 0, MAX_NUMBER, self.steps_asked),
+            ("frames", 0, MAX_NUMBER, self.frames),
+            *(("seeds", 0, MAX_NUMBER, seed) for seed in self.seeds),
+            *(("steps_done", 0, MAX_NUMBER, steps) for steps in self.steps_done),
+        ):
+            if not low <= value <= high:
+                yield f"{name} = {brief(str(value))}: must be from {low} to {high}"
 
 
 def save_manifest(folder: Path, manifest: Manifest) -> None:
@@ -148,17 +180,21 @@ def load_manifest(folder: Path) -> Manifest:
     """
     path = folder / MANIFEST
     try:
-        values: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        version = values["format_version"]
-        if version > FORMAT_VERSION:
-            raise RecordError(
-                f"{path}: format {version} is newer than this hedon reads ({FORMAT_VERSION}): update hedon"
-            )
-        known = {field.name for field in fields(Manifest)}
-        values["sessions"] = tuple(Session(**session) for session in values.get("sessions", ()))
-        values["parent"] = Parent(**values["parent"]) if values.get("parent") else None
-        return Manifest(**{name: value for name, value in values.items() if name in known})
+        content = path.read_bytes()
+        version = json.loads(content)["format_version"]
+        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(content, strict=True)
     except OSError as error:
         raise RecordError(f"cannot read the manifest {path}: {error}") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise RecordError(f"damaged manifest {path}: {error!r}") from error
+    except (ValueError, KeyError, TypeError, RecursionError, RecordError) as error:
+        text = f"{error!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
+        raise RecordError(f"damaged manifest {path}: {brief(text, 2 * LINE)}") from error
+    if manifest is None:
+        raise RecordError(f"{path}: format {version} is newer than this hedon reads ({FORMAT_VERSION}): update hedon")
+    return manifest
+
+
+@cache
+def _manifests() -> "TypeAdapter[Manifest]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Manifest)

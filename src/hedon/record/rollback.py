@@ -14,6 +14,7 @@ from hedon.record.folder import (
     checkpoint_path,
     checkpoint_paths,
     fault_paths,
+    misplaced_checkpoints,
     part_path,
     part_paths,
 )
@@ -35,7 +36,7 @@ def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint |
             kept = ", ".join(str(int(path.stem.removeprefix("step-"))) for path in paths)
             raise RecordError(f"{folder} keeps no checkpoint of step {step}; it keeps those of steps {kept or 'none'}")
         return load_checkpoint(path), []
-    faults: list[str] = []
+    faults = [f"{path} is a folder, where a checkpoint would stand" for path in misplaced_checkpoints(folder)]
     for path in reversed(paths):
         try:
             return load_checkpoint(path), faults
@@ -84,7 +85,7 @@ def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> No
         last = part_path(folder, table, len(parts.get(table, ())))
         later += [path for path in part_paths(folder, table) if path >= last]
     for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS, FAULT))):
-        later += place.glob(".*.tmp")
+        later += place.glob(".*.tmp")  # where the file system has no files without a name
     try:
         for path in reversed(later):
             path.unlink(missing_ok=True)

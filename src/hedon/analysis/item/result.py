@@ -20,6 +20,7 @@ from hedon.analysis.world import WorldRecord, by_condition
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES
+from hedon.record.lock import one_writer
 
 TABLES = "tables"
 """Folder of the tables within that of a reproduction."""
@@ -36,23 +37,29 @@ def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[Made]]:
         RecordError: the folder cannot be written.
     """
     try:
-        for name in (FIGURES, TABLES):
-            (folder / name).mkdir(parents=True, exist_ok=True)
-        made = [_make(item, gathered, folder) for item in gathered.request.items]
-        conditions = by_condition(gathered.demanded())
-        overall = [found for found in (*verdict(conditions), *regime(conditions)) if not found.rows.is_empty()]
-        everything = [*overall, *(found for one in made for found in one.tables)]
-        for found in everything:
-            buffer = io.BytesIO()
-            found.rows.write_csv(buffer)
-            _write(folder / TABLES / f"{found.name}.csv", buffer.getvalue())
-        content = json.dumps(_json(gathered, made, everything), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-        _write(folder / JSON, content.encode())
-        _write(folder / MARKDOWN, markdown_page(gathered, made, overall).encode())
-        _write(folder / HTML, html_page(gathered, made, overall).encode())
+        with one_writer(folder):
+            made = _write_items(gathered, folder)
     except OSError as error:
         raise RecordError(f"cannot write the reproduction into {folder}: {error}") from error
     return folder / HTML, made
+
+
+def _write_items(gathered: Gathered, folder: Path) -> list[Made]:
+    for name in (FIGURES, TABLES):
+        (folder / name).mkdir(exist_ok=True)
+    made = [_make(item, gathered, folder) for item in gathered.request.items]
+    conditions = by_condition(gathered.demanded())
+    overall = [found for found in (*verdict(conditions), *regime(conditions)) if not found.rows.is_empty()]
+    everything = [*overall, *(found for one in made for found in one.tables)]
+    for found in everything:
+        buffer = io.BytesIO()
+        found.rows.write_csv(buffer)
+        _write(folder / TABLES / f"{found.name}.csv", buffer.getvalue())
+    content = json.dumps(_json(gathered, made, everything), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    _write(folder / JSON, content.encode())
+    _write(folder / MARKDOWN, markdown_page(gathered, made, overall).encode())
+    _write(folder / HTML, html_page(gathered, made, overall).encode())
+    return made
 
 
 def _write(path: Path, content: bytes) -> None:

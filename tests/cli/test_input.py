@@ -1,0 +1,73 @@
+"""What nobody would type, and programs do: one line and exit code 2, quickly."""
+
+import os
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+FILES = {
+    "digits": ('preset = "small"\n[energy]\ninitial = ' + "9" * 5000, "more digits than"),
+    "tables": ("[" + ".".join(["a"] * 500) + "]\nx = 1", "nested deeper than"),
+    "lists": ("x = " + "[" * 200 + "]" * 200, "nested deeper than"),
+    "more lists": ("x = " + "[" * 20_000 + "]" * 20_000, "nested deeper than"),
+    "sections": ("".join(f"[s{i}]\nx = 1\n" for i in range(20_000)), "more than 5,000 names"),
+    "unknown": ("".join(f"[initial{i}]\n" for i in range(4000)), "and 3,980 more"),
+    "kinds": ("".join(f"[food.normol{i}]\nx = 1\n" for i in range(2000)), "and 1,980 more"),
+    "size": ("x" * 50_000_000 + " = 1", "larger than a config can be"),
+    "a long name": ('name = "' + "x" * 900_000 + '"', "(900,002 characters)"),
+    "bidirectional": ('"a\u202eb" = 1', r"a\u202eb: unknown name"),
+    "escape": ('"a\\u001b[31mb" = 1', r"a\x1b[31mb: unknown name"),
+    "null": ("x = \0", "is not valid TOML"),
+}
+
+
+def call(*arguments: str, **options) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["hedon", *arguments], capture_output=True, text=True, check=False, timeout=60, **options)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_that_is_no_config_is_one_message_at_once(tmp_path: Path, name: str) -> None:
+    text, words = FILES[name]
+    path = tmp_path / "my.toml"
+    path.write_text(text, encoding="utf-8")
+    begun = time.monotonic()
+    answer = call("config", "check", str(path))
+    assert answer.returncode == 2
+    assert words in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert len(answer.stderr) < 6000
+    assert time.monotonic() - begun < 20, "a second on a quiet machine"
+
+
+def test_a_byte_order_mark_and_carriage_returns_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "my.toml"
+    path.write_bytes(b'\xef\xbb\xbfpreset = "small"\r\n[energy]\r\ninitial = 20.0\r\n')
+    assert call("config", "check", str(path)).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("seeds", "words"),
+    [("9" * 5000, "a seed of 5,000 digits"), ("-3", "-3 is negative"), ("1-" + "9" * 5000, "5,000 digits")],
+)
+def test_seeds_that_are_none(seeds: str, words: str) -> None:
+    answer = call("run", "small", f"--seeds={seeds}")
+    assert answer.returncode == 2
+    assert words in answer.stderr
+    assert len(answer.stderr.splitlines()) == 1
+
+
+def test_an_output_of_ascii_alone_is_served() -> None:
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    answer = call("demography", "baseline", env=environment)
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert call("config", "show", "baseline", env=environment).returncode == 0
+
+
+def test_a_limit_on_addresses_is_named_before_libraries_abort() -> None:
+    script = "ulimit -v 800000; exec hedon run baseline --steps 64"
+    answer = subprocess.run(["sh", "-c", script], capture_output=True, text=True, check=False, timeout=60)
+    assert answer.returncode == 2
+    assert answer.stderr.startswith("hedon: `ulimit -v` allows this process 0.8 GB of addresses")
+    assert len(answer.stderr.splitlines()) == 1

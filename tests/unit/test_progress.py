@@ -1,0 +1,40 @@
+"""What a person sees while a run goes on."""
+
+import io
+
+from hedon.experiment.plan import Moment
+from hedon.experiment.progress import LineDisplay
+
+WINDOW = 1000
+ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean": 0.0, "w_action_mean": 0.0}
+
+
+def shown(moments: list[tuple[float, int]]) -> list[str]:
+    """The lines for moments (seconds, step) of a run of 100 windows."""
+    stream = io.StringIO()
+    display = LineDisplay(stream, ("normal",), 0, (1,))
+    for seconds, step in moments:
+        display.update(Moment(0, step, 100 * WINDOW, seconds, (ROW,), (None,), WINDOW))
+    return stream.getvalue().splitlines()
+
+
+def test_the_speed_is_over_a_whole_window_however_long_its_learning_takes():
+    """A window is stepped through in 5 s, and its learning takes 60 s, in which no step is made."""
+    moments = []
+    for window in range(4):
+        begun = window * 65.0
+        moments += [(begun + 5.0 * i / 10, window * WINDOW + i * 100) for i in range(1, 10)]
+        moments.append((begun + 65.0, (window + 1) * WINDOW))
+    lines = shown(moments)
+    assert "the speed is known after a window of 1,000 steps" in lines[0]
+    later = [line for line in lines if "steps/s" in line]
+    assert later
+    speeds = [float(line.split(" steps/s")[0].split()[-1]) for line in later]
+    assert all(10 <= speed <= 30 for speed in speeds), "1000 steps in 65 s are 15 steps/s"
+    assert not any("0 steps/s" in line.split()[4] for line in later)
+
+
+def test_the_speed_follows_the_last_seconds_where_windows_are_short():
+    moments = [(float(i), i * WINDOW) for i in range(1, 30)] + [(29 + i / 10, (29 + i) * WINDOW) for i in range(1, 72)]
+    speed = float(shown(moments)[-1].split(" steps/s")[0].split()[-1].replace(",", ""))
+    assert speed > 3000
