@@ -3,7 +3,7 @@ PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 
-.PHONY: run test sync stubs clean
+.PHONY: run test test-long sync stubs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
@@ -18,6 +18,13 @@ test: sync
 	$(RUN) pytest --numprocesses auto --dist loadfile
 	$(RUN) python tests/sanitize.py asan
 	$(RUN) --group cuda python tests/cuda.py
+
+# The same questions asked hundreds of times, and those that take minutes: before a release.
+test-long: sync
+	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) pytest --numprocesses auto --dist loadfile \
+	  -m "long or not long" tests/property tests/contract
+	$(RUN) python tests/soak.py
+	$(RUN) python tests/sanitize.py tsan
 
 sync: tools $(UV)
 	$(UV) sync --quiet

@@ -16,7 +16,10 @@ import numpy as np
 import pytest
 from worlds import QUICK, make_engine, make_simulation, set_scene
 
+from hedon import _engine
+from hedon.config.load import load_config
 from hedon.error import EngineError
+from hedon.experiment.native import engine_input
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 STEPS = 150  # two windows of 64 and a rest
@@ -109,6 +112,20 @@ def test_denormals_change_no_bit():
         size = np.abs(kept.view(0, name))
         assert size[size > 0].min() > 1e-30
     assert flushed.digest(0) == kept.digest(0)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("preset", ["baseline", "small", "poison"])
+@pytest.mark.parametrize("kernel", _engine.kernel.kernel_names())
+def test_denormals_change_no_bit_over_twenty_windows(preset, kernel):
+    """As long as it takes for moments to fade at the settings of the paper; AVX2 and AVX-512 agree there, too."""
+    given = engine_input(load_config(preset))
+    digests = set()
+    for flush, name in [(True, kernel), (False, kernel), (True, "avx2" if kernel == "avx512" else kernel)]:
+        engine = _engine.Simulation(given.settings, given.walls, given.outer_walls, [1], 2, name, [], flush)
+        engine.run(20 * 1024 + 100)
+        digests.add(engine.digest(0))
+    assert len(digests) == 1
 
 
 def in_child(report, work) -> None:

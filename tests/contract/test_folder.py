@@ -1,6 +1,6 @@
 """A run's folder under hands that mean no good, or do two things at once: links, two reports, kills, a folder lost.
 
-HEDON_KILLS=N kills N reports instead of the one of the suite.
+HEDON_REPORTS=N kills N reports instead of the one of the suite.
 """
 
 import json
@@ -23,7 +23,7 @@ from hedon.record.error import RecordError
 from hedon.record.folder import LOCK, checkpoint_paths
 from hedon.record.manifest import load_manifest
 
-KILLS = int(os.environ.get("HEDON_KILLS", "1"))
+KILLS = int(os.environ.get("HEDON_REPORTS", "1"))
 
 
 @pytest.fixture(scope="module")

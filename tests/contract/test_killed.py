@@ -8,12 +8,14 @@ import random
 import signal
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import killed_run
 import pytest
 from resumed_run import assert_same_run
 
+from hedon.record.atomic import write_atomically
 from hedon.record.folder import checkpoint_paths, holds_run
 from hedon.record.reader import open_run
 
@@ -34,12 +36,22 @@ def whole(tmp_path_factory):
     return folder
 
 
+def is_writing(pid: int, place: Path) -> bool:
+    """Whether a process has a file without a name, or with a passing one, open in a folder."""
+    links = []
+    with suppress(OSError):  # it ended
+        for name in os.listdir(f"/proc/{pid}/fd"):
+            with suppress(OSError):  # it closed this one meanwhile
+                links.append(os.readlink(f"/proc/{pid}/fd/{name}"))
+    return any(link.startswith(f"{place}/") and link.endswith((".tmp", "(deleted)")) for link in links)
+
+
 def hit(process, folder: Path, way: str, draw: random.Random) -> None:
     """Sends signals to a run at a random moment, or when it is writing."""
     time.sleep(draw.uniform(0.0, DELAY))
     if way.startswith("in "):
         place = folder / way.removeprefix("in ")
-        while process.is_alive() and not list(place.glob(".*.tmp")):
+        while process.is_alive() and not is_writing(process.pid, place):
             pass
     number = {"SIGTERM": signal.SIGTERM, "Ctrl-C": signal.SIGINT, "Ctrl-C twice": signal.SIGINT}.get(
         way, signal.SIGKILL
@@ -91,3 +103,11 @@ def test_runs_survive_being_killed_at_any_moment(tmp_path, whole, capsys):
         told = ", ".join(f"{way} {count}" for way, count in ways.items())
         print(f"\n{KILLS} kills ({told}), {exits[-signal.SIGKILL]} at once; {finished + 1} runs came to the same end")
     assert exits[-signal.SIGKILL] >= KILLS // 4, "most kills came too late"
+
+
+def test_a_file_that_is_being_written_is_seen(tmp_path):
+    """Else the kills "in" a folder above would come at any other moment."""
+    seen = []
+    write_atomically(tmp_path / "file", lambda file: seen.append(is_writing(os.getpid(), tmp_path)))
+    assert seen == [True]
+    assert not is_writing(os.getpid(), tmp_path)
