@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 FILES = {
-    "digits": ('preset = "small"\n[energy]\ninitial = ' + "9" * 5000, "more digits than"),
+    "digits": ('preset = "small"\n[energy]\ninitial = ' + "9" * 5000, "more than 1,000 digits"),
     "tables": ("[" + ".".join(["a"] * 500) + "]\nx = 1", "nested deeper than"),
     "lists": ("x = " + "[" * 200 + "]" * 200, "nested deeper than"),
     "more lists": ("x = " + "[" * 20_000 + "]" * 20_000, "nested deeper than"),
@@ -56,6 +56,17 @@ def test_seeds_that_are_none(seeds: str, words: str) -> None:
     assert answer.returncode == 2
     assert words in answer.stderr
     assert len(answer.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("value", ["[" * 50_000, "9" * 5000, "9" * 900, '"' + "x" * 100_000])
+def test_values_of_settings_that_are_none(value: str) -> None:
+    answer = call("config", "check", "small", "--set", f"energy.initial={value}")
+    assert answer.returncode == 2
+    assert "energy.initial = " in answer.stderr
+    assert len(answer.stderr) < 500
+    for override in (".".join(["a"] * 500) + "=1", "energy.initial=0x" + "f" * 5000):
+        answer = call("config", "check", "small", "--set", override)
+        assert (answer.returncode, "Traceback" in answer.stderr) == (2, False)
 
 
 def test_an_output_of_ascii_alone_is_served() -> None:

@@ -81,8 +81,9 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
 
     config, console = plan.config, make_console()
     worlds = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}"
+    place = printable(str(plan.out))
     console.print(
-        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {printable(str(plan.out))}",
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {place}",
         soft_wrap=True,
     )
     with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:

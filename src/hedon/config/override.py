@@ -28,7 +28,7 @@ def parse_override(text: str) -> Table | Problem:
         return Problem("--set", 'must be "section.name=value", as in energy.initial=20', repr(text))
     try:
         value = _value(value_text.strip())
-    except ValueError:
+    except (ValueError, RecursionError):
         return Problem(path.strip(), 'not a TOML value: texts of several words need quotes: "…"', value_text.strip())
     for name in reversed(names):
         value = {name: value}

@@ -69,6 +69,8 @@ def format_value(value: Any) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
     """The valid name closest to the given one, or None where none is close."""
+    if len(name) > LINE:  # no valid name is nearly as long, and comparing takes its time
+        return None
     matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
     return matches[0] if matches else None
 

@@ -14,8 +14,8 @@ MAX_VALUES = 5_000
 """Names and values in all the tables and lists of a config; the most walls and centers there can be make 1,500."""
 MAX_DEPTH = 8
 """Tables and lists within each other; settings need five."""
-MAX_INTEGER = 2**63
-"""TOML's integers have 64 bits."""
+MAX_DIGITS = 1000
+"""Of an integer. Python reads and writes some thousands; what has fewer is refused by its setting, which says more."""
 
 
 def read_toml(path: Path) -> Table:
@@ -54,13 +54,13 @@ def parse_toml(text: str, origin: str) -> Table:
     except RecursionError:
         raise ConfigError(origin, [_TOO_DEEP]) from None
     except ValueError:  # Python reads no integer of thousands of digits
-        raise ConfigError(origin, [Problem("", f"holds an integer that has more digits than {MAX_INTEGER}")]) from None
+        raise ConfigError(origin, [_TOO_LONG]) from None
     require_plain(tables, origin)
     return tables
 
 
 def require_plain(tables: Any, origin: str) -> None:
-    """Refuses tables that are deeper or larger than a config can be, and integers that TOML does not have.
+    """Refuses tables that are deeper or larger than a config can be, and integers of too many digits.
 
     Raises:
         ConfigError: They are.
@@ -70,6 +70,7 @@ def require_plain(tables: Any, origin: str) -> None:
         raise ConfigError(origin, problems)
 
 
+_TOO_LONG = Problem("", f"holds an integer of more than {MAX_DIGITS:,} digits")
 _TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} levels")
 
 
@@ -81,8 +82,8 @@ def _oversize(tables: Any) -> Iterator[Problem]:
         if count > MAX_VALUES:
             yield Problem("", f"holds more than {MAX_VALUES:,} names and values, which no config has")
             return
-        if any(isinstance(value, int) and abs(value) >= MAX_INTEGER for value in values):
-            yield Problem("", f"holds an integer beyond ± {MAX_INTEGER}")
+        if any(isinstance(value, int) and abs(value) >= 10**MAX_DIGITS for value in values):
+            yield _TOO_LONG
             return
         level = [value for value in values if isinstance(value, dict | list | tuple)]
         if not level:

@@ -1,6 +1,8 @@
 """Arguments from Python and from the command line, checked where all pass: numbers, seeds, folders."""
 
 from collections.abc import Iterable
+from contextlib import suppress
+from itertools import islice
 from operator import index
 from pathlib import Path
 from typing import Any
@@ -22,9 +24,10 @@ def integer(name: str, value: Any, low: int, high: int) -> int:
     Raises:
         ArgumentError: It is none.
     """
-    if not hasattr(value, "__index__") or isinstance(value, bool) or not low <= index(value) <= high:
-        raise ArgumentError(f"{name} = {_text(value)}: must be a whole number from {low:,} to {high:,}")
-    return index(value)
+    with suppress(TypeError):
+        if not isinstance(value, bool) and low <= index(value) <= high:
+            return index(value)
+    raise ArgumentError(f"{name} = {_text(value)}: must be a whole number from {low:,} to {high:,}")
 
 
 def number(name: str, value: Any, low: float, high: float) -> float:
@@ -33,9 +36,10 @@ def number(name: str, value: Any, low: float, high: float) -> float:
     Raises:
         ArgumentError: It is none.
     """
-    if not hasattr(value, "__float__") or isinstance(value, bool) or not low <= float(value) <= high:
-        raise ArgumentError(f"{name} = {_text(value)}: must be a number from {low:g} to {high:g}")
-    return float(value)
+    with suppress(TypeError, ValueError, OverflowError):
+        if not isinstance(value, str | bool) and low <= float(value) <= high:
+            return float(value)
+    raise ArgumentError(f"{name} = {_text(value)}: must be a number from {low:g} to {high:g}")
 
 
 def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
@@ -46,9 +50,10 @@ def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
     """
     if isinstance(values, str | bytes) or not isinstance(values, Iterable):
         raise ArgumentError(f"seeds = {_text(values)}: must be a list of whole numbers, one per world, such as [1, 2]")
-    seeds = tuple(integer("seeds", value, 0, largest) for value in values)
+    seeds = tuple(integer("seeds", value, 0, largest) for value in islice(values, MAX_WORLDS + 1))
     if not 1 <= len(seeds) <= MAX_WORLDS:
-        raise ArgumentError(f"seeds: there must be from 1 to {MAX_WORLDS:,}, one per world, not {len(seeds):,}")
+        number_of = f"more than {MAX_WORLDS:,}" if seeds else "none"
+        raise ArgumentError(f"seeds: there must be from 1 to {MAX_WORLDS:,}, one per world, not {number_of}")
     return seeds
 
 
