@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from hedon.analysis.extinction import extinct_share
+
+
+def test_a_world_that_ends_early_is_censored() -> None:
+    """By hand: one of four dies, one is censored, then one of two dies: 1 − 3/4 · 1/2."""
+    found = extinct_share(np.array([1.0, 2.0, 3.0, 9.0]), np.array([True, False, True, False]), 8.0)
+    assert found.share == pytest.approx(1 - 0.75 * 0.5)
+    assert (found.worlds, found.extinct, found.followed, found.known_until) == (4, 2, 1, 8.0)
+    later = extinct_share(np.array([1.0, 2.0, 30.0, 9.0]), np.array([True, False, True, False]), 8.0)
+    assert (later.share, later.extinct, later.followed) == (0.25, 1, 2)  # who dies out later lived at the step
+
+
+def test_where_nobody_was_followed_nothing_limits_the_share_from_above() -> None:
+    """14 worlds die out early and 26 live at half of the time: the share is at least some 35 %, and may be all."""
+    found = extinct_share(np.repeat([100.0, 500.0], [14, 26]), np.repeat([True, False], [14, 26]), 1000.0)
+    assert (found.share, found.high, found.known_until) == (pytest.approx(0.35), 1.0, 500.0)
+    assert 0.2 < found.low < 0.25
+    assert extinct_share(np.array([]), np.array([], bool), 1.0).worlds == 0
+
+
+@pytest.mark.parametrize("extinct", [0, 3, 10])
+def test_without_censoring_it_is_the_mid_p_interval_of_a_share(extinct: int) -> None:
+    died = np.arange(10) < extinct
+    found = extinct_share(np.where(died, np.arange(1.0, 11.0), 100.0), died, 100.0)
+    assert found.share == pytest.approx(extinct / 10)
+
+    def above(share: float) -> float:  # chance of so many or more, those equal counted by half
+        return float(stats.binom.sf(extinct, 10, share) + 0.5 * stats.binom.pmf(extinct, 10, share))
+
+    if extinct:
+        assert above(found.low) == pytest.approx(0.025, abs=1e-6)
+    if extinct < 10:
+        assert above(found.high) == pytest.approx(0.975, abs=1e-6)
+    assert (found.low == 0, found.high == 1) == (extinct == 0, extinct == 10)
+
+
+@pytest.mark.parametrize(("share", "cut"), [(0.1, 0.5), (0.5, 0.0), (0.5, 0.5), (0.9, 0.5)])
+def test_the_interval_covers_with_few_worlds_and_many_censored(share: float, cut: float) -> None:
+    """Ten worlds with exponential times to extinction, a part of them cut at a random time before the step."""
+    rng, trials = np.random.default_rng(1), 200
+    hits = 0
+    for _ in range(trials):
+        gone = rng.exponential(-1.0 / np.log(1.0 - share), 10)
+        end = np.where(rng.random(10) < cut, rng.random(10), 2.0)
+        found = extinct_share(np.minimum(gone, end), gone <= end, 1.0)
+        hits += found.low <= share <= found.high
+    assert hits / trials > 0.95 - 3 * np.sqrt(0.05 * 0.95 / trials)
