@@ -4,14 +4,15 @@ Two controls. The *walk*: in each world, the mean weight of the agents born last
 mutate along the same pedigree (`walk`). Its rank among them becomes a standard normal *score*; over worlds,
 scores that lean to one side say that the weight was pushed in a *direction* (Stouffer), scores that are large,
 whatever their sign, that it was carried a *distance* (chi-squared): a weight with two modes shows in the second
-alone. The *marker*: whether a weight strays further from its start than the recorded neutral markers of the same
-worlds do.
+alone. Scores that are all too small say that it was *held* (the lower tail). The *marker*: whether a weight strays
+further from its start than the recorded neutral markers of the same worlds do.
 """
 
 import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,8 @@ from scipy import stats
 
 from hedon.analysis.correction import holm
 from hedon.analysis.genealogy import genealogy
-from hedon.analysis.interval import mean_interval
+from hedon.analysis.interval import LEVEL, distance_interval, mean_interval
+from hedon.analysis.topic.result import generator
 from hedon.analysis.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.weight import LAST_AGENTS
 from hedon.analysis.world import WorldRecord
@@ -52,22 +54,28 @@ class WorldDrift:
     p: float
 
 
+_KNOWN: WeakKeyDictionary[WorldRecord, list[WorldDrift]] = WeakKeyDictionary()
+
+
 @dataclass(frozen=True)
 class DriftTest:
     """One weight of one condition against one control.
 
     Attributes:
         weight: genome column.
-        test: "direction" or "distance" (against walks), or "marker".
+        test: "direction", "distance" or "held" (against walks), or "marker".
         worlds: that enter it.
-        effect: for "direction" the mean score, in standard deviations of drift; for "distance" the root mean
-            square score, 1 under drift; for "marker" the mean of |displacement of the weight| − |displacement
-            of the markers|, in units of the weight.
-        low, high: bounds of the effect's 95 % interval: Student's t over worlds; for "distance" from the
-            chi-squared law of normal scores; NaN with fewer than two worlds.
-        p: two-sided; for "marker" from all sign flips of the differences.
-        p_holm: corrected for all reward weights and both tests against walks, or for all reward weights
+        effect: for "direction" the mean score, in standard deviations of drift; for "distance" and "held" the
+            root mean square score, 1 under drift; for "marker" the mean of |displacement of the weight| −
+            |displacement of the markers|, in units of the weight.
+        low, high: bounds of the effect's 95 % interval: Student's t over worlds; for "distance" and "held" from
+            the chi-squared law of normal scores; NaN with fewer than two worlds.
+        p: two-sided for "direction"; the chance of a larger effect for "distance", of a smaller one for "held";
+            for "marker" from all sign flips of the differences.
+        p_holm: corrected for all reward weights and all tests against walks, or for all reward weights
             against the marker; NaN for neutral markers, which are shown as a check of the method.
+        drift_low, drift_high: for "direction", bounds of the effect's 95 % interval by the spread that scores have
+            under drift, 1, as p takes it, and not by that between these worlds; NaN for other tests.
     """
 
     weight: str
@@ -78,6 +86,8 @@ class DriftTest:
     high: float
     p: float
     p_holm: float = NAN
+    drift_low: float = NAN
+    drift_high: float = NAN
 
 
 def start_of(world: WorldRecord, weight: str) -> float:
@@ -109,6 +119,13 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
         p = float(2.0 * stats.norm.sf(abs(score)))
         results.append(WorldDrift(name, start, mean, float(low), float(median), float(high), score, p))
     return results
+
+
+def standard_drift(world: WorldRecord) -> list[WorldDrift]:
+    """`world_drift` with the world's own source of chance; made once for each world, since walks take long."""
+    if world not in _KNOWN:
+        _KNOWN[world] = world_drift(world, generator(world))
+    return _KNOWN[world]
 
 
 def rank_score(value: float, null: NDArray[np.float64]) -> float:
@@ -155,13 +172,18 @@ def _against_walks(name: str, worlds: Sequence[dict[str, WorldDrift]]) -> list[D
     scores = np.array([world[name].score for world in worlds])
     n = len(scores)
     if n == 0:
-        return [DriftTest(name, test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance")]
+        return [DriftTest(name, test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance", "held")]
     p = float(2.0 * stats.norm.sf(abs(scores.sum()) / np.sqrt(n)))
+    half = float(stats.norm.ppf(0.5 + LEVEL / 2)) / math.sqrt(n)
+    effect, t_low, t_high = _mean_and_bounds(scores)
+    by_drift = {"drift_low": effect - half, "drift_high": effect + half}
     square = float(np.sum(scores**2))
-    low, high = (math.sqrt(square / stats.chi2.ppf(q, n)) if n > 1 else NAN for q in (0.975, 0.025))
+    distance, low, high = distance_interval(scores)
+    wide = (low, high) if n > 1 else (NAN, NAN)
     return [
-        DriftTest(name, "direction", n, *_mean_and_bounds(scores), p),
-        DriftTest(name, "distance", n, math.sqrt(square / n), low, high, float(stats.chi2.sf(square, n))),
+        DriftTest(name, "direction", n, effect, t_low, t_high, p, **by_drift),
+        DriftTest(name, "distance", n, distance, *wide, float(stats.chi2.sf(square, n))),
+        DriftTest(name, "held", n, distance, *wide, float(stats.chi2.cdf(square, n))),
     ]
 
 

@@ -12,9 +12,9 @@ from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WorldRecord:
-    """All that the records say of one world.
+    """All that the records say of one world. Two records are equal only if they are the same object.
 
     Attributes:
         condition: the setting that the world repeats: worlds of equal config share it.

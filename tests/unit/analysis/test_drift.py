@@ -111,6 +111,33 @@ def test_two_modes_are_a_distance_without_a_direction() -> None:
     assert (marker.effect, marker.p) == (2.75, 2 / 16)
 
 
+def scores(values: np.ndarray) -> list[list[WorldDrift]]:
+    """One weight and no marker in as many worlds as there are values."""
+    return [[WorldDrift("w", 0.0, 0.0, -2, 0, 2, float(v), 1.0)] for v in values]
+
+
+@pytest.mark.parametrize(("scale", "least", "most"), [(1.0, 0.02, 0.08), (0.4, 0.95, 1.0)])
+def test_a_weight_that_is_held_is_found_in_the_lower_tail(scale: float, least: float, most: float) -> None:
+    """Ten worlds: 5 % under drift, and nearly always where scores stray 0.4 times as far."""
+    rng = np.random.default_rng(6)
+    p = []
+    for _ in range(500):
+        tests = {t.test: t for t in drift_tests(scores(scale * rng.normal(size=10)), ("w",), (), rng)}
+        p.append(tests["held"].p)
+        assert tests["held"].p == pytest.approx(1.0 - tests["distance"].p)
+    assert least <= np.mean(np.array(p) <= 0.05) <= most
+
+
+def test_the_interval_by_drifts_own_spread_agrees_with_its_p() -> None:
+    rng = np.random.default_rng(7)
+    for shift in (0.0, 0.5, 1.0):
+        direction, distance, held = drift_tests(scores(rng.normal(shift, 1, 8)), ("w",), (), rng)
+        assert direction.drift_high - direction.drift_low == pytest.approx(2 * 1.959964 / np.sqrt(8), rel=1e-5)
+        assert (direction.p < 0.05) == (not direction.drift_low < 0 < direction.drift_high)
+        assert direction.p_holm == pytest.approx(min(1.0, holm([direction.p, distance.p, held.p])[0]))
+        assert np.isnan([distance.drift_low, held.drift_high]).all()
+
+
 def test_without_worlds_there_is_no_test() -> None:
     tests = drift_tests([[]], ("w",), ("n",), np.random.default_rng(1))
     assert all(np.isnan(test.p) and test.worlds == 0 for test in tests)

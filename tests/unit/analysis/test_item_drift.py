@@ -58,6 +58,7 @@ def test_worlds_of_all_conditions_are_put_together(worlds: list[WorldRecord]) ->
         assert row["effect"] == pytest.approx(scores.mean())
         assert row["p"] == pytest.approx(2 * stats.norm.sf(abs(scores.sum()) / math.sqrt(5)))
         assert row["low"] < row["effect"] < row["high"]
+        assert row["drift_high"] - row["effect"] == pytest.approx(1.959964 / math.sqrt(5))
     distance = tables["drift_all"].rows.filter(pl.col("test") == "distance")
     squares = [np.mean(by_world.filter(pl.col("weight") == gene)["score"].to_numpy() ** 2) for gene in GENES]
     assert distance["effect"].to_list() == pytest.approx(np.sqrt(squares))

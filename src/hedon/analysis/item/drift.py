@@ -6,26 +6,29 @@ from typing import Any
 import numpy as np
 
 from hedon.analysis.condition_figure import NamedFigure
-from hedon.analysis.drift import WorldDrift, drift_tests, world_drift
+from hedon.analysis.drift import WorldDrift, drift_tests, standard_drift
 from hedon.analysis.figure_score import draw_scores
 from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.item.census import present, sentences
 from hedon.analysis.item.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.item.study import missing_note
-from hedon.analysis.topic.result import SEED, ResultTable, generator, table
+from hedon.analysis.topic.result import SEED, ResultTable, table
 
 ARMS = (*SIZES, *PLACES[1:], POOR, POISON)
 REWARDS = {"w_normal": "weight of food", "w_action": "weight of action"}
 """The weights that all conditions have."""
 MARKER = {"neutral_1": "neutral marker"}
 ALL = "all conditions"
+_BOUNDS = ("low", "high", "drift_low", "drift_high")
 
 _TESTS = (
     "A score is the standard normal score of a world's mean weight (5000 agents born last) among neutral genes that "
-    "mutate along the same pedigree. direction: the mean score, 0 under drift, with Stouffer's p; distance: the root "
-    "mean square score, 1 under drift, below 1 where a weight was held back, with the chi-squared p of a larger one. "
-    "Intervals are Student's t and chi-squared. p_holm is corrected for both weights and both tests."
+    "mutate along the same pedigree. direction: the mean score, 0 under drift, with Stouffer's p; distance and held: "
+    "the root mean square score, 1 under drift, below 1 where a weight was held back, with the chi-squared p of a "
+    "larger one (distance) or of a smaller one (held). Intervals are Student's t and chi-squared; drift_low and "
+    "drift_high are those of the mean score by the spread of drift itself, 1, as p takes it. p_holm is corrected for "
+    "both weights and all three tests."
 )
 _SHARED = (
     "Worlds of one seed share founders and the mutations of agents of equal number in all conditions, so that they are "
@@ -43,10 +46,7 @@ Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
 def make_drift(material: Material) -> Iterator[NamedFigure | ResultTable]:
     """The figure and the tables of the study."""
     worlds = present(ARMS, material)
-    scores = {
-        label: {w.seed: found for w in group if (found := world_drift(w, generator(w)))}
-        for label, group in worlds.items()
-    }
+    scores = {label: {w.seed: found for w in group if (found := standard_drift(w))} for label, group in worlds.items()}
     note = missing_note(material, ARMS, PAPER_SCALE)
     groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
     groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}
@@ -70,8 +70,8 @@ def _test_rows(label: str, worlds: Sequence[Sequence[WorldDrift]]) -> Iterator[d
             continue
         positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
         row = {"arm": label, "weight": test.weight, "test": test.test, "worlds": test.worlds, "positive": positive}
-        row |= {name: getattr(test, name) for name in ("effect", "low", "high", "p", "p_holm")}
-        yield row if test.worlds >= SHOWN_FROM else row | {"low": None, "high": None}
+        row |= {name: getattr(test, name) for name in ("effect", *_BOUNDS, "p", "p_holm")}
+        yield row if test.worlds >= SHOWN_FROM else row | dict.fromkeys(_BOUNDS)
 
 
 def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:

@@ -7,7 +7,7 @@ import polars as pl
 
 from hedon.analysis.claim import last_mean
 from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
-from hedon.analysis.drift import drift_tests, world_drift
+from hedon.analysis.drift import drift_tests, standard_drift
 from hedon.analysis.genealogy import genealogy
 from hedon.analysis.mode import modes
 from hedon.analysis.price import price
@@ -111,7 +111,7 @@ def drift(conditions: Conditions) -> list[ResultTable]:
     """Each weight against drift."""
     world_rows, rows = [], []
     for condition, worlds in conditions.items():
-        found = [world_drift(world, generator(world)) for world in worlds]
+        found = [standard_drift(world) for world in worlds]
         for world, results in zip(worlds, found, strict=True):
             world_rows += [labels(world) | asdict(result) for result in results]
         names = worlds[0].reward_names, worlds[0].neutral_names
@@ -119,9 +119,10 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         rows += [{"condition": condition} | asdict(test) for test in tests]
     note = (
         "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
-        "drift. distance: root mean square score, 1 under drift. marker: how much further than the neutral markers the "
-        "weight moved. p_holm is corrected for all reward weights and tests of one control; neutral markers are there "
-        "as a check."
+        "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
+        "held: root mean square score, 1 under drift, with the chance of a larger one (distance) or of a smaller one "
+        "(held). marker: how much further than the neutral markers the weight moved. p_holm is corrected for all "
+        "reward weights and tests of one control; neutral markers are there as a check."
     )
     return [
         table("drift", "Weights of the agents born last against drift", rows, note),
