@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
+from hedon.analysis.contrast import fisher_mid_p
 from hedon.analysis.item.extinction import ARMS, EXTINCTIONS
 from hedon.analysis.item.item import Material
 from hedon.analysis.paper import EXTINCTION, EXTINCTION_STEP
 from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.verdict import share_interval
+from hedon.analysis.verdict import world_extinction
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
@@ -57,8 +58,11 @@ def test_the_arm_of_the_baseline_shares_its_runs(fidelity: str) -> None:
 def test_the_share_of_extinct_worlds_with_its_interval(ten: list[WorldRecord]) -> None:
     found, by_world = make({OWN: ten[1:], DEAR: died(ten, 1024, 5120, 3072)})
     dear, own = found.rows.rows(named=True)  # in the paper's order
-    assert (dear["costs"], dear["extinct"], dear["worlds"], dear["share"]) == (DEAR, 3, 10, 0.3)
-    assert (dear["low"], dear["high"]) == pytest.approx(share_interval(3, 10))
+    assert (dear["costs"], dear["extinct"], dear["worlds"], round(dear["share"], 9)) == (DEAR, 3, 10, 0.3)
+    share = world_extinction(died(ten, 1024, 5120, 3072), 50 * 1024)
+    assert (dear["low"], dear["high"]) == (share.low, share.high)
+    assert 0.07 < share.low < 0.1 < 0.6 < share.high < 0.65  # three of ten
+    assert dear["p_paper"] is None  # not known to the paper's step
     assert (dear["paper"], own["paper"]) == (0.9, 0.0)
     assert (own["extinct"], own["share"], own["by_step"]) == (0, 0.0, 50 * 1024)
     assert (dear["median_step"], own["median_step"]) == (None, None)
@@ -81,7 +85,7 @@ def test_the_median_step_counts_survivors(ten: list[WorldRecord]) -> None:
     steps = (1024, 2048, 3072, 4096, 5120)
     half = make({DEAR: died(ten, *steps)})[0].rows.row(0, named=True)
     assert half["median_step"] == 5120  # half of all ten worlds, not of the five that died
-    assert half["share"] == 0.5
+    assert half["share"] == pytest.approx(0.5)
 
 
 def test_who_dies_out_after_the_papers_step_lives(ten: list[WorldRecord]) -> None:
@@ -91,10 +95,20 @@ def test_who_dies_out_after_the_papers_step_lives(ten: list[WorldRecord]) -> Non
     assert row["alive"] is not None
 
 
-def test_worlds_of_unequal_length_are_compared_where_all_are_known(ten: list[WorldRecord]) -> None:
+def test_worlds_of_unequal_length_are_censored_where_they_end(ten: list[WorldRecord]) -> None:
     worlds = [ten[1].until(10_240), *died(ten[2:], 20_480)]
     row = make({OWN: worlds})[0].rows.row(0, named=True)
-    assert (row["extinct"], row["worlds"], row["by_step"]) == (0, 9, 10_240)
+    assert (row["extinct"], row["worlds"], row["by_step"]) == (1, 9, 50 * 1024)
+    assert row["share"] == pytest.approx(1 / 8)  # one of the eight at risk then
+
+
+def test_the_papers_shares_are_compared_as_counts_of_ten(ten: list[WorldRecord]) -> None:
+    late = [dataclasses.replace(w, last_step=2 * EXTINCTION_STEP, extinct_step=None) for w in ten]
+    rows = make({OWN: late, DEAR: late})[0].rows
+    assert dict(zip(rows["costs"], rows["p_paper"], strict=True)) == {
+        DEAR: pytest.approx(fisher_mid_p(0, 10, 9, 10)),
+        OWN: 0.5,  # none of ten in both: the one table that there is, by half
+    }
 
 
 def test_where_all_died_out_the_share_is_known_by_the_papers_step(ten: list[WorldRecord]) -> None:

@@ -5,20 +5,23 @@ from typing import Any
 
 import numpy as np
 
+from hedon.analysis.contrast import fisher_mid_p
 from hedon.analysis.interval import mean_interval
 from hedon.analysis.item.census import missing, present, sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
-from hedon.analysis.paper import EXTINCTION, EXTINCTION_STEP
+from hedon.analysis.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP
 from hedon.analysis.population import mean_alive, mean_energy, run_tail
 from hedon.analysis.survival import survival_curve
 from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.verdict import share_interval
+from hedon.analysis.verdict import world_extinction
 from hedon.analysis.world import WorldRecord
 
 _READ = (
     "Costs are those of living [energy/step] and of action [energy/(step·force)]. The share is that of worlds extinct "
-    "by the step named, with Clopper and Pearson's interval; the paper's is by step 1,024,000, of ten. The median step "
-    "of extinction counts living worlds as censored, and is known where half of the worlds died out. Agents alive and "
+    "by the step named, over all worlds (Kaplan and Meier; living ones that end earlier are censored), with the mid-p "
+    "interval of the beta product. The paper's is by step 1,024,000, of ten; p_paper is the chance of shares at least "
+    "so far apart if both are the same (mid-p Fisher), where all worlds are known to that step. The median step of "
+    "extinction counts living worlds as censored, and is known where half of the worlds died out. Agents alive and "
     "their energy are means over the last tenth of the worlds that live."
 )
 
@@ -43,31 +46,32 @@ def _make(material: Material) -> Iterator[ResultTable]:
 
 
 def _row(arm: Arm, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any]:
-    by_step = _common_step(worlds)
-    extinct = sum(world.extinct_step is not None and world.extinct_step <= by_step for world in worlds)
-    low, high = share_interval(extinct, len(worlds))
+    found = world_extinction(worlds, _furthest_step(worlds))
+    whole = all(world.extinct_step is not None or world.last_step >= EXTINCTION_STEP for world in worlds)
+    paper_count = round(paper * EXTINCTION_SEEDS)
     died = np.array([world.extinct_step is not None for world in worlds])
     lasted = np.array([world.last_step if world.extinct_step is None else world.extinct_step for world in worlds])
     median, _, _ = survival_curve(lasted.astype(np.float64), died).quantile()
     living = [run_tail(world.population) for world in worlds if world.extinct_step is None]
     return {
         "costs": arm.label,
-        "extinct": extinct,
+        "extinct": found.extinct,
         "worlds": len(worlds),
-        "share": extinct / len(worlds),
-        "low": low,
-        "high": high,
+        "share": found.share,
+        "low": found.low,
+        "high": found.high,
         "paper": paper,
-        "by_step": by_step,
+        "p_paper": fisher_mid_p(found.extinct, len(worlds), paper_count, EXTINCTION_SEEDS) if whole else None,
+        "by_step": int(found.known_until),
         "median_step": median,
         "alive": mean_interval(map(mean_alive, living)).mean,
         "energy": mean_interval(map(mean_energy, living)).mean,
     }
 
 
-def _common_step(worlds: Sequence[WorldRecord]) -> int:
-    """The step up to which it is known of each world whether it lives: who died out stays so."""
-    return min((world.last_step for world in worlds if world.extinct_step is None), default=EXTINCTION_STEP)
+def _furthest_step(worlds: Sequence[WorldRecord]) -> int:
+    """The step up to which some world is known to live, or the paper's where all died out: who died out stays so."""
+    return max((world.last_step for world in worlds if world.extinct_step is None), default=EXTINCTION_STEP)
 
 
 def _world_row(label: str, world: WorldRecord) -> dict[str, Any]:

@@ -9,13 +9,13 @@ from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.decline import EXTINCT, FATES, HEADING, STANDING, Fate, fate
 from hedon.analysis.figure_fate import draw_fates
 from hedon.analysis.figure_weights import draw_weights
+from hedon.analysis.interval import share_interval
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.mutation import Drifts, arm_drifts, drift_parts
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.paper import EXTINCTION, PAPER
 from hedon.analysis.response import RESPONSES
 from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.verdict import share_interval
 from hedon.analysis.world import WorldRecord
 
 LABEL = "released"
@@ -31,7 +31,7 @@ _DRAWN = "A line per world; a cross ends that of a world whose record ends befor
 _FATE = (
     "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
     "second. Standing worlds that had such a low before, and rose again, say how far that can be trusted. The interval "
-    "is exact (Clopper and Pearson). The paper replaced seeds that died out."
+    "is Jeffreys'. The paper replaced seeds that died out."
 )
 _SURVIVOR = (
     "Means over worlds with 95 % intervals from three worlds on, geometric for lifetime and food; standing: neither "
