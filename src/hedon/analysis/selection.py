@@ -95,13 +95,13 @@ def selection(
     lived, _ = durations(cohort, last_step)
     fitness = {"children": cohort["children"].to_numpy().astype(np.float64), "lifespan": lived}
     complete = complete_share(cohort)
-    z = _within_strata(weights)
+    z = within_strata(weights)
     z[:, np.abs(z).max(axis=0, initial=0.0) < _ROUNDING] = 0.0
     sd = z.std(axis=0) if len(z) else np.full(len(names), np.nan)
     tables = np.full((len(FITNESS), 3, len(STATISTICS), len(names)), np.nan)
     if cohort.height >= FEWEST:
-        omega = np.stack([_relative(fitness[name]) for name in FITNESS], axis=1)
-        tables = _estimates(z, omega, sd, _sibships(cohort), rng, replicates)
+        omega = np.stack([relative_fitness(fitness[name]) for name in FITNESS], axis=1)
+        tables = _estimates(z, omega, sd, sibships(cohort), rng, replicates)
     results = []
     for name, table in zip(FITNESS, tables, strict=True):
         mean = float(fitness[name].mean()) if cohort.height else float("nan")
@@ -185,13 +185,13 @@ def _strata(count: int) -> list[NDArray[np.int64]]:
     return np.array_split(np.arange(count), max(count // STRATUM, 1))
 
 
-def _within_strata(values: Floats) -> Floats:
+def within_strata(values: Floats) -> Floats:
     """Deviations from the mean of contemporaries, shape as given."""
     parts = [values[part] - values[part].mean(axis=0) for part in _strata(len(values)) if len(part)]
     return np.concatenate(parts) if parts else values
 
 
-def _relative(values: Floats) -> Floats:
+def relative_fitness(values: Floats) -> Floats:
     """Fitness over the mean fitness of contemporaries; 1 where all of these have none."""
     parts = []
     for part in _strata(len(values)):
@@ -200,7 +200,7 @@ def _relative(values: Floats) -> Floats:
     return np.concatenate(parts)
 
 
-def _sibships(cohort: pl.DataFrame) -> NDArray[np.int64]:
+def sibships(cohort: pl.DataFrame) -> NDArray[np.int64]:
     """One number per mother; each founder has one of its own, below 0."""
     own = -1 - pl.int_range(pl.len(), dtype=pl.Int64)
     return cohort.select(pl.coalesce(pl.col("parent_id").cast(pl.Int64), own)).to_series().to_numpy()

@@ -6,6 +6,7 @@ stray there without selection on it; they hold all that the pedigree says of dri
 the hitchhiking with whatever else was selected.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,14 +72,51 @@ def neutral_means(
         Shape (walks,).
     """
     nodes = np.flatnonzero(ancestry(tree, sample))
+    place = _places(tree, nodes)[sample]
+    genes = _walked(tree, nodes, law, rng, walks)
+    return np.concatenate([gene[place].mean(axis=0, dtype=np.float64) for gene in genes])
+
+
+def neutral_courses(
+    tree: Genealogy, living: Sequence[NDArray[np.int64]], law: MutationLaw, rng: np.random.Generator, walks: int
+) -> NDArray[np.float64]:
+    """Means over those who live at some times of neutral genes that walked down the pedigree.
+
+    Args:
+        tree: the pedigree, without gaps.
+        living: positions of the living at each time; somebody at all of them.
+        law: of founding and mutation.
+        rng: source of chance.
+        walks: how many genes, each independent of the others.
+
+    Returns:
+        Shape (walks, times).
+    """
+    nodes = np.flatnonzero(ancestry(tree, np.concatenate(living)))
+    place = _places(tree, nodes)
+    genes = _walked(tree, nodes, law, rng, walks)
+    return np.concatenate(
+        [[gene[place[at]].mean(axis=0, dtype=np.float64) for at in living] for gene in genes], axis=1
+    ).T
+
+
+def _places(tree: Genealogy, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where each agent stands among some; 0 for others."""
     place = np.zeros(tree.size, np.int64)
     place[nodes] = np.arange(len(nodes))
+    return place
+
+
+def _walked(
+    tree: Genealogy, nodes: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int
+) -> Iterator[NDArray[np.float32]]:
+    """Genes of some agents, who hold all of their own ancestors, in pieces of some walks: (len(nodes), walks)."""
+    place = _places(tree, nodes)
     generation = depth(tree)[nodes]
     order = np.argsort(generation, kind="stable")
     levels = np.split(order, np.cumsum(np.bincount(generation))[:-1])
     parent = place[tree.parent[nodes]]
     number = birth_number(tree, law.window)[nodes]
-    means = []
     for first in range(0, walks, _PIECE):
         count = min(_PIECE, walks - first)
         gene = np.empty((len(nodes), count), np.float32)
@@ -88,8 +126,7 @@ def neutral_means(
         for level in levels[1:]:
             noise = table[number[level]] if law.frozen else rng.standard_cauchy((len(level), count))
             gene[level] = np.clip(gene[parent[level]] + law.scale * noise, -law.limit, law.limit)
-        means.append(gene[place[sample]].mean(axis=0, dtype=np.float64))
-    return np.concatenate(means)
+        yield gene
 
 
 def lineages(

@@ -30,7 +30,9 @@ def analyze(
       genealogy   common descent, founder families, lines of the survivors
       genome      weights by birth cohort
       selection   differentials and gradients; price splits the change
+      curvature   stabilizing or disruptive: quadratic gradients
       drift       weights against neutral walks and neutral markers
+      reversion   held near a value? Ornstein-Uhlenbeck against drift
       mode        one mode or two, over worlds
 
     \b

@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Callable, Sequence
 
-from hedon.analysis.topic import evolution, fate, life
+from hedon.analysis.topic import evolution, fate, life, stability
 from hedon.analysis.topic.life import Conditions
 from hedon.analysis.topic.result import ResultTable
 from hedon.error import HedonError
@@ -20,7 +20,9 @@ TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "genome": evolution.genome,
     "selection": evolution.selection_topic,
     "price": evolution.price_topic,
+    "curvature": stability.curvature_topic,
     "drift": evolution.drift,
+    "reversion": stability.reversion_topic,
     "mode": evolution.mode,
 }
 

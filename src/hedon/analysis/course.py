@@ -1,0 +1,75 @@
+"""The course of a world's mean weights, beside those of neutral genes of the same pedigree."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.analysis.drift import start_of
+from hedon.analysis.genealogy import depth, genealogy, living_at
+from hedon.analysis.walk import mutation_law, neutral_courses
+from hedon.analysis.world import WorldRecord
+
+WALKS = 500
+"""Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class WorldCourse:
+    """Mean weights over the living of one world, at equal intervals from its beginning on.
+
+    Attributes:
+        generations: mean generation of the living at the end, less that of those at the beginning.
+        mean: per genome column, shape (times,).
+        neutral: per genome column, courses of neutral genes that begin as it does, shape (walks, times).
+    """
+
+    generations: float
+    mean: Mapping[str, Floats]
+    neutral: Mapping[str, Floats]
+
+    @property
+    def intervals(self) -> int:
+        """Between the values of a course."""
+        return len(next(iter(self.mean.values()))) - 1
+
+
+def world_course(
+    world: WorldRecord, interval: float, rng: np.random.Generator, walks: int = WALKS
+) -> WorldCourse | None:
+    """The courses of one world.
+
+    Args:
+        world: its records.
+        interval: between two values [step].
+        rng: source of chance.
+        walks: neutral genes per course.
+
+    Returns:
+        None where there is no pedigree, or one with gaps, or nobody lives at the end of the first interval.
+    """
+    tree = genealogy(world.agents)
+    if tree.gaps or not tree.size:
+        return None
+    # A small excess, or rounding could cost the last time.
+    times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)
+    living = [living_at(tree, int(time)) for time in times]
+    ends = next((i for i, positions in enumerate(living) if not len(positions)), len(living))
+    living = living[:ends]
+    if len(living) < 2:
+        return None
+    generation = depth(tree)
+    starts = {start_of(world, name) for name in world.weight_names}
+    null = {start: neutral_courses(tree, living, mutation_law(world.config, start), rng, walks) for start in starts}
+    means = {}
+    for name in world.weight_names:
+        values = world.agents[name].to_numpy().astype(np.float64)
+        means[name] = np.array([values[positions].mean() for positions in living])
+    return WorldCourse(
+        float(generation[living[-1]].mean() - generation[living[0]].mean()),
+        means,
+        {name: null[start_of(world, name)] for name in world.weight_names},
+    )

@@ -1,0 +1,181 @@
+"""Is a world's mean weight held near a value? Ornstein–Uhlenbeck against Brownian motion, over several worlds.
+
+At equal intervals, a mean that is pulled back to an optimum θ moves by x' − x = (1 − exp(−α))·(θ − x) + shock; without
+a pull α is 0 and shocks alone are left. One α and one θ are fitted to all worlds at once, by least squares, each world
+in units of its own steps.
+
+What a neutral gene does in the same worlds is the null hypothesis, and its steps are the shocks: where mutations have
+heavy tails, a mutant far out comes, shifts the mean and mostly leaves no line, which looks like a pull to normal
+shocks. A fit also finds some pull in a Brownian motion of finite length. So courses of neutral genes, walked down the
+same pedigrees, are fitted likewise. Pulled by some α, they tell which estimates that α gives, and this is turned
+around: the strength is the α whose median estimate is the one seen, and its interval holds the α for which the one
+seen is not too far out.
+
+Sources: Hansen (1997), Evolution 51, 1341–1351, for the model; Andrews (1993), Econometrica 61, 139–165, for estimates
+that are right in the median.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from hedon.analysis.interval import LEVEL
+
+SHOWN_LEVEL = 0.05
+"""An optimum is told only where a pull is found at this level: a gene that drifts has none."""
+_RATES = np.concatenate([[0.0], np.geomspace(1e-3, 3.0, 25)])
+"""Strengths that are tried [1/interval]: a memory of 1000 intervals to one of a third."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Reversion:
+    """Whether the mean weights of some worlds are held near a value.
+
+    Attributes:
+        worlds: that enter it.
+        intervals: between two values of a course, over all worlds.
+        strength: α [1/interval]; 0 where nothing pulls.
+        strength_low, strength_high: bounds of its 95 % interval; infinite where the pull may be too fast to see.
+        optimum: θ, in units of the weight; NaN where no pull was found, as its bounds.
+        optimum_low, optimum_high: bounds of its 95 % interval.
+        p: one-sided chance of so strong a pull among neutral genes.
+    """
+
+    worlds: int
+    intervals: int
+    strength: float
+    strength_low: float
+    strength_high: float
+    optimum: float
+    optimum_low: float
+    optimum_high: float
+    p: float
+
+
+def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float = LEVEL) -> Reversion | None:
+    """Fits a common pull and a common optimum to the courses of some worlds.
+
+    Args:
+        courses: mean weight at equal intervals, per world, shape (times,); worlds may differ in length, not in the
+            interval. A course of fewer than four values, or of equal ones, is left out.
+        neutral: courses of neutral genes of the same world at the same times, per world, shape (walks, times); the
+            same number of walks in each.
+        level: of the intervals.
+
+    Returns:
+        None where no world is left.
+    """
+    usable = [i for i, course in enumerate(courses) if len(course) > 3 and np.ptp(course) > 0]
+    if not usable:
+        return None
+    seen = [courses[i] for i in usable]
+    walks = [neutral[i] for i in usable]
+    slope, ratio, optimum = (float(x[0]) for x in _fit([course[None] for course in seen]))
+    ratios = _fit(walks)[1]
+    p = float((np.count_nonzero(ratios <= ratio) + 1) / (len(ratios) + 1))
+    shocks = [np.diff(w, axis=1) * (_size(c[None]) / _size(w))[:, None] for c, w in zip(seen, walks, strict=True)]
+    tail = 0.5 * (1.0 - level)
+    tried = np.array([np.quantile(-_pulled(seen, shocks, rate)[0], (tail, 0.5, 1.0 - tail)) for rate in _RATES])
+    high, middle, low = (_rate_where(column, -slope) for column in tried.T)
+    bounds = (np.nan, np.nan)
+    if p <= SHOWN_LEVEL:
+        rate = min(max(middle, _RATES[1]), _RATES[-1])
+        center = _reachable(seen, optimum)
+        errors = _pulled(seen, shocks, rate, center)[2] - center
+        bounds = optimum - np.quantile(errors, (1.0 - tail, tail))
+    return Reversion(
+        worlds=len(seen),
+        intervals=sum(len(course) - 1 for course in seen),
+        strength=middle,
+        strength_low=low,
+        strength_high=high,
+        optimum=optimum if p <= SHOWN_LEVEL else np.nan,
+        optimum_low=float(bounds[0]),
+        optimum_high=float(bounds[1]),
+        p=p,
+    )
+
+
+def _fit(courses: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
+    """Slope of the step against the value, that slope over its standard error, and where the step is 0.
+
+    Args:
+        courses: per world, shape (samples, times).
+
+    Returns:
+        Each (samples,).
+    """
+    sums = np.zeros((6, len(courses[0])))
+    count = 0
+    for course in courses:
+        inverse = 1.0 / _size(course)
+        step, value = np.diff(course, axis=1) * inverse[:, None], course[:, :-1] * inverse[:, None]
+        n = step.shape[1]
+        count += n
+        sums += [
+            n * inverse**2,
+            inverse * value.sum(axis=1),
+            (value**2).sum(axis=1),
+            inverse * step.sum(axis=1),
+            (value * step).sum(axis=1),
+            (step**2).sum(axis=1),
+        ]
+    one, x, xx, y, xy, yy = sums
+    spread = xx - x**2 / one
+    slope = (xy - x * y / one) / spread
+    rest = yy - y**2 / one - slope**2 * spread
+    error = np.sqrt(np.maximum(rest, 0.0) / max(count - 2, 1) / spread)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return slope, slope / error, (x - y / slope) / one
+
+
+def _size(course: Floats) -> Floats:
+    """Root mean square step of each course, shape (samples,)."""
+    size = np.sqrt(np.mean(np.diff(course, axis=1) ** 2, axis=1))
+    return np.where(size > 0, size, 1.0)
+
+
+def _pulled(
+    seen: Sequence[Floats], shocks: Sequence[Floats], rate: float, optimum: float | None = None
+) -> tuple[Floats, Floats, Floats]:
+    """Fits to courses that begin where those seen do, take the shocks, and are pulled at some rate.
+
+    Without an optimum it is that which fits best at this rate, within what was seen.
+    """
+    kept = float(np.exp(-rate))
+    if optimum is None:
+        optimum = _reachable(seen, _best_optimum(seen, 1.0 - kept))
+    courses = []
+    for course, shock in zip(seen, shocks, strict=True):
+        start = np.full((len(shock), 1), course[0] - optimum)
+        moved, _ = lfilter([1.0], [1.0, -kept], shock, axis=1, zi=kept * start)
+        courses.append(optimum + np.concatenate([start, moved], axis=1))
+    return _fit(courses)
+
+
+def _best_optimum(seen: Sequence[Floats], pull: float) -> float:
+    """The optimum that fits best if a share of the distance to it is gone after each interval."""
+    weights = np.array([(len(c) - 1) / float(_size(c[None])[0]) ** 2 for c in seen])
+    means = np.array([c[:-1].mean() + (np.diff(c).mean() / pull if pull > 0 else 0.0) for c in seen])
+    return float(weights @ means / weights.sum())
+
+
+def _reachable(seen: Sequence[Floats], optimum: float) -> float:
+    return float(np.clip(optimum, min(c.min() for c in seen), max(c.max() for c in seen)))
+
+
+def _rate_where(estimates: Floats, seen: float) -> float:
+    """The rate at which a quantile of the estimates is the one seen; 0 or infinite beyond those tried."""
+    rising = np.maximum.accumulate(estimates)
+    if seen <= rising[0]:
+        return 0.0
+    if seen > rising[-1]:
+        return np.inf
+    i = int(np.searchsorted(rising, seen))
+    share = (seen - rising[i - 1]) / (rising[i] - rising[i - 1])
+    return float(_RATES[i - 1] + share * (_RATES[i] - _RATES[i - 1]))

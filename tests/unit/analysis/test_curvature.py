@@ -1,0 +1,82 @@
+import numpy as np
+import polars as pl
+import pytest
+from synthetic_run import write_run
+
+from hedon.analysis.curvature import REACH, curvature, standardized
+from hedon.analysis.topic.stability import curvature_topic
+from hedon.analysis.world import by_condition, read_worlds
+from hedon.record.reader import open_run
+
+NAMES = ("w_normal", "w_action", "neutral_1")
+
+
+def cohort(rng: np.random.Generator, count: int, bend: float, *, heavy: bool) -> pl.DataFrame:
+    """Sibships of four with like weights; luck in children is exponential; fitness bends along the first weight."""
+    family = rng.integers(0, count // 4, count)
+    if heavy:
+        z = rng.standard_t(2, (count // 4, 3))[family] + 0.3 * rng.standard_cauchy((count, 3))
+    else:
+        z = rng.normal(size=(count // 4, 3))[family] + 0.3 * rng.normal(size=(count, 3))
+    z = np.clip(z, -10, 10)
+    along = np.clip(z[:, 0] / z[:, 0].std(), -REACH, REACH)
+    expected = np.maximum(1.0 + 0.5 * bend * (along**2 - 1.0), 0.0)
+    children = rng.poisson(expected * rng.exponential(1.0, count))
+    table = {"agent_id": np.arange(count), "birth_step": np.arange(count), "death_step": np.arange(count) + 100}
+    table |= {"parent_id": family, "children": children}
+    return pl.DataFrame(table | {name: z[:, i].astype(np.float32) for i, name in enumerate(NAMES)})
+
+
+def rejected(bend: float, trials: int, *, heavy: bool) -> tuple[np.ndarray, np.ndarray]:
+    """How often the interval leaves out 0, and the mean curvature, of each weight."""
+    rng = np.random.default_rng(1)
+    found = [curvature(cohort(rng, 500, bend, heavy=heavy), NAMES, 10**6, rng, 200)[:3] for _ in range(trials)]
+    out = np.mean([[not row.low <= 0 <= row.high for row in rows] for rows in found], axis=0)
+    return out, np.mean([[row.curvature for row in rows] for rows in found], axis=0)
+
+
+def test_it_is_the_coefficient_of_a_regression() -> None:
+    rng = np.random.default_rng(2)
+    agents = cohort(rng, 190, 0.0, heavy=False)  # one stratum
+    z = agents.select(NAMES).to_numpy().astype(np.float64)
+    z = standardized(z - z.mean(axis=0))
+    omega = agents["children"].to_numpy() / agents["children"].to_numpy().mean()
+    rows = curvature(agents, NAMES, 10**6, rng, 20)
+    for i, row in enumerate(rows[:3]):
+        design = np.column_stack([np.ones(len(z)), z, 0.5 * (z[:, i] / z[:, i].std()) ** 2])
+        assert row.curvature == pytest.approx(np.linalg.lstsq(design, omega, rcond=None)[0][-1], rel=1e-6)
+    assert [(row.fitness, row.weight) for row in rows[::3]] == [("children", "w_normal"), ("lifespan", "w_normal")]
+
+
+@pytest.mark.parametrize("heavy", [False, True])
+def test_flat_fitness_has_no_curvature(heavy: bool) -> None:
+    out, mean = rejected(0.0, 150, heavy=heavy)
+    assert out.mean() <= 0.05 + 3 * np.sqrt(0.05 * 0.95 / 450) + 0.02  # a bootstrap of 125 sibships is a little narrow
+    np.testing.assert_allclose(mean, 0.0, atol=0.02)
+
+
+@pytest.mark.parametrize(("bend", "heavy"), [(-0.3, False), (-0.2, True), (0.3, False)])
+def test_stabilizing_and_disruptive_selection_are_found(bend: float, heavy: bool) -> None:
+    out, mean = rejected(bend, 60, heavy=heavy)
+    assert out[0] > 0.75
+    assert mean[0] == pytest.approx(bend, abs=0.06)
+    assert out[1:].max() < 0.2
+    np.testing.assert_allclose(mean[1:], 0.0, atol=0.03)
+
+
+def test_few_agents_and_weights_that_do_not_vary_give_nothing() -> None:
+    rng = np.random.default_rng(3)
+    assert np.isnan([row.curvature for row in curvature(cohort(rng, 40, 0.0, heavy=False), NAMES, 10**6, rng)]).all()
+    still = cohort(rng, 300, 0.0, heavy=False).with_columns(w_action=pl.lit(0.5, pl.Float32))
+    rows = curvature(still, NAMES, 10**6, rng, 50)
+    assert np.isnan(rows[1].curvature)
+    assert np.isfinite([rows[0].low, rows[2].high]).all()
+
+
+def test_the_topic_averages_over_whole_cohorts_and_worlds(tmp_path) -> None:
+    worlds = read_worlds([open_run(write_run(tmp_path / "run", worlds=3, intervals=60, snapshot=False))])
+    summary, by_window = curvature_topic(by_condition(worlds))
+    assert set(summary.rows["fitness"]) == {"children", "lifespan"}
+    assert set(summary.rows["weight"]) == set(NAMES)
+    assert set(summary.rows["worlds"]) == {3}
+    assert (by_window.rows["complete"] < 0.95).any()  # left out of the summary
