@@ -16,7 +16,7 @@ class EnergyConfig:
     ] = 40.0
     capacity: Annotated[
         float,
-        Doc("most that an agent can hold; what is eaten beyond is lost", "energy", EITHER, Range(gt=0, le=1e6)),
+        Doc("most that an agent can hold; what is eaten beyond is lost", "energy", CODE, Range(gt=0, le=1e6)),
     ] = 400.0
     basic_cost: Annotated[
         float,
@@ -35,6 +35,6 @@ class EnergyConfig:
         Doc(
             "below zero: energy stays at 0 and the rest is forgiven, or the agent dies",
             "",
-            PAPER + '; "death" is ours',
+            CODE + '; "death" is ours',
         ),
     ] = "floor"

@@ -22,13 +22,13 @@ class PlacementConfig:
         Doc(
             "means of the Gaussians: one for gaussian, at least two for switching",
             "u",
-            PAPER,
+            CODE,
             Range(max_items=16),
         ),
     ] = ()
     sd: Annotated[
         tuple[float, float],
-        Doc("standard deviations of the Gaussians along x and y", "u", PAPER),
+        Doc("standard deviations of the Gaussians along x and y", "u", CODE),
     ] = (0.0, 0.0)
     switch_after: Annotated[
         int,
