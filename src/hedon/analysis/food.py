@@ -1,7 +1,7 @@
 """How much do agents eat?
 
-Two rules of averaging give different answers. The paper's is a mean over agents of foods per step of life,
-so a short life counts as much as a long one. The other is total foods over total steps lived: what a living
+Two rules of averaging give different answers. The paper's, as we read it, is a mean over agents of foods per step of
+life, so a short life counts as much as a long one. The other is total foods over total steps lived: what a living
 agent eats in a step.
 """
 

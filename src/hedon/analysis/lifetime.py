@@ -24,7 +24,7 @@ def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: b
 
 
 def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False) -> float | None:
-    """Mean lifetime of the dead [step], unweighted over agents, as the paper's; None where nobody died.
+    """Mean lifetime of the dead [step], unweighted over agents, as we read the paper's; None where nobody died.
 
     Args:
         agents: table `agents`.

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from hedon.analysis.mode import LEVEL, dip, modes
+from hedon.analysis.mode import ENOUGH_POWER, ENOUGH_WORLDS, LEVEL, dip, modes
 
 
 def dip_by_programming(x: np.ndarray) -> float:
@@ -78,6 +78,13 @@ def test_two_modes_are_found_and_counted() -> None:
     assert found.low == pytest.approx(-1, abs=0.5)
     assert found.high == pytest.approx(5, abs=0.5)
     assert found.p < 0.01
+
+
+def test_one_mode_can_be_told_from_seventeen_worlds_on() -> None:
+    values = np.random.default_rng(5).normal(size=20)
+    power = {count: modes(values[:count]).power for count in (5, ENOUGH_WORLDS - 3, ENOUGH_WORLDS)}
+    assert power[5] == pytest.approx(0.2, abs=0.06)
+    assert power[ENOUGH_WORLDS - 3] < ENOUGH_POWER <= power[ENOUGH_WORLDS]
 
 
 def test_few_worlds_are_undecided_and_many_are_not() -> None:

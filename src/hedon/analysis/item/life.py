@@ -27,8 +27,9 @@ _QUANTITIES = {
     "food_per_step": ("all foods / all steps lived [1/step]", None),
 }
 _READ = (
-    "Means over worlds, those that died out among them; the paper replaced such. Its figures are unweighted means over "
-    "agents, and so over the dead. A life is censored if the agent lives at the end: the median counts it, and so does "
+    "Means over worlds, those that died out among them; the paper replaced such. Its figures are read as "
+    "unweighted means over agents, and so over the dead; it does not say. A life is censored if the agent lives at the "
+    "end: the median counts it, and so does "
     "the restricted mean, that of min(lifetime, age) up to an age that 20 agents of each world that lives reached"
 )
 

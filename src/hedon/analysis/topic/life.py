@@ -75,7 +75,8 @@ def food(conditions: Conditions) -> list[ResultTable]:
     worlds_table = table("food_world", "Food, world by world [1/step]", rows, shown=False)
     quantities = {"per_agent": "mean over the dead of foods / lifetime", "per_step": "all foods / all steps lived"}
     note = (
-        "The first rule, the paper's, counts a short life as much as a long one; the second is what is eaten in a step."
+        "The first rule, the paper's as we read it, counts a short life as much as a long one; the second is what is "
+        "eaten in a step."
     )
     summary = over_worlds(worlds_table.rows, ("kind",), quantities)
     return [table("food", "Food, means over worlds [1/step]", summary, note), worlds_table]
