@@ -78,5 +78,13 @@ def test_the_topic_averages_over_whole_cohorts_and_worlds(tmp_path) -> None:
     summary, by_window = curvature_topic(by_condition(worlds))
     assert set(summary.rows["fitness"]) == {"children", "lifespan"}
     assert set(summary.rows["weight"]) == set(NAMES)
-    assert set(summary.rows["worlds"]) == {3}
+    raw = summary.rows.filter(pl.col("quantity") == "standardized quadratic gradient")
+    excess = summary.rows.filter(pl.col("quantity") != "standardized quadratic gradient")
+    assert set(raw["worlds"]) == {3}
+    assert excess.filter(pl.col("weight") == "neutral_1")["mean"].null_count() == 2  # there is no other marker
+    mean = {(row["fitness"], row["weight"]): row["mean"] for row in raw.rows(named=True)}
+    for row in excess.filter(pl.col("weight") != "neutral_1").rows(named=True):
+        assert row["mean"] == pytest.approx(
+            mean[row["fitness"], row["weight"]] - mean[row["fitness"], "neutral_1"], abs=1e-9
+        )
     assert (by_window.rows["complete"] < 0.95).any()  # left out of the summary

@@ -68,14 +68,30 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
     if rows:
         whole = by_world.filter(pl.col("complete") >= COMPLETE)
         groups = whole.group_by("condition", "seed", "fitness", "weight", maintain_order=True)
-        by_world = groups.agg(pl.col("curvature").drop_nulls().mean())
+        by_world = _with_excess(groups.agg(pl.col("curvature").drop_nulls().mean()), conditions)
     note = (
         "Quadratic selection gradient, per variance of the weight, with the linear parts of all weights held fixed: "
         "below 0 selection is stabilizing, above 0 disruptive. Means over cohorts of which at least "
-        f"{100 * COMPLETE:.0f} % have died, then over worlds. Neutral markers show how large it gets by chance."
+        f"{100 * COMPLETE:.0f} % have died, then over worlds. Neutral markers are curved too where agents far out have "
+        "few children for another reason, such as being born later: read what is left without their mean."
     )
-    summary = over_worlds(by_world, ("fitness", "weight"), {"curvature": "standardized quadratic gradient"})
+    quantities = {
+        "curvature": "standardized quadratic gradient",
+        "excess": "the same, less the mean of the other neutral markers",
+    }
+    summary = over_worlds(by_world, ("fitness", "weight"), quantities)
     return [table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
+
+
+def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:
+    """Adds what a weight's curvature exceeds the mean of the neutral markers of its world by, itself not among them."""
+    neutral = {name for worlds in conditions.values() for world in worlds for name in world.neutral_names}
+    of_marker = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
+    group = ("condition", "seed", "fitness")
+    own = pl.when(pl.col("weight").is_in(sorted(neutral))).then(pl.col("curvature")).otherwise(0.0)
+    others = of_marker.count().over(group) - pl.col("weight").is_in(sorted(neutral)).cast(pl.Int64)
+    mean = (of_marker.sum().over(group) - own) / others
+    return by_world.with_columns(excess=pl.when(others > 0).then(pl.col("curvature") - mean))
 
 
 def _rows(courses: Sequence[WorldCourse], weights: Sequence[str]) -> list[dict[str, Any]]:
