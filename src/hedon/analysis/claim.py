@@ -1,4 +1,4 @@
-"""What does the paper claim, and what would count as its being so? Each claim with its rule, stated beforehand.
+"""What does the paper claim, and what would count as its being so? Each claim with its rule.
 
 A rule names a figure and the *region* in which the claim holds. The figure's 95 % interval over worlds decides: within
 the region the claim holds, outside of it it fails, across its border it is undecided. Whether our worlds differ from

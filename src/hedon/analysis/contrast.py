@@ -44,9 +44,10 @@ def difference_interval(values: Floats, others: Floats, level: float = LEVEL) ->
 def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
     """Ratio of two standard deviations, the first over the second, with its interval from the F law.
 
-    It takes both groups as normally distributed; with heavy tails it is too narrow.
+    It takes both groups as normally distributed; with heavy tails it is too narrow. NaN where the second does not vary.
     """
-    ratio = float(values.std(ddof=1) / others.std(ddof=1))
+    spread = float(others.std(ddof=1))
+    ratio = float(values.std(ddof=1)) / spread if spread > 0 else math.nan
     tail, degrees = 0.5 * (1.0 - level), (len(values) - 1, len(others) - 1)
     low, high = (ratio / math.sqrt(float(stats.f.ppf(q, *degrees))) for q in (1.0 - tail, tail))
     return ratio, low, high

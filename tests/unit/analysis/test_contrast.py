@@ -76,6 +76,10 @@ def test_the_intervals_of_comparisons_cover(unequal: float) -> None:
     np.testing.assert_allclose(hits / trials, 0.95, atol=3 * np.sqrt(0.05 * 0.95 / trials))
 
 
+def test_a_group_that_does_not_vary_has_no_ratio_of_spreads() -> None:
+    assert np.isnan(spread_ratio_interval(np.arange(3.0), np.ones(3))).all()
+
+
 def test_the_intervals_of_a_spread_and_of_a_distance_cover() -> None:
     rng, trials, hits = np.random.default_rng(1), 800, np.zeros(2)
     for _ in range(trials):

@@ -9,7 +9,7 @@ from hedon.analysis.claim import last_mean
 from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.drift import drift_tests, standard_drift
 from hedon.analysis.genealogy import genealogy
-from hedon.analysis.mode import modes
+from hedon.analysis.mode import ENOUGH_WORLDS, modes
 from hedon.analysis.price import price
 from hedon.analysis.selection import selection
 from hedon.analysis.topic.life import Conditions, window_count
@@ -140,7 +140,7 @@ def mode(conditions: Conditions) -> list[ResultTable]:
             rows.append({"condition": condition, "weight": name} | asdict(found))
     note = (
         "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
-        "worlds; below 0.8 a single mode is not called."
+        f"worlds; below 0.8, so with fewer than {ENOUGH_WORLDS} worlds, a single mode is not called."
     )
     return [table("mode", "Modes of the worlds' mean weights", rows, note)]
 
