@@ -28,6 +28,7 @@ SHOWN_LEVEL = 0.05
 """An optimum is told only where a pull is found at this level: a gene that drifts has none."""
 _RATES = np.concatenate([[0.0], np.geomspace(1e-3, 3.0, 25)])
 """Strengths that are tried [1/interval]: a memory of 1000 intervals to one of a third."""
+_ROUNDING = 1e-12  # share of a sum of squares that is 0
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
 
     Args:
         courses: mean weight at equal intervals, per world, shape (times,); worlds may differ in length, not in the
-            interval. A course of fewer than four values, or of equal ones, is left out.
+            interval. A course of fewer than four values, or one that changes in its last step at most, is left out.
         neutral: courses of neutral genes of the same world at the same times, per world, shape (walks, times); the
             same number of walks in each.
         level: of the intervals.
@@ -70,7 +71,7 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
     Returns:
         None where no world is left.
     """
-    usable = [i for i, course in enumerate(courses) if len(course) > 3 and np.ptp(course) > 0]
+    usable = [i for i, course in enumerate(courses) if len(course) > 3 and np.ptp(course[:-1]) > 0]
     if not usable:
         return None
     seen = [courses[i] for i in usable]
@@ -127,11 +128,13 @@ def _fit(courses: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
         ]
     one, x, xx, y, xy, yy = sums
     spread = xx - x**2 / one
-    slope = (xy - x * y / one) / spread
+    varies = spread > _ROUNDING * xx  # else values before the last step are all the same, and say nothing of a pull
+    spread = np.where(varies, spread, 1.0)
+    slope = np.where(varies, (xy - x * y / one) / spread, 0.0)
     rest = yy - y**2 / one - slope**2 * spread
-    error = np.sqrt(np.maximum(rest, 0.0) / max(count - 2, 1) / spread)
+    error = np.sqrt(np.maximum(rest, _ROUNDING * yy) / max(count - 2, 1) / spread)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return slope, slope / error, (x - y / slope) / one
+        return slope, np.where(varies, slope / error, 0.0), (x - y / slope) / one
 
 
 def _size(course: Floats) -> Floats:

@@ -74,6 +74,11 @@ def test_strength_and_p_do_not_depend_on_units() -> None:
 def test_courses_without_a_change_say_nothing() -> None:
     assert reversion([np.zeros(20), np.array([0.0, 1.0])], [np.zeros((9, 20)), np.zeros((9, 2))]) is None
     assert reversion([], []) is None
+    late = np.concatenate([np.zeros(19), [1.0]])  # nothing was there to be pulled back from
+    assert reversion([late], [np.zeros((9, 20))]) is None
+    found = reversion([np.arange(20.0) % 3], [np.stack([late] * 8 + [np.arange(20.0) % 2])])
+    assert found is not None
+    assert found.p == pytest.approx(2 / 10)  # one neutral gene goes back more surely; those that stand still do not
 
 
 @pytest.fixture(scope="module")
