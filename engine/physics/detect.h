@@ -1,19 +1,12 @@
-/// Which listed pairs overlap in this substep, and the contacts that the solver works on.
-///
-/// Contacts between bodies are put in the order of colors: no two of one color share a body, so that consecutive
-/// contacts do not wait for one another. Only overlapping pairs take a color, in canonical order; the order of two
-/// contacts that share a body thus depends on nothing but the contacts of their own cluster.
+/// A batch of a step, and how its contacts are found, told to the visitor and filled in for the solver.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
 #include "physics/solver.h"
 #include "physics/state.h"
 
 namespace hedon {
-
-inline constexpr int COLORS = 32;
 
 /// The places and pairs of one batch.
 struct BatchRange {
@@ -36,6 +29,32 @@ HEDON_FN BatchRange batch_range(const NeighborList& list, int32_t batch) {
           list.walls.start[last]};
 }
 
+/// What a solver works on: one batch in one step.
+struct Batch {
+  const PhysicsConfig& config;
+  const BodyShape& shape;
+  const SolverConstants& c;
+  const PhysicsState& state;
+  const PhysicsScratch& scratch;
+  BatchRange range;
+
+  /// Distances at which two centers, or a center and a wall, just touch [u].
+  HEDON_FN float body_touch() const { return 2.0f * shape.radius; }
+  HEDON_FN float circle_touch() const { return shape.radius + shape.circle_radius; }
+  HEDON_FN float wall_touch() const { return shape.radius; }
+
+  /// Where the contacts of the batch lie: those with circles, and then those with walls, share an array.
+  HEDON_FN BodyContact* body_contacts() const { return scratch.body_contacts.data + range.first_body_pair; }
+  HEDON_FN StaticContact* static_contacts() const {
+    return scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
+  }
+};
+
+/// Squared distances below which two things touch, and below which the solver acts on them [u²].
+struct Reach {
+  float touch, solid;
+};
+
 /// Unit vector and distance of two points; points that coincide are one above the other, by convention.
 struct Direction {
   float x, y, distance;
@@ -55,80 +74,60 @@ struct FoundContacts {
   bool fast;
 };
 
-/// Finds the contacts of a batch between bodies. A pair that is apart loses its impulses.
-/// Contacts are written from `first_body_pair` on. The visitor hears of each contact twice, once for each body.
+/// Tells the visitor of two bodies that touch: once for each.
 template <class Visitor>
-HEDON_FN FoundContacts find_body_contacts(const NeighborList& list, const PhysicsScratch& scratch,
-                                          const BatchRange& range, const SolverConstants& c, float radius,
-                                          Visitor& visitor) {
-  const PairList& pairs = list.bodies;
-  const int32_t* first = pairs.first.data;
-  const int32_t* second = pairs.second.data;
-  float* normal_impulse = scratch.bodies.normal.data;
-  float* tangent_impulse = scratch.bodies.tangent.data;
-  const Vec2* position = scratch.position.data;
-  const Motion* motion = scratch.motion.data;
-  int32_t* active = scratch.active.data + range.first_body_pair;
-  const float touch = 4.0f * radius * radius;
-  int32_t count = 0;
-  for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
-    const bool touching = squared_length(position[second[pair]] - position[first[pair]]) < touch;
-    active[count] = pair;
-    count += touching;
-    normal_impulse[pair] = touching ? normal_impulse[pair] : 0.0f;
-    tangent_impulse[pair] = touching ? tangent_impulse[pair] : 0.0f;
-  }
-  if (count == 0) return {0, false};
-
-  uint32_t* colors = scratch.colors.data;
-  uint8_t* color = scratch.color.data + range.first_body_pair;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) colors[place] = 0;
-  int32_t next[COLORS + 1] = {};
-  for (int32_t i = 0; i < count; ++i) {
-    uint32_t& a = colors[first[active[i]]];
-    uint32_t& b = colors[second[active[i]]];
-    // The last color takes all that is left over; its contacts may share bodies, which costs time only.
-    const int taken = std::countr_zero(~(a | b) | 0x80000000u);
-    a |= 1u << taken;
-    b |= 1u << taken;
-    color[i] = static_cast<uint8_t>(taken);
-    ++next[taken + 1];
-  }
-  for (int taken = 0; taken < COLORS; ++taken) next[taken + 1] += next[taken];
-
-  BodyContact* contacts = scratch.body_contacts.data + range.first_body_pair;
-  bool fast = false;
-  for (int32_t i = 0; i < count; ++i) {
-    const int32_t pair = active[i];
-    BodyContact& contact = contacts[next[color[i]]++];
-    contact.first = first[pair];
-    contact.second = second[pair];
-    const Direction normal = direction_of(position[contact.second] - position[contact.first]);
-    contact.normal_x = normal.x;
-    contact.normal_y = normal.y;
-    contact.arm = 0.5f * normal.distance;
-    contact.turn = contact.arm * c.inverse_gyration;
-    contact.tangent_mass = 0.5f / (1.0f + contact.arm * contact.turn);
-    contact.normal_impulse = normal_impulse[pair];
-    contact.tangent_impulse = tangent_impulse[pair];
-    contact.approach = relative_velocity(contact, motion[contact.first], motion[contact.second]).normal;
-    contact.pair = pair;
-    fast |= contact.approach < -c.restitution_threshold;
-    const int32_t a = list.slot[contact.first], b = list.slot[contact.second];
-    visitor.on_contact(PairKind::body, a, b, Vec2{normal.x, normal.y}, scratch.angle[contact.first], pairs.mark[pair]);
-    visitor.on_contact(PairKind::body, b, a, Vec2{-normal.x, -normal.y}, scratch.angle[contact.second],
-                       pairs.mark[pair]);
-  }
-  return {count, fast};
+HEDON_FN void tell_bodies(const Batch& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
+  const NeighborList& list = batch.state.neighbors;
+  const int32_t first = list.bodies.first[pair], second = list.bodies.second[pair];
+  const int32_t a = list.slot[first], b = list.slot[second];
+  visitor.on_contact(PairKind::body, a, b, normal, batch.scratch.angle[first], list.bodies.mark[pair]);
+  visitor.on_contact(PairKind::body, b, a, -normal, batch.scratch.angle[second], list.bodies.mark[pair]);
 }
 
-/// Finds the contacts of a batch with circles or walls. `nearest(other, center)` is the other's point that counts,
-/// `touch` the distance below which they overlap [u].
+/// Fills in the contact of a pair of bodies, with the impulses that the pair has kept.
+HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& normal, BodyContact& contact) {
+  const PairList& pairs = batch.state.neighbors.bodies;
+  const PhysicsScratch& scratch = batch.scratch;
+  contact.first = pairs.first[pair];
+  contact.second = pairs.second[pair];
+  contact.normal_x = normal.x;
+  contact.normal_y = normal.y;
+  contact.arm = 0.5f * normal.distance;
+  contact.turn = contact.arm * batch.c.inverse_gyration;
+  contact.tangent_mass = 0.5f / (1.0f + contact.arm * contact.turn);
+  contact.normal_impulse = scratch.bodies.normal[pair];
+  contact.tangent_impulse = scratch.bodies.tangent[pair];
+  contact.approach = relative_velocity(contact, scratch.motion[contact.first], scratch.motion[contact.second]).normal;
+  contact.pair = pair;
+}
+
+/// Fills in the contact of a pair with what never moves, whose nearest point is `point`. The centers, or center and
+/// wall, just touch at a distance of `touch` [u].
+HEDON_FN void fill_contact(const Batch& batch, const PairList& pairs, const PairScratch& work, int32_t pair, Vec2 point,
+                           const Direction& normal, float touch, StaticContact& contact) {
+  contact.body = pairs.first[pair];
+  contact.anchor_x = point.x - touch * normal.x;
+  contact.anchor_y = point.y - touch * normal.y;
+  contact.normal_x = normal.x;
+  contact.normal_y = normal.y;
+  contact.arm = batch.shape.radius + 0.5f * (normal.distance - touch);
+  contact.turn = contact.arm * batch.c.inverse_gyration;
+  contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.turn);
+  contact.normal_impulse = work.normal[pair];
+  contact.tangent_impulse = work.tangent[pair];
+  contact.approach = relative_velocity(contact, batch.scratch.motion[contact.body]).normal;
+  contact.pair = pair;
+}
+
+/// Finds the contacts of a batch with circles or walls. A pair that the solver does not act on loses its impulses.
+/// nearest(other, center)   the other's point that counts
+/// touch                    distance at which they just touch [u]
+/// reach                    squared distances below which they touch, and below which the solver acts on them [u²]
 template <class Visitor, class Nearest>
-HEDON_FN FoundContacts find_static_contacts(PairKind kind, const NeighborList& list, const PairList& pairs,
-                                            const PairScratch& work, const PhysicsScratch& scratch, int32_t first_pair,
-                                            int32_t last_pair, const SolverConstants& c, float radius, float touch,
-                                            StaticContact* contacts, Visitor& visitor, Nearest&& nearest) {
+HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch& batch, const PairList& pairs,
+                                            const PairScratch& work, int32_t first_pair, int32_t last_pair, float touch,
+                                            Reach reach, StaticContact* contacts, Visitor& visitor, Nearest&& nearest) {
+  const PhysicsScratch& scratch = batch.scratch;
   const Vec2* position = scratch.position.data;
   int32_t count = 0;
   bool fast = false;
@@ -136,29 +135,42 @@ HEDON_FN FoundContacts find_static_contacts(PairKind kind, const NeighborList& l
     const int32_t body = pairs.first[pair], other = pairs.second[pair];
     const Vec2 point = nearest(other, position[body]);
     const Vec2 between = point - position[body];
-    if (!(squared_length(between) < touch * touch)) {
+    const float squared = squared_length(between);
+    if (!(squared < reach.solid)) {
       work.normal[pair] = 0.0f;
       work.tangent[pair] = 0.0f;
-      continue;
+      if (!(squared < reach.touch)) continue;
     }
     const Direction normal = direction_of(between);
-    StaticContact& contact = contacts[count++];
-    contact.body = body;
-    contact.anchor_x = point.x - touch * normal.x;
-    contact.anchor_y = point.y - touch * normal.y;
-    contact.normal_x = normal.x;
-    contact.normal_y = normal.y;
-    contact.arm = radius + 0.5f * (normal.distance - touch);
-    contact.turn = contact.arm * c.inverse_gyration;
-    contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.turn);
-    contact.normal_impulse = work.normal[pair];
-    contact.tangent_impulse = work.tangent[pair];
-    contact.approach = relative_velocity(contact, scratch.motion[body]).normal;
-    contact.pair = pair;
-    fast |= contact.approach < -c.restitution_threshold;
-    visitor.on_contact(kind, list.slot[body], other, Vec2{normal.x, normal.y}, scratch.angle[body], pairs.mark[pair]);
+    if (squared < reach.solid) {
+      StaticContact& contact = contacts[count++];
+      fill_contact(batch, pairs, work, pair, point, normal, touch, contact);
+      fast |= contact.approach <= -batch.c.restitution_threshold;
+    }
+    visitor.on_contact(kind, batch.state.neighbors.slot[body], other, Vec2{normal.x, normal.y}, scratch.angle[body],
+                       pairs.mark[pair]);
   }
   return {count, fast};
+}
+
+/// Finds the contacts of a batch with circles.
+template <class Visitor>
+HEDON_FN FoundContacts find_circle_contacts(const Batch& batch, Reach reach, StaticContact* contacts,
+                                            Visitor& visitor) {
+  const StaticCircles& circles = batch.state.circles;
+  const auto center = [&](int32_t circle, Vec2) { return Vec2{circles.x[circle], circles.y[circle]}; };
+  return find_static_contacts(PairKind::circle, batch, batch.state.neighbors.circles, batch.scratch.circles,
+                              batch.range.first_circle_pair, batch.range.last_circle_pair, batch.circle_touch(), reach,
+                              contacts, visitor, center);
+}
+
+/// Finds the contacts of a batch with walls. `nearest(wall, center)` is the wall's point that counts.
+template <class Visitor, class Nearest>
+HEDON_FN FoundContacts find_wall_contacts(const Batch& batch, Reach reach, StaticContact* contacts, Visitor& visitor,
+                                          Nearest&& nearest) {
+  return find_static_contacts(PairKind::wall, batch, batch.state.neighbors.walls, batch.scratch.walls,
+                              batch.range.first_wall_pair, batch.range.last_wall_pair, batch.wall_touch(), reach,
+                              contacts, visitor, nearest);
 }
 
 }  // namespace hedon

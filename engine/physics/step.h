@@ -16,8 +16,8 @@
 
 #include "base/status.h"
 #include "base/team.h"
-#include "physics/detect.h"
 #include "physics/neighbor.h"
+#include "physics/sequential.h"
 #include "physics/solver.h"
 #include "physics/state.h"
 
@@ -80,29 +80,6 @@ HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scra
   store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
-/// Keeps what the contacts accumulated for the next substep.
-template <class Contact>
-HEDON_FN void keep_impulses(const Contact* contacts, int32_t count, const PairScratch& work) {
-  for (int32_t i = 0; i < count; ++i) {
-    work.normal[contacts[i].pair] = contacts[i].normal_impulse;
-    work.tangent[contacts[i].pair] = contacts[i].tangent_impulse;
-  }
-}
-
-/// Caps the velocities, moves the bodies by them.
-HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    Motion motion = scratch.motion[place];
-    motion.x = clamp(motion.x, -c.max_speed, c.max_speed);
-    motion.y = clamp(motion.y, -c.max_speed, c.max_speed);
-    motion.angular = clamp(motion.angular, -c.max_angular_speed, c.max_angular_speed);
-    scratch.motion[place] = motion;
-    scratch.position[place].x += motion.x * c.dt;
-    scratch.position[place].y += motion.y * c.dt;
-    scratch.angle[place] += motion.angular * c.dt;
-  }
-}
-
 /// Largest squared distance of a batch's bodies from where they were at the last build; infinite if one is not finite.
 HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scratch, const BatchRange& range) {
   float largest = 0.0f;
@@ -115,69 +92,27 @@ HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scr
 }
 
 /// Tries all substeps of one batch in the scratch memory. Stops early where a body outran the skin.
-template <class Visitor>
+template <class Solver, class Visitor>
 HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
                                      const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
-                                     float squared_limit, int32_t batch, Visitor& visitor) {
+                                     float squared_limit, int32_t index, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
-  const BatchRange range = batch_range(list, batch);
+  const Batch batch{config, shape, c, state, scratch, batch_range(list, index)};
+  const BatchRange& range = batch.range;
   BatchReport report{};
   load_batch(state, scratch, range, c, force, report, visitor);
-  Motion* motion = scratch.motion.data;
-  Vec2* position = scratch.position.data;
-  BodyContact* bodies = scratch.body_contacts.data + range.first_body_pair;
-  StaticContact* statics = scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
-  const float body_touch = 2.0f * shape.radius;
-  const float circle_touch = shape.radius + shape.circle_radius;
-  const auto circle_center = [&](int32_t circle, Vec2) {
-    return Vec2{state.circles.x[circle], state.circles.y[circle]};
-  };
-  const auto wall_point = [&](int32_t wall, Vec2 center) {
-    return nearest_on_segment(state.walls[wall].a, state.walls[wall].b, center);
-  };
-
   for (int32_t substep = 0; substep < config.substeps; ++substep) {
-    for (int32_t place = range.first_place; place < range.last_place; ++place) {
-      motion[place].x *= c.linear_decay;
-      motion[place].y *= c.linear_decay;
-      motion[place].angular *= c.angular_decay;
-    }
-    const FoundContacts body = find_body_contacts(list, scratch, range, c, shape.radius, visitor);
-    const FoundContacts circle =
-        find_static_contacts(PairKind::circle, list, list.circles, scratch.circles, scratch, range.first_circle_pair,
-                             range.last_circle_pair, c, shape.radius, circle_touch, statics, visitor, circle_center);
-    StaticContact* walls = statics + circle.count;
-    const FoundContacts wall =
-        find_static_contacts(PairKind::wall, list, list.walls, scratch.walls, scratch, range.first_wall_pair,
-                             range.last_wall_pair, c, shape.radius, shape.radius, walls, visitor, wall_point);
-    const int32_t static_count = circle.count + wall.count;
-
-    warm_start(bodies, body.count, motion);
-    warm_start(statics, static_count, motion);
-    for (int32_t pass = 0; pass < config.velocity_passes; ++pass) {
-      solve_velocity(bodies, body.count, c, motion);
-      solve_velocity(statics, static_count, c, motion);
-    }
-    if (body.fast) apply_restitution(bodies, body.count, c, motion);
-    if (circle.fast || wall.fast) apply_restitution(statics, static_count, c, motion);
-    keep_impulses(bodies, body.count, scratch.bodies);
-    keep_impulses(statics, circle.count, scratch.circles);
-    keep_impulses(walls, wall.count, scratch.walls);
-
-    integrate(scratch, range, c);
-    for (int32_t pass = 0; pass < config.position_passes; ++pass) {
-      correct_positions(bodies, body.count, c, body_touch, position);
-      correct_positions(statics, static_count, c, position);
-    }
+    Solver::substep(batch, visitor);
     const float moved = squared_moved(list, scratch, range);
     if (moved > report.squared_moved) report.squared_moved = moved;
     if (report.squared_moved > squared_limit) break;
   }
+  const Motion* motion = scratch.motion.data;
   for (int32_t place = range.first_place; place < range.last_place; ++place) {
     const float squared = motion[place].x * motion[place].x + motion[place].y * motion[place].y;
     if (squared > report.squared_speed) report.squared_speed = squared;
   }
-  scratch.reports[batch] = report;
+  scratch.reports[index] = report;
 }
 
 /// Where the largest of all batches stand.
@@ -226,7 +161,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
     group.for_each(head.batches, [&](int32_t batch) {
-      try_batch(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+      try_batch<SequentialSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
     });
     report = largest_report(scratch, head.batches);
     if (report.squared_moved <= limit * limit) break;
