@@ -13,6 +13,7 @@ INERTIA = 0.5 * MASS * RADIUS**2
 CONFIG = {
     "dt": 0.1,
     "substeps": 5,
+    "solver": "sequential",
     "velocity_passes": 6,
     "position_passes": 2,
     "linear_damping": 0.8,
@@ -31,24 +32,26 @@ FIELDS = ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity")
 
 
 def arena_walls(width=480.0, height=360.0, corner=19.0, chords=4):
-    """Segments of a rectangle with rounded corners, counter-clockwise, (walls, 4)."""
+    """Segments of a rectangle with rounded corners, clockwise, (walls, 4)."""
     points = []
     for i, (cx, cy) in enumerate([(1, 1), (0, 1), (0, 0), (1, 0)]):
         center = np.array([width - corner if cx else corner, height - corner if cy else corner])
         turn = np.linspace(i * np.pi / 2, (i + 1) * np.pi / 2, chords + 1)
         points.append(center + corner * np.column_stack([np.cos(turn), np.sin(turn)]))
-    points = np.concatenate(points)
+    points = np.concatenate(points)[::-1]
     return np.hstack([points, np.roll(points, -1, axis=0)])
 
 
 def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=(480.0, 360.0), **settings):
     """A scene with bodies at (n, 2) places, circles at (m, 2) places and walls (k, 4).
 
-    `slots[i]` is where body i lives; `settings` override `CONFIG`, or give `pair_limit`.
+    `slots[i]` is where body i lives; `settings` override `CONFIG`, or give `pair_limit` and
+    `outer_walls`.
     """
     bodies = np.asarray(bodies, dtype=np.float32).reshape(-1, 2)
     circles = np.asarray(circles, dtype=np.float32).reshape(-1, 2)
     limit = settings.pop("pair_limit", 0)
+    ring = settings.pop("outer_walls", 0)
     slots = np.arange(len(bodies)) if slots is None else np.asarray(slots)
     scene = _engine.physics.Scene(
         CONFIG | settings,
@@ -61,6 +64,7 @@ def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=
         len(circles),
         [tuple(map(float, wall)) for wall in walls],
         limit,
+        ring,
     )
     scene.array("x")[slots], scene.array("y")[slots] = bodies.T
     scene.array("circle_x")[:], scene.array("circle_y")[:] = circles.T
@@ -124,7 +128,8 @@ def crowd(seed, bodies=200, circles=60, slots=None, **settings):
     """A full arena with random headings."""
     rng = np.random.default_rng(seed)
     places, foods = scatter(rng, bodies, circles)
-    scene = make_scene(places, foods, arena_walls(), slots, **settings)
+    walls = arena_walls()
+    scene = make_scene(places, foods, walls, slots, outer_walls=len(walls), **settings)
     slots = np.arange(bodies) if slots is None else slots
     scene.array("angle")[slots] = rng.uniform(0, 2 * np.pi, bodies)
     return scene

@@ -21,6 +21,7 @@ struct EnumNames;
   struct EnumNames<E> {                  \
     static constexpr auto& text = names; \
   }
+HEDON_ENUM(ContactSolver, CONTACT_SOLVER_NAMES);
 HEDON_ENUM(CriticTarget, CRITIC_TARGET_NAMES);
 HEDON_ENUM(ActingWeights, ACTING_WEIGHTS_NAMES);
 HEDON_ENUM(MutationNoise, MUTATION_NOISE_NAMES);

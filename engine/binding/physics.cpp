@@ -49,10 +49,9 @@ struct Recorder {
 class Scene {
  public:
   Scene(nb::dict config, float width, float height, float radius, float density, float circle_radius, int64_t bodies,
-        int64_t circles, const std::vector<std::array<float, 4>>& walls, int64_t pair_limit)
+        int64_t circles, const std::vector<std::array<float, 4>>& walls, int64_t pair_limit, int32_t outer_walls)
       : config_(to_config<PhysicsConfig>(config)), shape_(make_disc(radius, density, circle_radius)) {
-    capacity_ = physics_capacity(bodies, circles, static_cast<int64_t>(walls.size()), width, height, shape_,
-                                 config_.neighbor_skin);
+    capacity_ = physics_capacity(bodies, circles, static_cast<int64_t>(walls.size()), width, height, shape_, config_);
     if (pair_limit > 0) capacity_.body_pairs = pair_limit;
     const auto allocate = [this](const char*, auto& array, int64_t count) {
       using Item = std::remove_reference_t<decltype(array[0])>;
@@ -65,6 +64,8 @@ class Scene {
     visit_arrays(force_, bodies, allocate);
     allocate("order", order_, bodies);
     init_physics(state_, capacity_);
+    if (outer_walls > state_.walls.count) throw nb::value_error("outer_walls: more than there are walls");
+    state_.outer_walls = outer_walls;
     for (size_t i = 0; i < walls.size(); ++i) {
       state_.walls[static_cast<int64_t>(i)] = {{walls[i][0], walls[i][1]}, {walls[i][2], walls[i][3]}};
     }
@@ -211,9 +212,10 @@ void bind_physics(nb::module_& module) {
   nb::module_ physics = module.def_submodule("physics", "Rigid bodies by themselves.");
   nb::class_<Scene>(physics, "Scene", "Discs, static circles and walls, with the memory that they live in.")
       .def(nb::init<nb::dict, float, float, float, float, float, int64_t, int64_t,
-                    const std::vector<std::array<float, 4>>&, int64_t>(),
+                    const std::vector<std::array<float, 4>>&, int64_t, int32_t>(),
            nb::arg("config"), nb::arg("width"), nb::arg("height"), nb::arg("radius"), nb::arg("density"),
-           nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"), nb::arg("pair_limit") = 0)
+           nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"), nb::arg("pair_limit") = 0,
+           nb::arg("outer_walls") = 0)
       .def("step", &Scene::step, nb::arg("steps") = 1, nb::arg("threads") = 1, nb::arg("record") = true,
            nb::call_guard<nb::gil_scoped_release>(), "Steps; raises RuntimeError with the name of a fault.")
       .def("set_order", &Scene::set_order, nb::arg("slots"), "Slots of the bodies that live, in canonical order.")

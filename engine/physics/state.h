@@ -10,6 +10,7 @@
 #include "base/fields.h"
 #include "base/vec2.h"
 #include "physics/body.h"
+#include "physics/config.h"
 #include "physics/contact.h"
 #include "physics/grid.h"
 
@@ -62,11 +63,13 @@ struct PhysicsState {
   BodyState bodies;
   StaticCircles circles;
   Array<Segment> walls;
+  int32_t outer_walls;  ///< the first so many walls: a closed polygon, clockwise, in which the bodies live
+  int32_t unused;
   Grid body_grid;    ///< bodies by slot, where they were at the last build or insertion
   Grid circle_grid;  ///< circles by slot
   NeighborList neighbors;
 
-  HEDON_FIELDS(PhysicsState, bodies, circles, walls, body_grid, circle_grid, neighbors)
+  HEDON_FIELDS(PhysicsState, bodies, circles, walls, outer_walls, unused, body_grid, circle_grid, neighbors)
 };
 
 /// Pairs found while a list is built, and the impulses of the listed pairs while a step is tried.
@@ -97,6 +100,7 @@ struct PhysicsScratch {
   Array<int32_t> new_place;  ///< of each rank
   Array<Vec2> position;      ///< by place [u]
   Array<Motion> motion;      ///< by place
+  Array<Motion> change;      ///< by place: what contacts add in a pass of the solver jacobi
   Array<float> angle;        ///< by place, not wrapped within a step [rad]
   Array<uint32_t> colors;    ///< by place: colors of the contacts of the body
   Array<int32_t> active;     ///< pairs of bodies that touch in this substep
@@ -108,8 +112,8 @@ struct PhysicsScratch {
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
-  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, angle, colors, active, color,
-               bodies, circles, walls, body_contacts, static_contacts, reports)
+  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, change, angle, colors, active,
+               color, bodies, circles, walls, body_contacts, static_contacts, reports)
 };
 
 /// How much of everything the arrays hold.
@@ -130,17 +134,21 @@ struct PhysicsCapacity {
 
 /// Capacities for an arena. Discs that do not overlap bound the pairs: within a skin of 20 u (twice the radius) of a
 /// body of radius 10 u lie at most 22 others, half of them counted here; 16 leaves room for overlap. Around a circle
-/// lie fewer than 24 bodies. A convex corner shows a body its chords and two walls.
+/// lie fewer than 24 bodies. A convex corner shows a body its chords and two walls. With the solver jacobi a jam may
+/// burst: for a substep a body flies at up to 250 u/s, which takes a skin of 50 u and more. There is room for all pairs
+/// of up to 200 bodies, and for so many neighbors of each in a larger world.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
-                                          const BodyShape& shape, float skin) {
+                                          const BodyShape& shape, const PhysicsConfig& config) {
+  const bool bursts = config.solver == ContactSolver::jacobi;
+  const float skin = config.neighbor_skin;
   PhysicsCapacity capacity{};
   capacity.bodies = bodies;
   capacity.circles = circles;
   capacity.walls = walls;
   const auto least = [](int64_t a, int64_t b) { return a < b ? a : b; };
-  capacity.body_pairs = least(16 * bodies, bodies * (bodies - 1) / 2) + 1;
-  capacity.circle_pairs = least(24 * circles, bodies * circles) + 1;
-  capacity.wall_pairs = least(8 * bodies, bodies * walls) + 1;
+  capacity.body_pairs = least((bursts ? 100 : 16) * bodies, bodies * (bodies - 1) / 2) + 1;
+  capacity.circle_pairs = least((bursts ? 200 : 24) * circles, bodies * circles) + 1;
+  capacity.wall_pairs = least((bursts ? 32 : 8) * bodies, bodies * walls) + 1;
   // Cells as wide as the search, but no more than a few per item in an empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
   const float search = 2.0f * shape.radius + skin;
@@ -201,6 +209,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit("new_place", scratch.new_place, capacity.bodies);
   visit("position", scratch.position, capacity.bodies);
   visit("motion", scratch.motion, capacity.bodies);
+  visit("change", scratch.change, capacity.bodies);
   visit("angle", scratch.angle, capacity.bodies);
   visit("colors", scratch.colors, capacity.bodies);
   visit("active", scratch.active, capacity.body_pairs);

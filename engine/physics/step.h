@@ -16,6 +16,7 @@
 
 #include "base/status.h"
 #include "base/team.h"
+#include "physics/jacobi.h"
 #include "physics/neighbor.h"
 #include "physics/sequential.h"
 #include "physics/solver.h"
@@ -161,7 +162,10 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
     group.for_each(head.batches, [&](int32_t batch) {
-      try_batch<SequentialSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+      if (config.solver == ContactSolver::sequential)
+        try_batch<SequentialSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+      else
+        try_batch<JacobiSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
     });
     report = largest_report(scratch, head.batches);
     if (report.squared_moved <= limit * limit) break;
@@ -178,7 +182,10 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
     build = true;
   }
   // The free path of the fastest body, pushed as hard as any was in this step, from where the furthest one is.
-  const float speed = sqrtf(report.squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
+  // Both solvers cap the speeds of a step before it begins to move.
+  const float capped = 2.0f * c.max_speed * c.max_speed;
+  const float squared_speed = report.squared_speed < capped ? report.squared_speed : capped;
+  const float speed = sqrtf(squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
   const float free_path = speed * c.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
   // Bodies by slot, not by batch: two members would write to most cache lines in turn.

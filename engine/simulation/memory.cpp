@@ -25,7 +25,7 @@ PhysicsCapacity world_physics_capacity(const World& world) {
   const WorldConfig& config = *world.config;
   const WorldShape& shape = *world.shape;
   return physics_capacity(shape.slots, shape.foods, shape.walls, config.arena.width, config.arena.height,
-                          world.constants->body, config.physics.neighbor_skin);
+                          world.constants->body, config.physics);
 }
 
 void set_counts(World& world, int members) {

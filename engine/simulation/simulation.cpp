@@ -107,6 +107,7 @@ void Simulation::begin(World& world) {
   }
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
+  world.state.physics.outer_walls = shape_.outer_walls;
   for (int32_t w = 0; w < shape_.walls; ++w) {
     const Segment& wall = world.state.physics.walls[w] = walls_[static_cast<size_t>(w)];
     world.scene.wall_ax[w] = wall.a.x;

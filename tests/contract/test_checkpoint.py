@@ -15,11 +15,11 @@ IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}
 SAVED_AS = {"physics.bodies": "body", "physics.circles": "food", "fault": None}
 
 
-def continued(pieces, *, saved_at, preset="baseline", threads=1, slot_order=()):
+def continued(pieces, *, saved_at, preset="baseline", threads=1, slot_order=(), settings=()):
     """The digest of a life that was carried over into a new simulation after `saved_at` steps."""
-    first = make_simulation(*LIVELY, preset=preset, seeds=(3,), threads=threads)
+    first = make_simulation(*LIVELY, *settings, preset=preset, seeds=(3,), threads=threads)
     first.run(saved_at)
-    second = make_simulation(*LIVELY, preset=preset, seeds=(3,), threads=threads)
+    second = make_simulation(*LIVELY, *settings, preset=preset, seeds=(3,), threads=threads)
     second.run(5)  # whatever was there before is gone
     second.engine.restore(0, first.engine.save(0))
     assert second.worlds[0].digest() == first.worlds[0].digest()
@@ -28,8 +28,8 @@ def continued(pieces, *, saved_at, preset="baseline", threads=1, slot_order=()):
     return second.worlds[0]
 
 
-def left_alone(steps, preset="baseline"):
-    simulation = make_simulation(*LIVELY, preset=preset, seeds=(3,))
+def left_alone(steps, preset="baseline", settings=()):
+    simulation = make_simulation(*LIVELY, *settings, preset=preset, seeds=(3,))
     simulation.run(steps)
     return simulation.worlds[0]
 
@@ -72,6 +72,27 @@ def test_it_may_be_saved_at_every_step():
         simulation.run(1)
         other.run(1)
         assert simulation.worlds[0].digest() == other.worlds[0].digest()
+
+
+def test_a_jam_goes_on_under_either_solver():
+    """Impulses are state: the same world without them has another future."""
+    for solver in ("sequential", "jacobi"):
+        jam = (f'physics.solver="{solver}"', "population.initial_count=150")
+        world = continued([100], saved_at=200, settings=jam, threads=2)
+        assert world.digest() == left_alone(300, settings=jam).digest()
+
+
+def test_impulses_of_the_solver_jacobi_are_saved():
+    jam = (*LIVELY, 'physics.solver="jacobi"', "population.initial_count=150")
+    lives = [make_simulation(*jam, seeds=(3,)) for _ in range(2)]
+    lives[0].run(200)
+    saved = lives[0].engine.save(0)
+    assert len(saved["pair.body"]) > 5
+    saved["pair.body"], saved["impulse.body"] = saved["pair.body"][:0], saved["impulse.body"][:0]
+    lives[1].engine.restore(0, saved)
+    for life in lives:
+        life.run(1)
+    assert lives[0].worlds[0].digest() != lives[1].worlds[0].digest()
 
 
 def test_threads_may_change_in_between():

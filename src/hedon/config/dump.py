@@ -9,7 +9,7 @@ from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
-EARLIER = {"learning.acting_weights": "float32"}
+EARLIER = {"learning.acting_weights": "float32", "physics.solver": "sequential"}
 """What runs did before there was a setting. A complete file that lacks it was written then and means this; and digests
 leave the setting out where it says this, so that those of earlier runs hold."""
 

@@ -2,14 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from hedon.config.field import EITHER, OURS, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
 class PhysicsConfig:
-    """How bodies move and push one another (Catto 2005, in the order of Box2D)."""
+    """How bodies move and push one another."""
 
     dt: Annotated[
         float,
@@ -19,6 +19,15 @@ class PhysicsConfig:
         int,
         Doc("substeps in one environment step", "", EITHER, Range(ge=1, le=100)),
     ] = 5
+    solver: Annotated[
+        Literal["sequential", "jacobi"],
+        Doc(
+            "how contacts are solved: by sequential impulses (Catto 2005, in the order of Box2D), or by biased Jacobi "
+            "passes, under which bodies in a crowd overlap by several units",
+            "",
+            OURS + '; the code has "jacobi"',
+        ),
+    ] = "sequential"
     velocity_passes: Annotated[
         int,
         Doc("passes of the velocity solver in a substep", "", EITHER, Range(ge=1, le=100)),

@@ -1,0 +1,224 @@
+/// The contact solver of the paper's released code: biased impulses by Jacobi passes, with all that is odd about it.
+///
+/// In a pass every contact reads the velocities of the pass's beginning, and the bodies then receive the sum of what
+/// their contacts changed: in the order of contacts, so that the sum depends on nothing but the bodies of the island.
+/// Jams come apart more slowly than by sequential impulses and bodies overlap by several units, which decides who eats.
+/// Impulses between bodies are equal and opposite, so pairs of bodies keep their total momentum, to float rounding.
+#pragma once
+
+#include <cfloat>
+#include <cstdint>
+#include <limits>
+
+#include "physics/detect.h"
+#include "physics/solver.h"
+#include "physics/state.h"
+
+namespace hedon {
+
+/// Overlap from which the solver acts [u]. Released code: a distance ahead of contact was meant, its sign is wrong.
+inline constexpr float LEAST_DEPTH = 0.02f;
+
+/// The squared distances that go with centers that just touch at `touch` [u]; just touching is touching.
+HEDON_FN Reach jacobi_reach(float touch) {
+  const float solid = touch - LEAST_DEPTH;
+  return {touch * touch * (1.0f + FLT_EPSILON), solid * solid * (1.0f + FLT_EPSILON)};
+}
+
+/// The point of an outer wall that counts for a body, infinitely far away where none does: behind the wall, and beyond
+/// its ends by a rule in which the released code takes one end's neighbor for the other's. Inner walls have no
+/// neighbors and are solid from both sides.
+HEDON_FN Vec2 ring_point(const PhysicsState& state, int32_t wall, Vec2 center) {
+  const Array<Segment>& walls = state.walls;
+  const Vec2 a = walls[wall].a, b = walls[wall].b;
+  const int32_t ring = state.outer_walls;
+  if (wall < ring) {
+    constexpr float FAR = std::numeric_limits<float>::infinity();
+    const Vec2 before = walls[wall == 0 ? ring - 1 : wall - 1].a, after = walls[wall + 1 == ring ? 0 : wall + 1].b;
+    const bool behind = cross(center - a, b - a) < 0.0f;
+    const bool short_of_a = dot(center - a, b - a) <= 0.0f && dot(after - b, center - b) > 0.0f;
+    const bool past_b = dot(b - center, b - a) <= 0.0f && dot(a - before, center - a) <= 0.0f;
+    if (behind || short_of_a || past_b) return {FAR, FAR};
+  }
+  return nearest_on_segment(a, b, center);
+}
+
+/// Finds the contacts of a batch between bodies, in the order of pairs. A pair that the solver does not act on loses
+/// its impulses.
+template <class Visitor>
+HEDON_FN FoundContacts find_in_order(const Batch& batch, Visitor& visitor) {
+  const PairList& pairs = batch.state.neighbors.bodies;
+  const PairScratch& work = batch.scratch.bodies;
+  const BatchRange& range = batch.range;
+  const int32_t* first = pairs.first.data;
+  const int32_t* second = pairs.second.data;
+  const Vec2* position = batch.scratch.position.data;
+  const Reach reach = jacobi_reach(batch.body_touch());
+  int32_t* active = batch.scratch.active.data + range.first_body_pair;
+  int32_t touching = 0;
+  for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
+    const float squared = squared_length(position[second[pair]] - position[first[pair]]);
+    const bool solid = squared < reach.solid;
+    active[touching] = pair;
+    touching += squared < reach.touch;
+    work.normal[pair] = solid ? work.normal[pair] : 0.0f;
+    work.tangent[pair] = solid ? work.tangent[pair] : 0.0f;
+  }
+  BodyContact* contacts = batch.body_contacts();
+  int32_t count = 0;
+  bool fast = false;
+  for (int32_t i = 0; i < touching; ++i) {
+    const int32_t pair = active[i];
+    const Vec2 between = position[second[pair]] - position[first[pair]];
+    const Direction normal = direction_of(between);
+    tell_bodies(batch, pair, {normal.x, normal.y}, visitor);
+    if (!(squared_length(between) < reach.solid)) continue;
+    BodyContact& contact = contacts[count++];
+    fill_contact(batch, pair, normal, contact);
+    fast |= contact.approach <= -batch.c.restitution_threshold;
+  }
+  return {count, fast};
+}
+
+/// The contacts of a batch in one substep.
+struct JacobiContacts {
+  BodyContact* bodies;
+  StaticContact* statics;
+  int32_t body_count, static_count;
+};
+
+/// One Jacobi pass. `impulse(contact, velocity)` gives what is added to the impulses of a contact whose relative
+/// velocity is that at the beginning of the pass.
+template <class Impulse>
+HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impulse&& impulse) {
+  Motion* motion = batch.scratch.motion.data;
+  Motion* change = batch.scratch.change.data;
+  for (int32_t i = 0; i < found.body_count; ++i) {
+    BodyContact& contact = found.bodies[i];
+    const int32_t a = contact.first, b = contact.second;
+    const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[a], motion[b]));
+    apply(contact, added.normal, added.tangent, change[a], change[b]);
+  }
+  for (int32_t i = 0; i < found.static_count; ++i) {
+    StaticContact& contact = found.statics[i];
+    const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[contact.body]));
+    apply(contact, added.normal, added.tangent, change[contact.body]);
+  }
+  for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
+    motion[place].x += change[place].x;
+    motion[place].y += change[place].y;
+    motion[place].angular += change[place].angular;
+    change[place] = {};
+  }
+}
+
+/// Solves a contact by itself and returns by how much its impulses changed. Overlap is turned into a velocity (a bias)
+/// at which the two are to part; friction is bounded by the normal impulse of the pass before.
+/// kept   share of its impulse that a contact starts from: 1; but 0 in the first pass, in which it sees its bodies as
+/// if
+///        its stored impulse were applied to them, which it never is: that cancels it
+template <class Contact>
+HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch& batch, ContactVelocity velocity, float kept) {
+  const SolverConstants& c = batch.c;
+  const float depth = 2.0f * (batch.shape.radius - contact.arm);
+  const float bias = c.correction_rate / c.dt * (depth > c.slop ? depth - c.slop : 0.0f);
+  const float limit = c.friction * contact.normal_impulse;
+  const float tangent = clamp(kept * contact.tangent_impulse - contact.tangent_mass * velocity.tangent, -limit, limit);
+  const float pushed = kept * contact.normal_impulse + normal_mass(contact) * (bias - velocity.normal);
+  const float normal = pushed > 0.0f ? pushed : 0.0f;
+  const ContactVelocity change{normal - contact.normal_impulse, tangent - contact.tangent_impulse};
+  contact.normal_impulse = normal;
+  contact.tangent_impulse = tangent;
+  return change;
+}
+
+/// The impulse by which a contact that approached fast leaves at `restitution` times that speed: neither bounded by
+/// what it pushed before nor kept.
+template <class Contact>
+HEDON_FN ContactVelocity bounce_once(const Contact& contact, const SolverConstants& c, ContactVelocity velocity) {
+  if (!(contact.approach <= -c.restitution_threshold)) return {0.0f, 0.0f};
+  return {-normal_mass(contact) * (velocity.normal + c.restitution * contact.approach), 0.0f};
+}
+
+/// One Jacobi pass of position correction, before the bodies move, along the normals of the contacts.
+HEDON_FN void correct_positions_at_once(const Batch& batch, const JacobiContacts& found) {
+  Vec2* position = batch.scratch.position.data;
+  Motion* change = batch.scratch.change.data;
+  const float touch = batch.body_touch();
+  for (int32_t i = 0; i < found.body_count; ++i) {
+    const BodyContact& contact = found.bodies[i];
+    const Vec2 normal{contact.normal_x, contact.normal_y};
+    const float separation = dot(position[contact.second] - position[contact.first], normal) - touch;
+    apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.first],
+          change[contact.second]);
+  }
+  for (int32_t i = 0; i < found.static_count; ++i) {
+    const StaticContact& contact = found.statics[i];
+    const Vec2 normal{contact.normal_x, contact.normal_y}, anchor{contact.anchor_x, contact.anchor_y};
+    const float separation = dot(anchor - position[contact.body], normal);
+    apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.body]);
+  }
+  for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
+    position[place].x += change[place].x;
+    position[place].y += change[place].y;
+    change[place] = {};
+  }
+}
+
+/// The solver by name `jacobi`, for `try_batch`.
+struct JacobiSolver {
+  /// Damps and caps, finds contacts, solves, bounces, pushes overlaps apart, and moves.
+  template <class Visitor>
+  HEDON_FN static void substep(const Batch& batch, Visitor& visitor) {
+    damp(batch);
+    const auto nearest = [&](int32_t wall, Vec2 center) { return ring_point(batch.state, wall, center); };
+    BodyContact* bodies = batch.body_contacts();
+    StaticContact* statics = batch.static_contacts();
+    const FoundContacts body = find_in_order(batch, visitor);
+    const FoundContacts circle = find_circle_contacts(batch, jacobi_reach(batch.circle_touch()), statics, visitor);
+    StaticContact* on_walls = statics + circle.count;
+    const FoundContacts wall = find_wall_contacts(batch, jacobi_reach(batch.wall_touch()), on_walls, visitor, nearest);
+    const JacobiContacts found{bodies, statics, body.count, circle.count + wall.count};
+    if (found.body_count + found.static_count > 0) {
+      for (int32_t pass = 0; pass < batch.config.velocity_passes; ++pass) {
+        const float kept = pass == 0 ? 0.0f : 1.0f;
+        jacobi_pass(batch, found, [&](auto& contact, ContactVelocity velocity) {
+          return solve_biased(contact, batch, velocity, kept);
+        });
+      }
+      if (body.fast || circle.fast || wall.fast) {
+        jacobi_pass(batch, found,
+                    [&](auto& contact, ContactVelocity velocity) { return bounce_once(contact, batch.c, velocity); });
+      }
+      keep_impulses(bodies, body.count, batch.scratch.bodies);
+      keep_impulses(statics, circle.count, batch.scratch.circles);
+      keep_impulses(on_walls, wall.count, batch.scratch.walls);
+      for (int32_t pass = 0; pass < batch.config.position_passes; ++pass) correct_positions_at_once(batch, found);
+    }
+    move(batch);
+  }
+
+ private:
+  /// Damps the velocities, and then caps them: what contacts add in this substep is not capped.
+  HEDON_FN static void damp(const Batch& batch) {
+    const SolverConstants& c = batch.c;
+    for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
+      Motion& motion = batch.scratch.motion[place];
+      motion.x = clamp(motion.x * c.linear_decay, -c.max_speed, c.max_speed);
+      motion.y = clamp(motion.y * c.linear_decay, -c.max_speed, c.max_speed);
+      motion.angular = clamp(motion.angular * c.angular_decay, -c.max_angular_speed, c.max_angular_speed);
+      batch.scratch.change[place] = {};
+    }
+  }
+
+  HEDON_FN static void move(const Batch& batch) {
+    const PhysicsScratch& scratch = batch.scratch;
+    for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
+      scratch.position[place].x += scratch.motion[place].x * batch.c.dt;
+      scratch.position[place].y += scratch.motion[place].y * batch.c.dt;
+      scratch.angle[place] += scratch.motion[place].angular * batch.c.dt;
+    }
+  }
+};
+
+}  // namespace hedon
