@@ -59,15 +59,17 @@ def test_places_of_food() -> None:
 
 
 @pytest.mark.parametrize("preset", PRESETS)
-def test_released_is_the_three_faults(preset: str) -> None:
+def test_released_is_the_contact_solver_and_three_faults(preset: str) -> None:
     released, corrected = load_config(preset, "released"), load_config(preset)
     assert released.genome.mutation_noise == "frozen"
     assert released.learning.critic_target == "batch_mean"
+    assert released.physics.solver == "jacobi"
     assert all(food.growth_rate == 1.0 for food in released.food.values())
     undone = dataclasses.replace(
         released,
         fidelity="corrected",
         genome=corrected.genome,
+        physics=corrected.physics,
         learning=dataclasses.replace(released.learning, critic_target="per_state"),
         food={k: dataclasses.replace(food, growth_rate=0.2) for k, food in released.food.items()},
     )

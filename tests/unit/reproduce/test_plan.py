@@ -146,7 +146,7 @@ def test_names_of_runs_tell_settings_apart() -> None:
 
 def test_equal_settings_written_in_two_ways_are_one_condition(tmp_path: Path) -> None:
     faults = ("food.normal.growth_rate=1.0", "genome.mutation_noise=frozen", "learning.critic_target=batch_mean")
-    small_run(tmp_path / "a", 64, seeds=(1,), overrides=faults)
+    small_run(tmp_path / "a", 64, seeds=(1,), overrides=(*faults, "physics.solver=jacobi"))
     config = load_config("baseline", "released", SMALL)
     run(RunPlan(config, (2,), 64, tmp_path / "b", 1))
     item = an_item("a", Arm("released", overrides=SMALL, fidelity="released"), steps=64)

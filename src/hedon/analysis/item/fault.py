@@ -17,7 +17,8 @@ FACTORS = {
     "noise": "genome.mutation_noise=frozen",
     "critic": "learning.critic_target=batch_mean",
 }
-"""The faults, and the override that has each; all three are the fidelity `released`."""
+"""The faults, and the override that has each; all three and the released code's contact solver are the fidelity
+`released`."""
 
 SCALE = Scale((1, 2), 1_024_000)
 _MAIN = ("alive", "restricted_lifetime", "food_step", "w_food", "w_action", "neutral")
