@@ -127,6 +127,26 @@ def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
     assert narrow[3, 2] > 0.5  # the third was hit through the second
 
 
+def test_a_body_that_a_jam_throws_far_fills_no_list():
+    """Under the solver jacobi pushes add up, and a body may fly so far in a substep that nearly all pairs of a full arena
+    get listed. The default solver has no room for these, and needs none."""
+
+    def throw(solver):
+        lattice = np.stack(np.meshgrid(np.arange(14.0), np.arange(14.0)), -1).reshape(-1, 2)
+        foods = 110.5 + 21.0 * lattice[:80]
+        scene = make_scene(100.0 + 21.0 * lattice, foods, size=(480.0, 480.0), solver=solver, max_speed=1e4)
+        scene.array("velocity_x")[0], scene.array("velocity_y")[0] = -200.0, -200.0
+        scene.step()
+        return scene
+
+    scene = throw("jacobi")
+    assert scene.counters()["repeats"] > 4
+    assert len(scene.pairs("body")) > 10_000
+    assert len(scene.pairs("circle")) > 10_000
+    with pytest.raises(RuntimeError, match="neighbor_overflow"):
+        throw("sequential")
+
+
 def test_a_full_list_is_a_fault_and_leaves_the_bodies():
     scene = crowd(1, BODIES, 0, pair_limit=20)
     before = read(scene)
