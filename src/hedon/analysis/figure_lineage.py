@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hedon.analysis.interval import SHOWN_FROM, mean_interval
-from hedon.analysis.style import INK, MUTED, new_figure, say_empty, step_unit, styled
+from hedon.analysis.style import INK, MUTED, draw_message, new_figure, number_log_axis, step_unit, styled
 from hedon.analysis.trace import draw_zero_line
 
 
@@ -25,12 +25,11 @@ def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mappin
         titles: per weight, in the order of the panels.
         colors: per weight.
     """
+    if lines.is_empty():
+        return draw_message("no agents recorded")
     with styled():
         figure = new_figure(2.2 * (len(titles) + 1) + 1.2, 2.9)
         panels = figure.subplots(1, len(titles) + 1, sharex=True)
-        if lines.is_empty():
-            say_empty(panels[0], "no agents recorded")
-            return figure
         unit, name = step_unit(float(lines["step"].to_numpy().max()))
         first = lines.filter(pl.col("weight") == next(iter(titles)))
         for rows in first.partition_by("seed"):
@@ -38,7 +37,7 @@ def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mappin
                 rows["step"].to_numpy() / unit, rows["lines"], where="post", color=INK, linewidth=1.0, alpha=0.6
             )
         panels[0].set_yscale("log")
-        panels[0].yaxis.set_major_formatter("{x:g}")
+        number_log_axis(panels[0].yaxis)
         panels[0].set_title("lines to the survivors")
         for axes, (weight, title) in zip(panels[1:], titles.items(), strict=True):
             _draw_weight(axes, lines.filter(pl.col("weight") == weight), unit, colors[weight])
@@ -50,8 +49,8 @@ def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mappin
             axes.set_xlabel(f"time [{name}]")
         panels[1].set_ylabel("mean weight")
         handles = [
-            Line2D([], [], color=INK, linewidth=2.0, label="lines to the survivors"),
-            Line2D([], [], color=MUTED, linewidth=1.0, label="all alive"),
+            Line2D([], [], color=INK, linewidth=2.0, label="mean over the lines"),
+            Line2D([], [], color=MUTED, linewidth=1.0, label="mean over all alive"),
         ]
         figure.legend(handles=handles, loc="outside lower right", ncols=2)
     return figure

@@ -11,8 +11,10 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from hedon.record.atomic import write_atomically
 
@@ -62,6 +64,7 @@ STYLE: dict[Any, Any] = {
     "legend.handlelength": 1.4,
 }
 DOTS_PER_INCH = 160
+_LOG_NUMBERS = {10.0: (1, 2, 3, 5, 7), 300.0: (1, 2, 5)}  # by the ratio of a logarithmic axis's ends, up to which
 
 
 @contextmanager
@@ -125,6 +128,15 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
     if remark:
         at = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
         axes.annotate(remark, **at, va="bottom", color=MUTED, fontsize=8.0, linespacing=1.15)
+
+
+def number_log_axis(axis: Axis) -> None:
+    """Writes plain numbers on a logarithmic axis whose limits are set, a few to a decade where there is room."""
+    low, high = axis.get_view_interval()
+    shown = next((numbers for ratio, numbers in _LOG_NUMBERS.items() if high < ratio * low), (1,))
+    axis.set_major_locator(LogLocator(subs=shown))
+    axis.set_major_formatter("{x:,.10g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def say_empty(axes: Axes, text: str) -> None:
