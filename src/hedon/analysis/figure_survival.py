@@ -5,10 +5,11 @@ import polars as pl
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.style import INK, MUTED, new_figure, say_empty, seed_color, step_unit, styled
+from hedon.analysis.style import INK, draw_message, new_figure, number_log_axis, seed_color, step_unit, styled
 
 _LEGEND_SEEDS = 10
-_SHOWN_SHARE = 0.01  # of the newborn, below which the long tail of the axis is cut
+_SHOWN_SHARE = 0.01  # of the newborn, below which the long tail of the axes is cut
+_MARGIN = 0.04  # of the logarithmic axis, beyond the curves
 
 
 def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
@@ -21,12 +22,11 @@ def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
         points: table `survival` of one condition.
         lifetimes: table `lifetime_world` of the same condition.
     """
+    if points.is_empty():
+        return draw_message("nobody died")
     with styled():
-        figure = new_figure(8.6, 3.3)
+        figure = new_figure(8.6, 3.5)
         linear, logarithmic = figure.subplots(1, 2, sharex=True)
-        if points.is_empty():
-            say_empty(linear, "nobody died")
-            return figure
         shown = points.filter(pl.col("share") >= _SHOWN_SHARE)
         end = float(shown["age"].to_numpy().max())
         unit, name = step_unit(end)
@@ -44,15 +44,16 @@ def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
             for axes in (linear, logarithmic):
                 axes.plot(age / unit, np.exp(-age / means.mean()), color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
         logarithmic.set_yscale("log")
-        logarithmic.set_ylim(_SHOWN_SHARE, 1.15)
+        least = max(_SHOWN_SHARE, float(shown.select(pl.min_horizontal("share", "low").min()).item()))
+        logarithmic.set_ylim(least ** (1 + _MARGIN), least**-_MARGIN)
+        number_log_axis(logarithmic.yaxis)
         linear.set(xlim=(0, end / unit), ylim=(0, 1.02), ylabel="share that lives on")
         linear.set_title("survival")
         logarithmic.set_title("the same, logarithmic")
-        logarithmic.yaxis.set_major_formatter("{x:g}")
         for axes in (linear, logarithmic):
             axes.set_xlabel(f"age [{name}]")
         handles = [Line2D([], [], color=INK, linestyle=(0, (4, 3)), linewidth=1.0, label="constant chance of death")]
-        if 1 < len(seeds) <= _LEGEND_SEEDS:
+        if len(seeds) <= _LEGEND_SEEDS:
             handles += [Line2D([], [], color=seed_color(i), label=f"seed {seed}") for i, seed in enumerate(seeds)]
-        linear.legend(handles=handles, loc="upper right", labelcolor=MUTED)
+        figure.legend(handles=handles, loc="outside upper left", ncols=6)
     return figure

@@ -1,10 +1,41 @@
 """Whether figures can be read: nothing printed over the data, plain numbers, panels that are filled."""
 
+import numpy as np
 import polars as pl
 import pytest
 from matplotlib.figure import Figure
+from synthetic_run import write_run
 
+from hedon.analysis.analyze import Analysis, analyze
 from hedon.analysis.figure_lineage import draw_lineages
+from hedon.analysis.figure_survival import draw_survival
+from hedon.record.reader import open_run
+
+
+@pytest.fixture(scope="module")
+def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
+    """Three worlds, so short that most who were born live on."""
+    folder = tmp_path_factory.mktemp("reading") / "run"
+    run = open_run(write_run(folder, intervals=6, worlds=3, snapshot=False))
+    return analyze([run], ["lifetime", "genealogy"])
+
+
+def test_the_legend_of_survival_lies_beside_the_curves(analysis: Analysis) -> None:
+    figure = survival(analysis)
+    assert overprinted(figure) == []
+    assert [text.get_text() for text in figure.legends[0].get_texts()][1:] == ["seed 1", "seed 2", "seed 3"]
+
+
+def test_the_curves_fill_the_logarithmic_panel(analysis: Analysis) -> None:
+    logarithmic = survival(analysis).axes[1]
+    least, most = np.log(logarithmic.get_ylim())
+    lowest = np.log(analysis.tables["survival"].rows["low"].drop_nulls().to_numpy().min())
+    assert most - lowest > 0.9 * (most - least)
+    assert lowest > least
+
+
+def test_nobody_s_death_is_told_without_axes() -> None:
+    assert not any(axes.axison for axes in draw_survival(pl.DataFrame(), pl.DataFrame()).axes)
 
 
 @pytest.mark.parametrize("counts", [(50, 56), (20, 140), (3, 700), (1, 20_000)])
@@ -16,6 +47,10 @@ def test_numbers_of_lines_are_written_in_full(counts: tuple[int, int]) -> None:
     assert all(text.replace(",", "").replace(".", "").isdigit() for text in shown)
 
 
+def survival(analysis: Analysis) -> Figure:
+    return draw_survival(analysis.tables["survival"].rows, analysis.tables["lifetime_world"].rows)
+
+
 def numbers(figure: Figure) -> list[str]:
     """What is written at the ticks of the first y axis, within its limits."""
     figure.draw_without_rendering()
@@ -23,3 +58,18 @@ def numbers(figure: Figure) -> list[str]:
     low, high = axes.get_ylim()
     ticks = [*axes.yaxis.get_major_ticks(), *axes.yaxis.get_minor_ticks()]
     return [t.label1.get_text() for t in ticks if low <= t.get_loc() <= high and t.label1.get_text()]
+
+
+def overprinted(figure: Figure) -> list[str]:
+    """The texts that lie within axes, legends' too, and that a line crosses."""
+    figure.draw_without_rendering()
+    found = []
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        boxes = [(text.get_text(), text.get_window_extent()) for text in axes.texts if text.get_text()]
+        boxes += [("legend", legend.get_window_extent())] if legend is not None else []
+        paths = [line.get_transform().transform_path(line.get_path()) for line in axes.lines]
+        for collection in axes.collections:
+            paths += [collection.get_transform().transform_path(path) for path in collection.get_paths()]
+        found += [name for name, box in boxes if any(path.intersects_bbox(box, filled=False) for path in paths)]
+    return found
