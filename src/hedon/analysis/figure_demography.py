@@ -2,13 +2,16 @@
 
 import numpy as np
 import polars as pl
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hedon.analysis.demography import expected_lifetime, reproduction_number
 from hedon.analysis.population import run_tail
-from hedon.analysis.style import BLUE, INK, MUTED, ORANGE, new_figure, step_unit, styled
+from hedon.analysis.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 from hedon.config import Config
 
 _LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
@@ -26,9 +29,9 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
-        figure = new_figure(8.6, 3.0)
+        figure = new_figure(8.6, 3.2)
         left, right = figure.subplots(1, 2, sharex=True)
-        draw_reproduction(left, config)
+        handles: list[Artist] = [draw_reproduction(left, config)]
         right.plot(energy, np.where(np.isfinite(lifetime), lifetime / unit, np.nan), color=BLUE, linewidth=2.0)
         right.set_title(f"mean life [{name}]")
         _set_axes(right, energy)
@@ -36,42 +39,30 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
         if quartiles is not None:
             for axes in (left, right):
                 axes.axvspan(quartiles[0], quartiles[2], color=ORANGE, alpha=0.16, linewidth=0)
-                axes.axvline(quartiles[1], color=ORANGE, linewidth=1.2)
-            right.annotate(
-                "half of the living",
-                (quartiles[1], 0.92),
-                xycoords=("data", "axes fraction"),
-                xytext=(5, 0),
-                textcoords="offset points",
-                color=MUTED,
-                fontsize=8,
-            )
+                axes.axvline(quartiles[1], color=ORANGE, linewidth=1.2, clip_on=False)
+            handles.append(Patch(color=ORANGE, alpha=0.16, linewidth=0, label="half of the living"))
+            handles.append(Line2D([], [], color=ORANGE, linewidth=1.2, label="their median"))
+        figure.legend(handles=handles, loc="outside upper left", ncols=3)
     return figure
 
 
-def draw_reproduction(axes: Axes, config: Config) -> None:
+def draw_reproduction(axes: Axes, config: Config) -> Line2D:
     """Draws R0 at constant energy, and the line R0 = 1 at which a lineage keeps its size.
 
     Args:
         axes: to draw on.
         config: the settings.
+
+    Returns:
+        The line R0 = 1, with its label, for the legend.
     """
     energy = _energies(config)
     r0 = reproduction_number(config.hazard, config.birth, energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
-    axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
-    axes.annotate(
-        "a lineage keeps its size",
-        (1.0, 1.0),
-        xycoords=("axes fraction", "data"),
-        xytext=(-2, 4),
-        textcoords="offset points",
-        ha="right",
-        color=MUTED,
-        fontsize=8,
-    )
+    one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
     axes.set_title("children tried in a life, R0")
     _set_axes(axes, energy)
+    return one
 
 
 def _energies(config: Config) -> NDArray[np.float64]:
@@ -85,7 +76,7 @@ def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:
     axes.set_xlabel("energy, held constant")
     axes.set_xticks([t for t in (0, 1, 10, 100, 1000) if t <= energy[-1]])
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter("{x:g}")
+    number_log_axis(axes.yaxis)
 
 
 def _quartiles(populations: list[pl.DataFrame]) -> tuple[float, float, float] | None:

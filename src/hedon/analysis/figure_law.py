@@ -50,12 +50,13 @@ def draw_birth(config: Config) -> Figure:
     energy = np.linspace(0, min(_MOST_ENERGY, config.energy.capacity), _POINTS)
     none = float(reproduction_number(config.hazard, config.birth, 0.0))
     with styled():
-        figure = new_figure(8.6, 3.0)
+        figure = new_figure(8.6, 3.2)
         chance, children = figure.subplots(1, 2)
         chance.plot(energy, 1e3 * birth_rate(config.birth, energy), color=BLUE, linewidth=2.0)
         chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * config.birth.kappa), xlabel="energy")
         chance.set_title("chance of trying a birth [1/1000 steps]")
-        draw_reproduction(children, config)
+        one = draw_reproduction(children, config)
+        figure.legend(handles=[one], loc="outside lower right")
         children.plot(0, none, marker="o", markersize=6, color=VERMILION, clip_on=False, zorder=5)
         children.annotate(
             f"without energy {none:.2f}",

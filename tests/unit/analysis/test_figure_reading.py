@@ -7,9 +7,14 @@ from matplotlib.figure import Figure
 from synthetic_run import write_run
 
 from hedon.analysis.analyze import Analysis, analyze
+from hedon.analysis.figure_demography import draw_demography
+from hedon.analysis.figure_law import draw_birth
 from hedon.analysis.figure_lineage import draw_lineages
 from hedon.analysis.figure_survival import draw_survival
+from hedon.config import load_config
 from hedon.record.reader import open_run
+
+BASELINE = load_config("baseline")
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +41,20 @@ def test_the_curves_fill_the_logarithmic_panel(analysis: Analysis) -> None:
 
 def test_nobody_s_death_is_told_without_axes() -> None:
     assert not any(axes.axison for axes in draw_survival(pl.DataFrame(), pl.DataFrame()).axes)
+
+
+@pytest.mark.parametrize("energy", [0.0, 1.5, 40.0, 300.0])
+def test_no_energy_of_the_living_makes_demography_unreadable(energy: float) -> None:
+    names = ("energy_q25", "energy_median", "energy_q75")
+    rows = pl.DataFrame({"step": [1024]} | {name: [f * energy] for name, f in zip(names, (0.6, 1, 1.3), strict=True)})
+    figure = draw_demography(BASELINE, [rows])
+    assert overprinted(figure) == []
+    assert "half of the living" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_the_law_of_birth_says_what_its_line_means() -> None:
+    figure = draw_birth(BASELINE)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["R0 = 1: a lineage keeps its size"]
 
 
 @pytest.mark.parametrize("counts", [(50, 56), (20, 140), (3, 700), (1, 20_000)])
