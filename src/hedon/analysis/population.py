@@ -18,6 +18,9 @@ def history(
 ) -> pl.DataFrame:
     """The course of each world, in at most `points` intervals of equal length.
 
+    A run that ends within a window has a short last row in the table. What is counted in it, say one birth in 16
+    steps, tells nothing of a rate by itself, so its rates are taken over the interval before as well.
+
     Args:
         population: table `population`.
         food_kinds: names.
@@ -34,15 +37,22 @@ def history(
     """
     width = max((max(_last_step(population), end) + 1) / points, 1.0)
     groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin"))
-    rates = [(1000.0 * pl.col(name).sum() / pl.col("steps").sum()).alias(name) for name in _COUNTS]
-    lived = pl.col("agent_steps").sum()
-    eaten = [
-        pl.when(lived > 0).then(1000.0 * pl.col(f"eaten_{kind}").sum() / lived).alias(f"eaten_{kind}")
-        for kind in food_kinds
-    ]
-    names = ("alive", "energy_mean", "generation_mean", *(f"{name}_mean" for name in weight_names))
-    means = [pl.col(name).mean() for name in names]
-    return groups.agg(pl.col("step").max(), *means, *rates, *eaten).sort("world", "bin")
+    means = ("alive", "energy_mean", "generation_mean", *(f"{name}_mean" for name in weight_names))
+    eaten = [f"eaten_{kind}" for kind in food_kinds]
+    sums = ("steps", "agent_steps", *_COUNTS, *eaten)
+    rows = groups.agg(pl.col("step").max(), pl.col(means).mean(), pl.col(sums).cast(pl.Int64).sum())
+    rows = rows.sort("world", "bin")
+    is_part = pl.col("steps") < whole_window(population)
+    before = pl.col(sums).shift(1, fill_value=0).over("world")
+    rows = rows.with_columns(pl.when(is_part).then(pl.col(sums) + before).otherwise(pl.col(sums)))
+    lived = pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
+    rates = (pl.col(_COUNTS) * 1000.0 / pl.col("steps"), pl.col(eaten) * 1000.0 / lived)
+    return rows.select("world", "bin", "step", *means, *rates)
+
+
+def whole_window(population: pl.DataFrame) -> int:
+    """Length of a whole window [step]: that of the longest interval; 0 without intervals."""
+    return int(population["steps"].to_numpy().max(initial=0))
 
 
 def run_tail(population: pl.DataFrame) -> pl.DataFrame:

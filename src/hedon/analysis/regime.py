@@ -34,6 +34,7 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.demography import hazard
+from hedon.analysis.population import whole_window
 from hedon.config import Config
 
 EXTINCT, IDLE, ROOM, FOOD, BETWEEN = (
@@ -80,11 +81,16 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
     Args:
         population: its rows of the table `population`.
         config: its settings.
-        intervals: into how many the rows are divided, at most; they have equal lengths, but for the rows' own.
+        intervals: into how many the rows are divided, at most; they have equal lengths, but for the rows' own. A last
+            one shorter than a window belongs to the one before, unless the world dies out in it: it is too short for
+            rates.
     """
     if population.is_empty():
         return []
     edges = np.linspace(0, population.height, min(intervals, population.height) + 1).astype(int).tolist()
+    last = population[edges[-2] :]
+    if len(edges) > 2 and last["steps"].sum() < whole_window(population) and last["alive"][-1]:
+        del edges[-2]
     return [interval_regime(population[a:b], config) for a, b in pairwise(edges)]
 
 

@@ -159,3 +159,22 @@ def test_the_papers_figures_are_in_proportion() -> None:
         if figures.food_per_step is not None and figures.mean_lifetime is not None:
             assert 1 < figures.food_per_step * figures.mean_lifetime < 1000  # foods in a life
     assert all(0 <= share <= 1 for share in EXTINCTION.values())
+
+
+def test_a_part_of_a_window_makes_no_spike() -> None:
+    whole = {"births": 20, "deaths": 10, "eaten_normal": 100, "agent_steps": 100 * 1024, "steps": 1024, "alive": 100}
+    part = {"births": 2, "deaths": 0, "eaten_normal": 4, "agent_steps": 100 * 64, "steps": 64, "alive": 102}
+    means = {"energy_mean": 1.0, "generation_mean": 2.0, "births_failed_full": 0, "births_failed_space": 0}
+    ends = {0: (1024, 2048, 2112), 1: (64,)}  # world 1 died out in its first window
+    rows = [
+        {"world": world, "step": step} | means | (whole if step % 1024 == 0 else part)
+        for world, steps in ends.items()
+        for step in steps
+    ]
+    found = history(pl.DataFrame(rows), ("normal",), points=100)
+    first = found.filter(pl.col("world") == 0)
+    assert first["step"].to_list() == [1024, 2048, 2112]
+    assert first["alive"].to_list() == [100, 100, 102]
+    assert first["births"].to_list() == pytest.approx([20e3 / 1024, 20e3 / 1024, 22e3 / 1088])
+    assert first["eaten_normal"][-1] == pytest.approx(104e3 / (100 * 1088))
+    assert found.filter(pl.col("world") == 1)["births"].to_list() == [31.25]

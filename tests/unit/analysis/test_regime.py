@@ -79,3 +79,17 @@ def test_over_time(tmp_path: Path) -> None:
     assert regimes(population.filter(pl.col("world") == 1), BASELINE)[-1].regime == EXTINCT
     assert regimes(population.head(0), BASELINE) == []
     assert len(regimes(population.head(3), BASELINE)) == 3
+
+
+def test_a_part_of_a_window_is_no_interval_of_its_own() -> None:
+    part = {"step": 3 * 1024 + 16, "steps": 16, "agent_steps": 150 * 16, "births": 0, "deaths": 0, "eaten_normal": 3}
+    rows = [ROW | {"step": 1024 * i} for i in (1, 2, 3)]
+    found = regimes(pl.DataFrame([*rows, ROW | part]), BASELINE)
+    assert [(r.step, r.steps, r.regime) for r in found] == [
+        (1024, 1024, BETWEEN),
+        (2048, 1024, BETWEEN),
+        (3088, 1040, BETWEEN),
+    ]
+    dies_out = regimes(pl.DataFrame([*rows, ROW | part | {"alive": 0}]), BASELINE)
+    assert [(r.steps, r.regime) for r in dies_out[2:]] == [(1024, BETWEEN), (16, EXTINCT)]
+    assert [r.steps for r in regimes(pl.DataFrame([ROW | part]), BASELINE)] == [16]
