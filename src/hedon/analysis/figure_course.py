@@ -18,7 +18,7 @@ def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str
     """
     end = max(last_step(rows) for rows in histories.values())
     with styled():
-        figure = new_figure(3.2 * len(panels), 3.0)
+        figure = new_figure(3.2 * len(panels), 3.2)
         axes = figure.subplots(1, len(panels), squeeze=False)[0]
         for panel, (column, title) in zip(axes, panels.items(), strict=True):
             panel.set_title(title, fontsize=9)
@@ -26,5 +26,5 @@ def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str
                 draw_traces(panel, rows, column, color, label, end=end)
             draw_time_axis(panel, next(iter(histories.values())), end)
             panel.set_ylim(bottom=0)
-        axes[-1].legend(loc="best")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
     return figure

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.population import history
-from hedon.analysis.style import BLUE, INK, ORANGE, VERMILION, VIOLET, new_figure, say_empty, styled
+from hedon.analysis.style import BLUE, INK, ORANGE, VERMILION, VIOLET, legend_above, new_figure, say_empty, styled
 from hedon.analysis.trace import draw_time_axis, draw_traces
 
 _POINTS = 100  # few enough that chance does not hide the course
@@ -48,7 +48,7 @@ def _draw(axes: Axes, rows: pl.DataFrame, title: str, shown: Mapping[str, tuple[
         draw_traces(axes, rows, column, color, label or None, thin=len(shown) == 1)
     axes.set_ylim(bottom=0, top=None if _largest(rows, shown) > 0 else 1)
     if any(label for label, _ in shown.values()):
-        axes.legend(loc="best")
+        legend_above(axes)
     if rows.is_empty():
         say_empty(axes, "nothing recorded yet")
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from hedon.analysis.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, ROOM
-from hedon.analysis.style import GREEN, INK, ORANGE, PALE, VIOLET, new_figure, say_empty, step_unit, styled
+from hedon.analysis.style import GREEN, INK, ORANGE, PALE, VIOLET, draw_message, new_figure, step_unit, styled
 
 REGIME_COLORS = {ROOM: ORANGE, FOOD: GREEN, IDLE: VIOLET, BETWEEN: PALE, EXTINCT: INK}
 _NAMED_WORLDS = 24  # rows that still have room for their seed
@@ -18,13 +18,12 @@ def draw_regimes(regimes: pl.DataFrame) -> Figure:
         regimes: table `regime_time` of one condition.
     """
     seeds = regimes["seed"].unique(maintain_order=True).to_list() if regimes.height else []
+    if not seeds:
+        return draw_message("nothing recorded yet")
     with styled():
-        figure = new_figure(8.6, 1.15 + 0.24 * min(max(len(seeds), 1), 40))
+        figure = new_figure(8.6, 1.15 + 0.24 * min(len(seeds), 40))
         axes = figure.subplots()
         axes.grid(visible=False)
-        if not seeds:
-            say_empty(axes, "nothing recorded yet")
-            return figure
         unit, name = step_unit(float(regimes["step"].to_numpy().max()))
         for row, seed in enumerate(seeds):
             mine = regimes.filter(pl.col("seed") == seed)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.cohort import COMPLETE
 from hedon.analysis.interval import SHOWN_FROM
-from hedon.analysis.style import new_figure, say_empty, step_unit, styled
+from hedon.analysis.style import draw_message, new_figure, say_empty, step_unit, styled
 from hedon.analysis.trace import draw_zero_line
 
 _ROWS = {"children": "children", "lifespan": "length of life"}
@@ -30,11 +30,10 @@ def draw_selection(
         titles: per weight, in the order of the panels.
         colors: per weight.
     """
+    if worlds.is_empty():
+        return draw_message("nothing recorded yet")
     with styled():
         figure = new_figure(2.35 * len(titles) + 1.2, 4.4)
-        if worlds.is_empty():
-            say_empty(figure.subplots(), "nothing recorded yet")
-            return figure
         panels = figure.subplots(len(_ROWS), len(titles), sharex=True, sharey=True, squeeze=False)
         known = worlds.filter(pl.col("standard_gradient").is_not_null())
         unit, name = step_unit(float(worlds["to_step"].to_numpy().max(initial=0.0)))
@@ -54,6 +53,7 @@ def draw_selection(
             panels[i, 0].set_ylabel(f"gradient on\n{label}")
         low, high = panels[0, 0].get_ylim()
         panels[0, 0].set_ylim(min(low, -_LEAST_RANGE), max(high, _LEAST_RANGE))
+        panels[0, 0].set_xlim(left=0)
         if known.is_empty():
             say_empty(panels[0, 0], "too few agents")
     return figure

@@ -130,6 +130,14 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
         axes.annotate(remark, **at, va="bottom", color=MUTED, fontsize=8.0, linespacing=1.15)
 
 
+def legend_above(axes: Axes, columns: int = 2) -> None:
+    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn."""
+    legend = axes.legend(loc="upper left", ncols=columns, borderaxespad=0.2)
+    rows = -(-len(legend.get_texts()) // columns)
+    low, high = axes.get_ylim()
+    axes.set_ylim(top=high + (high - low) * (0.06 + 0.11 * rows))
+
+
 def number_log_axis(axis: Axis) -> None:
     """Writes plain numbers on a logarithmic axis whose limits are set, a few to a decade where there is room."""
     low, high = axis.get_view_interval()
@@ -147,7 +155,7 @@ def say_empty(axes: Axes, text: str) -> None:
 def draw_message(text: str) -> Figure:
     """A figure that says why there is nothing to see."""
     with styled():
-        figure = new_figure(4.6, 1.2)
+        figure = new_figure(4.6, 1.4)
         axes = figure.add_subplot()
         axes.axis("off")
         say_empty(axes, text)

@@ -10,6 +10,7 @@ from hedon.analysis.analyze import Analysis, analyze
 from hedon.analysis.figure_demography import draw_demography
 from hedon.analysis.figure_law import draw_birth
 from hedon.analysis.figure_lineage import draw_lineages
+from hedon.analysis.figure_population import draw_population
 from hedon.analysis.figure_survival import draw_survival
 from hedon.config import load_config
 from hedon.record.reader import open_run
@@ -37,6 +38,14 @@ def test_the_curves_fill_the_logarithmic_panel(analysis: Analysis) -> None:
     lowest = np.log(analysis.tables["survival"].rows["low"].drop_nulls().to_numpy().min())
     assert most - lowest > 0.9 * (most - least)
     assert lowest > least
+
+
+def test_the_legends_of_the_population_lie_above_the_bands(analysis: Analysis) -> None:
+    rows = analysis.runs[0].population()
+    wide = 30 * pl.col("world")  # a band that fills its panel
+    figure = draw_population(rows.with_columns(births=wide, births_failed_space=wide), ("normal",), {"normal": "green"})
+    assert overprinted(figure) == []
+    assert sum(axes.get_legend() is not None for axes in figure.axes) == 2
 
 
 def test_nobody_s_death_is_told_without_axes() -> None:
@@ -80,15 +89,15 @@ def numbers(figure: Figure) -> list[str]:
 
 
 def overprinted(figure: Figure) -> list[str]:
-    """The texts that lie within axes, legends' too, and that a line crosses."""
+    """The texts that lie within axes, legends' too, and that a line or a band crosses."""
     figure.draw_without_rendering()
     found = []
     for axes in figure.axes:
         legend = axes.get_legend()
         boxes = [(text.get_text(), text.get_window_extent()) for text in axes.texts if text.get_text()]
         boxes += [("legend", legend.get_window_extent())] if legend is not None else []
-        paths = [line.get_transform().transform_path(line.get_path()) for line in axes.lines]
-        for collection in axes.collections:
-            paths += [collection.get_transform().transform_path(path) for path in collection.get_paths()]
-        found += [name for name, box in boxes if any(path.intersects_bbox(box, filled=False) for path in paths)]
+        paths = [(line.get_transform().transform_path(line.get_path()), False) for line in axes.lines]
+        for band in axes.collections:
+            paths += [(band.get_transform().transform_path(path), True) for path in band.get_paths()]
+        found += [name for name, box in boxes if any(path.intersects_bbox(box, filled) for path, filled in paths)]
     return found
