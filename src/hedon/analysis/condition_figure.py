@@ -1,11 +1,10 @@
 """All figures of one condition, by name and in the order in which a report shows them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import polars as pl
-from matplotlib.figure import Figure
 
+from hedon.analysis import report_figure
 from hedon.analysis.figure_demography import draw_demography
 from hedon.analysis.figure_history import draw_history
 from hedon.analysis.figure_lineage import draw_lineages
@@ -14,26 +13,10 @@ from hedon.analysis.figure_regime import draw_regimes
 from hedon.analysis.figure_selection import draw_selection
 from hedon.analysis.figure_survival import draw_survival
 from hedon.analysis.figure_weights import draw_weights
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.style import food_colors, weight_colors, weight_titles
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
-
-
-@dataclass(frozen=True)
-class NamedFigure:
-    """A figure.
-
-    Attributes:
-        name: names its file.
-        question: that it answers, its heading.
-        figure: itself.
-        caption: how to read it; may be empty.
-    """
-
-    name: str
-    question: str
-    figure: Figure
-    caption: str = ""
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:
@@ -55,22 +38,16 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
         return mine.get(name, pl.DataFrame())
 
     kinds, neutral = first.food_kinds, first.neutral_names
-    yield NamedFigure("weights", "Which rewards evolved?", draw_weights(agents, kinds, neutral))
-    yield NamedFigure("history", "When did they evolve?", draw_history(population, kinds, neutral, colors))
-    yield NamedFigure("population", "How do the worlds fare?", draw_population(population, kinds, colors))
-    yield NamedFigure("regime", "What limits them?", draw_regimes(rows("regime_time")))
-    yield NamedFigure("survival", "How long do agents live?", draw_survival(rows("survival"), rows("lifetime_world")))
-    yield NamedFigure(
-        "selection",
-        "Which weights are selected?",
-        draw_selection(rows("selection_window"), rows("selection_world"), titles, tints),
-    )
-    yield NamedFigure("lineage", "Whose descendants are left?", draw_lineages(rows("lineage"), titles, tints))
-    yield NamedFigure(
-        "demography",
-        "What is energy worth?",
-        draw_demography(first.config, [world.population for world in worlds]),
-    )
+    yield report_figure.WEIGHTS.drawn(draw_weights(agents, kinds, neutral))
+    yield report_figure.HISTORY.drawn(draw_history(population, kinds, neutral, colors))
+    yield report_figure.POPULATION.drawn(draw_population(population, kinds, colors))
+    yield report_figure.REGIME.drawn(draw_regimes(rows("regime_time")))
+    yield report_figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))
+    selected = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
+    yield report_figure.SELECTION.drawn(selected)
+    yield report_figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
+    energies = draw_demography(first.config, [world.population for world in worlds])
+    yield report_figure.DEMOGRAPHY.drawn(energies)
 
 
 def _of_condition(rows: pl.DataFrame, condition: str) -> pl.DataFrame:

@@ -1,9 +1,13 @@
-"""Makes `docs/records.md` from the schema: `python -m hedon.analysis.document > docs/records.md`."""
+"""Makes `docs/records.md` from the schema: `python -m hedon.analysis.document > docs/records.md`.
+
+Also the table of `docs/figures.md`, which a test compares.
+"""
 
 import sys
 from collections.abc import Mapping
 from dataclasses import fields
 
+from hedon.analysis.report_figure import FIGURES
 from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 from hedon.record.column import Table
 from hedon.record.manifest import Manifest, Session
@@ -79,6 +83,12 @@ def records_page() -> str:
     parts.append(f"### The run\n\n{_key_table(RUN_KEYS)}")
     parts.append(f"### Each of `worlds`\n\n{_key_table(WORLD_KEYS)}")
     return "\n".join(parts)
+
+
+def figure_table() -> str:
+    """The figures of a report, as a Markdown table: file, question, caption."""
+    rows = [f"| `{kind.name}.png` | {kind.question} | {kind.caption} |" for kind in FIGURES]
+    return "\n".join(["| figure | question | what is drawn, and how to read it |", "|---|---|---|", *rows]) + "\n"
 
 
 def _table_section(table: Table) -> str:

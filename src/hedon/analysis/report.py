@@ -7,12 +7,14 @@ same on one page: `report.html`, which holds its figures and needs nothing else,
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
-from hedon.analysis.condition_figure import NamedFigure, condition_figures
+from hedon.analysis.condition_figure import condition_figures
 from hedon.analysis.figure_world import draw_world, telling_agent
 from hedon.analysis.page import FigureFile, html_page, markdown_page
+from hedon.analysis.report_figure import WORLD, NamedFigure
 from hedon.analysis.style import food_colors, save_figure, svg_bytes
 from hedon.analysis.summary import summarize
 from hedon.record.atomic import write_atomically
@@ -84,8 +86,7 @@ def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[st
             focus = telling_agent(snapshot)
             colors = food_colors(snapshot.food_kinds, run.manifest.food_colors)
             drawn = draw_world(snapshot, colors, [] if focus is None else [focus])
-            named = NamedFigure("world", "What does a world look like?", drawn)
-            yield condition, _with_prefix(run.path.name, named, several=len(analysis.runs) > 1)
+            yield condition, _with_prefix(run.path.name, WORLD.drawn(drawn), several=len(analysis.runs) > 1)
 
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:
@@ -97,9 +98,9 @@ def _condition_of(run: Run, analysis: Analysis) -> str | None:
 def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigure:
     """A name of its own where the report has such a figure more than once."""
     slug = re.sub(r"[^a-z0-9]+", "-", prefix.lower()).strip("-")
-    return NamedFigure(f"{slug}-{named.name}" if several else named.name, named.question, named.figure)
+    return replace(named, name=f"{slug}-{named.name}") if several else named
 
 
 def _save(folder: Path, condition: str, named: NamedFigure) -> FigureFile:
     path = save_figure(named.figure, folder / FIGURES / f"{named.name}.png").relative_to(folder)
-    return FigureFile(condition, named.question, path.as_posix(), svg_bytes(named.figure))
+    return FigureFile(condition, named.question, path.as_posix(), svg_bytes(named.figure), named.caption)

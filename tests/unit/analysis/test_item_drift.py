@@ -8,10 +8,10 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.item.drift import ALL, ARMS, DRIFT
 from hedon.analysis.item.item import Material
 from hedon.analysis.paper import STEPS
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import PRESETS

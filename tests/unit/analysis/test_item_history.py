@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from synthetic_run import write_run
 
-from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.weight_history import HISTORIES
 from hedon.analysis.paper import STEPS
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.style import save_figure
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.record.reader import open_run

@@ -16,6 +16,7 @@ from hedon.analysis.figure_selection import draw_selection
 from hedon.analysis.figure_survival import draw_survival
 from hedon.analysis.page import FigureFile, html_page
 from hedon.analysis.report import write_report
+from hedon.analysis.report_figure import FIGURES
 from hedon.analysis.style import svg_bytes, weight_colors, weight_titles
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
@@ -69,6 +70,14 @@ def test_the_page_stands_alone(report: Path) -> None:
     assert "url(" not in text
     assert 'name="viewport"' in text
     assert "@media print" in text
+
+
+def test_every_figure_says_how_to_read_it(report: Path) -> None:
+    html, markdown = ((report / name).read_text(encoding="utf-8") for name in ("report.html", "report.md"))
+    for kind in FIGURES:
+        assert len(kind.caption) > 100
+        assert markdown.count(kind.caption) == 2
+        assert html.replace("&#39;", "'").count(f"<figcaption>{kind.caption}</figcaption>") == 2
 
 
 def test_the_page_tells_what_there_is(report: Path) -> None:

@@ -10,10 +10,10 @@ from synthetic_run import write_run
 
 from hedon.analysis.analysis_table import cells
 from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
-from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
 from hedon.analysis.item import acting, entropy, fault, noise, released, supply
 from hedon.analysis.item.item import Item, Material
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Literal
 
-from hedon.analysis.condition_figure import NamedFigure
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
 from hedon.config import Config, load_config

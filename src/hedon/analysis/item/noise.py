@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.item.fault import FACTORS
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.mutation import arm_drifts, drift_parts
 from hedon.analysis.item.study import missing_note
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 
 ARMS = (

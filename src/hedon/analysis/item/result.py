@@ -7,11 +7,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.condition_figure import NamedFigure
 from hedon.analysis.item.gather import Gathered
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.item.page import Made, html_page, markdown_page
 from hedon.analysis.page import FigureFile
+from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.style import save_figure, svg_bytes
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.fate import regime, verdict
