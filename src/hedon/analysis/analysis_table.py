@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hedon.analysis.interval import SHOWN_FROM
+from hedon.analysis.markdown import pipe_table
 from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
 
@@ -98,9 +99,3 @@ def markdown_table(table: ResultTable) -> str:
     """The cells as a Markdown table."""
     headers, rows = cells(table)
     return pipe_table(headers, rows)
-
-
-def pipe_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A Markdown table; pipes within cells are escaped."""
-    lines = [headers, ["---"] * len(headers), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"

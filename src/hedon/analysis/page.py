@@ -8,9 +8,10 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from hedon.analysis.analysis_table import cells, is_numeric, pipe_table
+from hedon.analysis.analysis_table import cells, is_numeric
 from hedon.analysis.analyze import Analysis
 from hedon.analysis.forecast import forecast
+from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
@@ -19,6 +20,10 @@ from hedon.config.dump import diff
 from hedon.config.load import PRESETS
 from hedon.config.problem import format_value
 from hedon.record.reader import Run
+
+
+class Markdown(str):
+    """Text that is Markdown already: it is not escaped again."""
 
 
 @dataclass(frozen=True)
@@ -56,16 +61,23 @@ def markdown_page(analysis: Analysis, figures: Sequence[FigureFile]) -> str:
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
-    """A page from one of the templates."""
+    """A page from one of the templates; whatever a template prints is escaped, but for what it calls `verbatim`."""
+    is_html = template.endswith(".html.j2")
     environment = Environment(
         loader=PackageLoader("hedon.analysis", "template"),
-        autoescape=template.endswith(".html.j2"),
+        autoescape=is_html,
+        finalize=None if is_html else _markdown,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    environment.filters["verbatim"] = Markdown
     return environment.get_template(template).render(context)
+
+
+def _markdown(value: Any) -> str:
+    return value if isinstance(value, Markdown) else escape_markdown(str(value))
 
 
 def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any]:

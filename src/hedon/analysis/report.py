@@ -6,8 +6,9 @@ same on one page: `report.html`, which holds its figures and needs nothing else,
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import replace
+from itertools import chain, count
 from pathlib import Path
 
 from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
@@ -51,7 +52,9 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
             analysis = analyze(runs)
             summaries = [_write_summary(run) for run in runs]
             (folder / FIGURES).mkdir(exist_ok=True)
-            figures = [_save(folder, group, named) for group, named in _figures(analysis, faults)]
+            figures: list[FigureFile] = []
+            for group, named in _figures(analysis, faults):
+                figures.append(_save(folder, group, named, {figure.path for figure in figures}))
             answers = write_analysis(analysis, folder / ANALYSIS)[0]
             pages = {HTML: html_page(analysis, figures), MARKDOWN: markdown_page(analysis, figures)}
             for name, text in pages.items():
@@ -101,6 +104,9 @@ def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigu
     return replace(named, name=f"{slug}-{named.name}") if several else named
 
 
-def _save(folder: Path, condition: str, named: NamedFigure) -> FigureFile:
-    path = save_figure(named.figure, folder / FIGURES / f"{named.name}.png").relative_to(folder)
-    return FigureFile(condition, named.question, path.as_posix(), svg_bytes(named.figure), named.caption)
+def _save(folder: Path, condition: str, named: NamedFigure, taken: Container[str]) -> FigureFile:
+    """Writes a figure under its name, with a number where another has it: prefixes may differ in signs alone."""
+    names = (f"{FIGURES}/{named.name}{end}.png" for end in chain([""], (f"-{i}" for i in count(2))))
+    path = next(name for name in names if name not in taken)
+    save_figure(named.figure, folder / path)
+    return FigureFile(condition, named.question, path, svg_bytes(named.figure), named.caption)

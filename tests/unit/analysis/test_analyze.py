@@ -8,9 +8,10 @@ import pytest
 from rich.console import Console
 from synthetic_run import write_run
 
-from hedon.analysis.analysis_table import analysis_group, cells, pipe_table
+from hedon.analysis.analysis_table import analysis_group, cells
 from hedon.analysis.analyze import Analysis, analyze, write_analysis
 from hedon.analysis.lifetime import mean_lifetime
+from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.topic.result import table
 from hedon.analysis.topic.topic import TOPICS, TopicError, choose_topics
 from hedon.record.reader import open_run
@@ -83,6 +84,7 @@ def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -
     headers, shown = cells(table("t", "T", rows))
     assert headers == ["condition", "quantity", "mean", "95 % interval", "worlds"]
     assert shown == [["a", "x", "1.00", "", "2"], ["b", "x", "0", "0.500 … 1.50", "3"], ["b", "y", "", "", "0"]]
+    assert escape_markdown("w_normal [step], 95 % > 0.5") == "w_normal \\[step\\], 95 % \\> 0.5"
     assert pipe_table(["a"], [["x|y"]]) == "| a |\n| --- |\n| x\\|y |\n"
 
 

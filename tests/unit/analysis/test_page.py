@@ -7,6 +7,7 @@ import matplotlib.colors as mpl_colors
 import numpy as np
 import polars as pl
 import pytest
+from markdown_it import MarkdownIt
 from synthetic_run import write_run
 
 from hedon.analysis.analyze import Analysis, analyze
@@ -21,11 +22,11 @@ from hedon.analysis.style import svg_bytes, weight_colors, weight_titles
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 
-VOID = {"meta", "img", "br"}
+VOID = {"meta", "img", "br", "hr"}
 
 
 class Outline(HTMLParser):
-    """Checks that elements nest, and collects images, links and headings."""
+    """Checks that elements nest, and collects images, links, tags and text."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,16 +34,25 @@ class Outline(HTMLParser):
         self.images: list[dict] = []
         self.links: list[str] = []
         self.ids: set[str] = set()
+        self.tags: set[str] = set()
+        self.text = ""
 
     def handle_starttag(self, tag: str, attrs: list) -> None:
         values = dict(attrs)
         self.ids.add(values.get("id", ""))
+        self.tags.add(tag)
         if tag == "img":
             self.images.append(values)
         if tag == "a":
             self.links.append(values["href"])
         if tag not in VOID:
             self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list) -> None:
+        self.handle_starttag(tag, attrs)
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag
@@ -105,6 +115,29 @@ def test_markdown_has_the_same_tables_and_finds_its_figures(report: Path) -> Non
         assert line.endswith("|")
     manifest = re.findall(r"^```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[0]
     assert json.loads(manifest)["seeds"] == [1, 2, 3, 4]
+
+
+def test_names_mean_nothing_in_markdown_or_html(tmp_path: Path) -> None:
+    names = ["a|b *c* <i>d `e` [f](g) &lt; #", "_h_ ~~i~~ \\| $j$\n# k"]
+    runs = [open_run(write_run(tmp_path / name, intervals=2, worlds=1, preset=None, name=None)) for name in names]
+    write_report(*runs, folder=tmp_path / "out")
+    markdown = (tmp_path / "out/report.md").read_text(encoding="utf-8")
+    rendered = MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(markdown)
+    page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
+    for html, texts in ((rendered, [" ".join(name.split()) for name in names]), (page, names)):
+        outline = Outline()
+        outline.feed(html)
+        label = f"{texts[0]} (corrected)"
+        assert outline.text.count(label) > 10  # in headings and in a column of each table
+        assert f"Manifest of {texts[1]} (finished)" in outline.text
+        assert not {"i", "em", "s"} & outline.tags
+
+
+def test_conditions_of_similar_names_keep_their_figures_apart(tmp_path: Path) -> None:
+    names = ["a b", "a+b"]
+    runs = [open_run(write_run(tmp_path / name, intervals=0, worlds=1, preset=None, name=None)) for name in names]
+    files = write_report(*runs, folder=tmp_path / "out")
+    assert len(files) == len(set(files)) == 2 + 3 + 2 * 9
 
 
 def test_the_same_records_give_the_same_page(analysis: Analysis) -> None:
