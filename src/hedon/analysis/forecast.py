@@ -74,13 +74,15 @@ def forecast(config: Config) -> Forecast:
     sizes = np.unique(np.linspace(1, max(capacity - 1, 1), _SIZES).astype(int)).tolist()
     found = placement_success(config, sizes, np.random.default_rng(_SEED))
     places = tuple(Room(n, float(success)) for n, success in zip(sizes, found, strict=True))
-    energies = [e for e in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if e < config.energy.capacity]
-    levels = tuple(_level(config, energy, places) for energy in (*energies, config.energy.capacity))
-    force = fresh_force(config)
-    need = config.energy.basic_cost + config.energy.action_cost * force
-    supply = sum(food.growth_rate * food.energy for food in config.food.values() if food.energy > 0)
-    fed = supply / need if need else math.inf
-    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, _warnings(config, levels, fed))
+    levels = tuple(_level(config, energy, places) for energy in _energies(config))
+    force, (need, supply, fed) = fresh_force(config), _balance(config)
+    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, setting_warnings(config))
+
+
+def setting_warnings(config: Config) -> tuple[str, ...]:
+    """What to know of a setting before running, in sentences: those of its forecast, without sampling places."""
+    levels = tuple(_level(config, energy, ()) for energy in _energies(config))
+    return _warnings(config, levels, _balance(config)[2])
 
 
 def fresh_force(config: Config) -> float:
@@ -90,11 +92,23 @@ def fresh_force(config: Config) -> float:
     return float(_WEIGHTS @ np.hypot(force[:, None], force[None, :]) @ _WEIGHTS)
 
 
+def _energies(config: Config) -> list[float]:
+    """Energies at which lives are told, up to the capacity."""
+    return [e for e in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if e < config.energy.capacity] + [config.energy.capacity]
+
+
+def _balance(config: Config) -> tuple[float, float, float]:
+    """Energy that an agent with a fresh policy is charged, energy that grows [energy/step], agents that it pays for."""
+    need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
+    supply = sum(food.growth_rate * food.energy for food in config.food.values() if food.energy > 0)
+    return need, supply, supply / need if need else math.inf
+
+
 def _level(config: Config, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
     lifetime = float(expected_lifetime(config.hazard, energy))
     r0 = float(reproduction_number(config.hazard, config.birth, energy)) if config.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
-    population = _alive_at(1.0 / r0, places) if r0 > 1 else math.nan
+    population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
     return EnergyLevel(energy, lifetime, r0, refusal, population)
 
 

@@ -10,7 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from hedon.analysis.analysis_table import cells, is_numeric
 from hedon.analysis.analyze import Analysis
-from hedon.analysis.forecast import forecast
+from hedon.analysis.forecast import setting_warnings
 from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
@@ -50,14 +50,10 @@ class FigureFile:
         return "data:image/svg+xml;base64," + base64.b64encode(self.svg).decode()
 
 
-def html_page(analysis: Analysis, figures: Sequence[FigureFile]) -> str:
-    """The report as HTML that needs no other file."""
-    return render("report.html.j2", _context(analysis, figures))
-
-
-def markdown_page(analysis: Analysis, figures: Sequence[FigureFile]) -> str:
-    """The report as Markdown, with the figures as files beside it."""
-    return render("report.md.j2", _context(analysis, figures))
+def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str, str]:
+    """The report as HTML that needs no other file, and as Markdown, with the figures as files beside it."""
+    context = _context(analysis, figures)
+    return render("report.html.j2", context), render("report.md.j2", context)
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
@@ -85,7 +81,7 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
     conditions = [
         condition_context(name, worlds)
         | {
-            "warnings": forecast(worlds[0].config).warnings,
+            "warnings": setting_warnings(worlds[0].config),
             "figures": [figure for figure in figures if figure.condition == name],
         }
         for name, worlds in analysis.conditions.items()

@@ -14,7 +14,7 @@ from pathlib import Path
 from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
 from hedon.analysis.condition_figure import condition_figures
 from hedon.analysis.figure_world import draw_world, telling_agent
-from hedon.analysis.page import FigureFile, html_page, markdown_page
+from hedon.analysis.page import FigureFile, report_pages
 from hedon.analysis.report_figure import WORLD, NamedFigure
 from hedon.analysis.style import food_colors, save_figure, svg_bytes
 from hedon.analysis.summary import summarize
@@ -56,7 +56,7 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
             for group, named in _figures(analysis, faults):
                 figures.append(_save(folder, group, named, {figure.path for figure in figures}))
             answers = write_analysis(analysis, folder / ANALYSIS)[0]
-            pages = {HTML: html_page(analysis, figures), MARKDOWN: markdown_page(analysis, figures)}
+            pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, figures), strict=True))
             for name, text in pages.items():
                 content = text.encode()
                 write_atomically(folder / name, lambda file, content=content: file.write(content))

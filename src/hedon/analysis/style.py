@@ -13,6 +13,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -78,7 +79,7 @@ def styled() -> Iterator[None]:
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure [inch] that belongs to no window and lays its parts out by itself."""
-    figure = Figure(figsize=(width, height))
+    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH)
     figure.set_layout_engine("constrained", wspace=0.05, hspace=0.05)
     FigureCanvasAgg(figure)
     return figure
@@ -87,7 +88,8 @@ def new_figure(width: float, height: float) -> Figure:
 def save_figure(figure: Figure, path: Path) -> Path:
     """Writes a figure as PNG, atomically, and returns its path."""
     with styled():
-        write_atomically(path, lambda file: figure.savefig(file, format="png", dpi=DOTS_PER_INCH))
+        _lay_out(figure)
+        write_atomically(path, FigureCanvasAgg(figure).print_png)
     return path
 
 
@@ -96,8 +98,18 @@ def svg_bytes(figure: Figure) -> bytes:
     buffer = io.BytesIO()
     with styled():
         mpl.rcParams["svg.hashsalt"] = "hedon"
-        figure.savefig(buffer, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None, "Creator": None})
+        _lay_out(figure)
+        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None})
+        FigureCanvasAgg(figure)
     return buffer.getvalue()
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lays the parts of a figure out once, for all files: it takes as long as to draw them."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
 
 
 def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:

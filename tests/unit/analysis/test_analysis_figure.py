@@ -60,7 +60,7 @@ def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:
 
 
 def test_a_report_is_written_again(tmp_path: Path) -> None:
-    folder = write_run(tmp_path / "run", intervals=2, worlds=1, snapshot=False)
+    folder = write_run(tmp_path / "run", intervals=0, worlds=1, snapshot=False)
     assert [file.name for file in write_report(open_run(folder))] == NAMES[:-1]
     before = (folder / "summary.json").read_text()
     write_report(open_run(folder))

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from hedon.analysis.forecast import forecast, fresh_force
+from hedon.analysis.forecast import forecast, fresh_force, setting_warnings
 from hedon.analysis.placement import is_free, placement_success
 from hedon.config import Config, load_config
 from hedon.config.arena import is_inside
@@ -14,7 +14,7 @@ def setting(*overrides: str) -> Config:
 
 
 def warnings(*overrides: str) -> str:
-    return " ".join(forecast(setting(*overrides)).warnings)
+    return " ".join(setting_warnings(setting(*overrides)))
 
 
 def test_the_papers_setting_lives_without_eating() -> None:
@@ -23,6 +23,7 @@ def test_the_papers_setting_lives_without_eating() -> None:
     assert found.levels[0].lifetime == pytest.approx(5095, abs=1)
     assert found.levels[0].refusal == pytest.approx(1 - 1 / found.levels[0].r0)
     assert found.fed == pytest.approx(0.2 / found.need)
+    assert found.warnings == setting_warnings(setting())
     assert len(found.warnings) == 1
     assert "R0 is 1.02 at energy 0" in found.warnings[0]
     populations = [level.population for level in found.levels]

@@ -15,13 +15,16 @@ from hedon.analysis.figure_lineage import draw_lineages
 from hedon.analysis.figure_regime import REGIME_COLORS, draw_regimes
 from hedon.analysis.figure_selection import draw_selection
 from hedon.analysis.figure_survival import draw_survival
-from hedon.analysis.page import FigureFile, html_page
+from hedon.analysis.page import FigureFile, report_pages
 from hedon.analysis.report import write_report
 from hedon.analysis.report_figure import FIGURES
 from hedon.analysis.style import svg_bytes, weight_colors, weight_titles
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 
+# Both give the same name to their pictures, and hold what means something in Markdown or in HTML.
+FOLDERS = ["a|b *c* <i>d `e` [f](g) &lt; #", "_a_ ~~b~~ \\| $c$\n# <i>d e f g lt"]
+CONDITION = "<b>mush & room</b> | *x*"
 VOID = {"meta", "img", "br", "hr"}
 
 
@@ -61,8 +64,8 @@ class Outline(HTMLParser):
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("page")
-    first = write_run(folder / "first", intervals=30, worlds=4, extinct=2)
-    second = write_run(folder / "second", intervals=20, worlds=2, name="<b>mush & room</b>", modified=True)
+    first = write_run(folder / FOLDERS[0], intervals=30, worlds=4, extinct=2)
+    second = write_run(folder / FOLDERS[1], intervals=20, worlds=2, name=CONDITION, modified=True)
     write_report(open_run(first), open_run(second), folder=folder / "out")
     return folder / "out"
 
@@ -117,27 +120,16 @@ def test_markdown_has_the_same_tables_and_finds_its_figures(report: Path) -> Non
     assert json.loads(manifest)["seeds"] == [1, 2, 3, 4]
 
 
-def test_names_mean_nothing_in_markdown_or_html(tmp_path: Path) -> None:
-    names = ["a|b *c* <i>d `e` [f](g) &lt; #", "_h_ ~~i~~ \\| $j$\n# k"]
-    runs = [open_run(write_run(tmp_path / name, intervals=2, worlds=1, preset=None, name=None)) for name in names]
-    write_report(*runs, folder=tmp_path / "out")
-    markdown = (tmp_path / "out/report.md").read_text(encoding="utf-8")
+def test_names_mean_nothing_in_markdown_or_html(report: Path) -> None:
+    markdown = (report / "report.md").read_text(encoding="utf-8")
     rendered = MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(markdown)
-    page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
-    for html, texts in ((rendered, [" ".join(name.split()) for name in names]), (page, names)):
+    page = (report / "report.html").read_text(encoding="utf-8")
+    for html, names in ((rendered, [" ".join(name.split()) for name in FOLDERS]), (page, FOLDERS)):
         outline = Outline()
         outline.feed(html)
-        label = f"{texts[0]} (corrected)"
-        assert outline.text.count(label) > 10  # in headings and in a column of each table
-        assert f"Manifest of {texts[1]} (finished)" in outline.text
-        assert not {"i", "em", "s"} & outline.tags
-
-
-def test_conditions_of_similar_names_keep_their_figures_apart(tmp_path: Path) -> None:
-    names = ["a b", "a+b"]
-    runs = [open_run(write_run(tmp_path / name, intervals=0, worlds=1, preset=None, name=None)) for name in names]
-    files = write_report(*runs, folder=tmp_path / "out")
-    assert len(files) == len(set(files)) == 2 + 3 + 2 * 9
+        assert outline.text.count(f"{CONDITION} (corrected), modified") > 20  # in headings, and in a column of tables
+        assert all(f"Manifest of {name} (finished)" in outline.text for name in names)
+        assert not {"b", "i", "em", "s"} & outline.tags
 
 
 def test_the_same_records_give_the_same_page(analysis: Analysis) -> None:
@@ -146,7 +138,7 @@ def test_the_same_records_give_the_same_page(analysis: Analysis) -> None:
     assert first == second
     assert first.svg.startswith(b"<?xml")
     again = analyze(analysis.runs)
-    assert html_page(analysis, [first]) == html_page(again, [second])
+    assert report_pages(analysis, [first]) == report_pages(again, [second])
 
 
 def test_changed_settings_and_damaged_files_are_shown(tmp_path: Path) -> None:
