@@ -23,7 +23,7 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     """What a reader sees of a table: headers and rows.
 
     The bounds of an interval become one column, empty below three worlds; a column `condition` with a single
-    value is left out.
+    value is left out, and so is every column without any.
 
     Args:
         table: the results.
@@ -39,7 +39,8 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     ]
     headers = ["95 % interval" if merged and c == "low" else c.replace("_", " ") for c in names]
     shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
-    return headers, shown
+    filled = [i for i in range(len(names)) if any(row[i] for row in shown)]
+    return [headers[i] for i in filled], [[row[i] for i in filled] for row in shown]
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:

@@ -88,6 +88,21 @@ def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -
     assert pipe_table(["a"], [["x|y"]]) == "| a |\n| --- |\n| x\\|y |\n"
 
 
+def test_columns_without_a_value_are_left_out() -> None:
+    rows = [{"quantity": "x", "mean": 1.0, "low": None, "high": None, "p": None, "worlds": 1}]
+    assert cells(table("t", "T", rows)) == (["quantity", "mean", "worlds"], [["x", "1.00", "1"]])
+    two = [row | {"low": 0.0, "high": 2.0, "worlds": 2} for row in rows]
+    assert cells(table("t", "T", two))[0] == ["quantity", "mean", "worlds"]
+
+
+def test_notes_are_plain_and_explain_the_words_of_the_energy_budget(analysis: Analysis) -> None:
+    for result in analysis.tables.values():
+        assert "`" not in result.title + result.note
+    budget = analysis.tables["energy"]
+    for word in {row["quantity"].removeprefix("share ") for row in budget.rows.to_dicts()}:
+        assert word in budget.note.lower()
+
+
 def test_a_run_without_rows_has_an_analysis(tmp_path: Path) -> None:
     empty = analyze([open_run(write_run(tmp_path / "run", intervals=0, worlds=1, neutral_count=0, snapshot=False))])
     assert "regime" not in empty.tables  # nothing was recorded to tell it from

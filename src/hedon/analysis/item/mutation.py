@@ -28,8 +28,8 @@ _DRAWN = (
 _GENE = (
     "numbers: births within a window that have an entry. bounds: entries of which all children were clipped at the "
     "limit. disagreement: largest difference between mutations of equal number; rounding is 1e-6 for weights up to "
-    "10. line_mean, line_low, line_high: weight of lines without selection after `generations`, mean and 95 % of "
-    "them. slope: of mean weight against mean generation; displacement: from the founders' mean to the end, per "
+    "10. line_mean, line_low, line_high: weight of lines without selection after the generations given, mean and 95 % "
+    "of them. slope: of mean weight against mean generation; displacement: from the founders' mean to the end, per "
     "generation."
 )
 

@@ -48,9 +48,8 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "median": "median",
     }
     note = (
-        "The restricted mean is that of min(lifetime, `until`), up to an age that 20 agents of each living world "
-        "reached; the error is what the dead alone give instead, minus it. Steps per death are the mean life if age "
-        "did not matter."
+        "The restricted mean is that of lifetimes cut off at an age that 20 agents of each living world reached; the "
+        "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter."
     )
     return [
         table("lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note),
@@ -147,12 +146,17 @@ def energy(conditions: Conditions) -> list[ResultTable]:
                 if found is not None:
                     rows.append(labels(world) | {"part": part} | asdict(found))
     worlds_table = table("energy_world", "Energy budgets, world by world", rows, shown=False)
-    names = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared", "forgiven_share")
-    summary = over_worlds(worlds_table.rows, ("part",), {name: name for name in names})
+    names = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared")
+    quantities = {name: name for name in names} | {"forgiven_share": "share forgiven"}
+    summary = over_worlds(worlds_table.rows, ("part",), quantities)
     note = (
-        "Per 1000 steps lived by an agent. forgiven_share: of what was charged, what could not be paid at zero energy."
+        "Eaten: taken up with food; poison counts negative. Basic and action: charged for living and for acting. "
+        "Forgiven: charged but not paid, because energy cannot fall below 0; its share is that of all charges. Capped: "
+        "eaten, but destroyed because the agent was full. Lost: held by those who died. Shared: given by parents to "
+        "their children, so that it stays in the world."
     )
-    return [table("energy", "Energy budget, means over worlds", summary, note), worlds_table]
+    title = "Energy budget per 1000 steps lived by an agent, means over worlds"
+    return [table("energy", title, summary, note), worlds_table]
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:
