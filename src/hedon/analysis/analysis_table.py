@@ -3,16 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.markdown import pipe_table
 from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
+from hedon.printed_table import PrintedTable
 
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that only the files hold."""
@@ -50,7 +48,7 @@ def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
 
 def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
     """What `hedon analyze` prints: the short tables with their notes."""
-    parts: list[Table | Text] = []
+    parts: list[PrintedTable | Text] = []
     for table in tables.values():
         if table.shown:
             parts.append(_printed(table))
@@ -59,21 +57,10 @@ def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
     return Group(*parts)
 
 
-def _printed(table: ResultTable) -> Table:
+def _printed(table: ResultTable) -> PrintedTable:
     headers, rows = cells(table, (*HIDDEN, "text"))  # a terminal is too narrow for a claim in full
-    printed = Table(
-        title=escape(table.title),
-        title_justify="left",
-        title_style="bold",
-        box=SIMPLE_HEAD,
-        padding=(0, 1),
-        pad_edge=False,
-    )
-    for i, header in enumerate(headers):
-        printed.add_column(header, justify="right" if is_numeric(rows, i) else "left")
-    for row in rows:
-        printed.add_row(*map(escape, row))
-    return printed
+    text = [i for i in range(len(headers)) if not is_numeric(rows, i)]
+    return PrintedTable(headers, rows, title=table.title, text=text)
 
 
 def _cell(row: Mapping[str, Any], column: str, merged: bool) -> str:

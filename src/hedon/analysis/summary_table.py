@@ -3,15 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.paper import STEPS
 from hedon.analysis.weight import LAST_AGENTS
+from hedon.printed_table import PrintedTable
 
 _NOTHING = "-"
 _QUANTITIES = {  # key of the summary: name, key among the paper's figures
@@ -51,7 +49,7 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
     if summary["damaged_parts"]:
         notes.append(f"Damaged files, left out: {', '.join(summary['damaged_parts'])}")
     return Group(
-        _over_worlds(summary),
+        *_over_worlds(summary),
         _world_by_world(summary),
         _weights(summary),
         *(Text(note, style="dim") for note in notes),
@@ -67,21 +65,22 @@ def format_number(value: float | None) -> str:
     return f"{value:#.3g}".rstrip(".") if abs(value) >= 0.01 or value == 0 else f"{value:.2g}"
 
 
-def _over_worlds(summary: Mapping[str, Any]) -> Table:
+def _over_worlds(summary: Mapping[str, Any]) -> list[PrintedTable | Text]:
     count, paper = len(summary["worlds"]), summary["paper"]
     headers = ["mean over worlds", "value", "95 % interval"]
     if paper is not None:
         headers.append(f"paper ({STEPS / 1e6:g}e6 steps)")
-    table = _table(escape(f"{_name(summary)}: {count} world{'s' if count > 1 else ''}"), headers)
+    rows = []
     for key, (label, source) in _QUANTITIES.items():
         reported = [] if paper is None else [_reported(paper.get(source))]
-        table.add_row(escape(label), *_interval(summary[key]), *reported)
-    for weight, interval in summary["weights"].items():
-        table.add_row(f"weight {weight}", *_interval(interval))
-    if paper is not None and paper["claim"]:
-        table.caption = f"The paper: {paper['claim']}."
-        table.caption_justify = "left"
-    return table
+        rows.append([label, *_interval(summary[key]), *reported])
+    rows += [[f"weight {weight}", *_interval(interval)] for weight, interval in summary["weights"].items()]
+    if count < SHOWN_FROM:
+        for line in (headers, *rows):
+            del line[2]
+    title = f"{_name(summary)}: {count} world{'s' if count > 1 else ''}"
+    claim = [Text(f"The paper: {paper['claim']}.", style="dim italic")] if paper is not None and paper["claim"] else []
+    return [PrintedTable(headers, rows, title=title), *claim]
 
 
 def _name(summary: Mapping[str, Any]) -> str:
@@ -92,36 +91,29 @@ def _name(summary: Mapping[str, Any]) -> str:
     return f"{name} ({', '.join(remarks)})" if remarks else name
 
 
-def _world_by_world(summary: Mapping[str, Any]) -> Table:
-    table = _table("world by world", tuple(_WORLD_COLUMNS.values()))
-    for world in summary["worlds"]:
-        cells = [str(world["seed"]), *(format_number(world[key]) for key in list(_WORLD_COLUMNS)[1:])]
-        table.add_row(*cells, style="dim" if world["extinct"] else None)
-    return table
+def _world_by_world(summary: Mapping[str, Any]) -> PrintedTable:
+    keys = list(_WORLD_COLUMNS)[1:]
+    rows = [[str(world["seed"]), *(format_number(world[key]) for key in keys)] for world in summary["worlds"]]
+    return PrintedTable(tuple(_WORLD_COLUMNS.values()), rows, title="world by world", dim=_extinct(summary))
 
 
-def _weights(summary: Mapping[str, Any]) -> Table:
+def _weights(summary: Mapping[str, Any]) -> PrintedTable:
     names = list(summary["weights"])
-    table = _table(f"weights of the agents born last (at most {LAST_AGENTS}), mean ± sd", ("seed", *names))
+    rows = []
     for world in summary["worlds"]:
         spreads = [world["weights"][name] for name in names]
         cells = [f"{_weight(spread['mean'])} ± {_weight(spread['sd'])}" for spread in spreads]
-        table.add_row(str(world["seed"]), *cells, style="dim" if world["extinct"] else None)
-    return table
+        rows.append([str(world["seed"]), *cells])
+    title = f"weights of the agents born last (at most {LAST_AGENTS}), mean ± sd"
+    return PrintedTable(("seed", *names), rows, title=title, dim=_extinct(summary))
+
+
+def _extinct(summary: Mapping[str, Any]) -> list[int]:
+    return [i for i, world in enumerate(summary["worlds"]) if world["extinct"]]
 
 
 def _weight(value: float | None) -> str:
     return _NOTHING if value is None else f"{value:.2f}"
-
-
-def _table(title: str, headers: Sequence[str]) -> Table:
-    table = Table(
-        title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False
-    )
-    table.add_column(headers[0])
-    for header in headers[1:]:
-        table.add_column(header, justify="right")
-    return table
 
 
 def _interval(interval: Mapping[str, Any]) -> tuple[str, str]:

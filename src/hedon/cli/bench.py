@@ -95,16 +95,11 @@ def _print_machine(console: "Console", measured: "Bench") -> None:
 
 
 def _print_table(console: "Console", table: "Table", caption: str) -> None:
-    from rich.markup import escape
-    from rich.table import Table as RichTable
+    from hedon.printed_table import PrintedTable
 
-    drawn = RichTable(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
-    for heading in table.headings:
-        drawn.add_column(escape(heading), justify="left" if heading == "kernel" else "right")
-    for line in table.lines:
-        drawn.add_row(*line)
-    console.print(f"\n{table.title}", style="bold", markup=False)
-    console.print(drawn)
+    text = [i for i, heading in enumerate(table.headings) if heading == "kernel"]
+    console.print()
+    console.print(PrintedTable(table.headings, table.lines, title=table.title, text=text))
     for note in (*table.notes, caption):
         console.print(note, style="dim", markup=False)
 

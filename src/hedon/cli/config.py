@@ -23,22 +23,18 @@ Overrides = Annotated[
 
 def presets() -> None:
     """List the presets and the fidelities that can be laid on them."""
-    from rich.table import Table
-
     from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
+    from hedon.printed_table import PrintedTable
 
-    table = Table("preset", "what it is", "arena [u]", "food", box=None, pad_edge=False, header_style="bold")
+    rows = []
     for name in PRESETS:
         config = load_config(name)
         size = f"{config.arena.width:g} x {config.arena.height:g}"
-        table.add_row(name, describe_preset(name), size, "\n".join(_food_lines(config)))
+        rows.append((name, describe_preset(name), size, "\n".join(_food_lines(config))))
     console = make_console()
-    console.print(table)
-    table = Table("fidelity", "what it is", box=None, pad_edge=False, header_style="bold")
-    for name in FIDELITIES:
-        table.add_row(name, describe_fidelity(name))
-    console.print()
-    console.print(table)
+    console.print(PrintedTable(("preset", "what it is", "arena [u]", "food"), rows, text=range(4)))
+    fidelities = [(name, describe_fidelity(name)) for name in FIDELITIES]
+    console.print(PrintedTable(("fidelity", "what it is"), fidelities, text=range(2)))
 
 
 @app.command()

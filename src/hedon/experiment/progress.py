@@ -7,10 +7,10 @@ from typing import IO, Any
 from rich.console import Console, Group
 from rich.live import Live
 from rich.progress_bar import ProgressBar
-from rich.table import Table
 from rich.text import Text
 
 from hedon.experiment.plan import Moment
+from hedon.printed_table import PrintedTable
 from hedon.record.schema import weight_names
 
 FIRST_LINE_SECONDS = 1.0
@@ -123,17 +123,14 @@ class LiveDisplay:
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
         bar = ProgressBar(total=moment.steps, completed=moment.step, width=72)
-        table = Table(box=None, pad_edge=False, header_style="bold")
-        for name in ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten"):
-            table.add_column(name, justify="right")
-        for name in self._weights:
-            table.add_column(name, justify="right", style="cyan")
-        for seed, row, extinct in zip(self._seeds, moment.rows, moment.extinct, strict=True):
-            table.add_row(*self._cells(seed, row, extinct))
+        headers = ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten", *self._weights)
+        worlds = list(zip(self._seeds, moment.rows, moment.extinct, strict=True))
+        ends = [f"Seed {seed} died out at step {extinct:,}." for seed, _, extinct in worlds if extinct is not None]
         return Group(
             head,
             bar,
-            table,
+            PrintedTable(headers, [self._cells(*world) for world in worlds]),
+            *map(Text, ends),
             Text(
                 "Births, deaths, food: of the last window. Weights: means of the living. Ctrl-C ends after the window.",
                 style="dim",
@@ -142,7 +139,7 @@ class LiveDisplay:
 
     def _cells(self, seed: int, row: dict[str, Any], extinct: int | None) -> list[str]:
         if extinct is not None:
-            return [str(seed), "0", f"extinct at step {extinct:,}"]
+            return [str(seed), "0"]
         eaten = sum(value for name, value in row.items() if name.startswith("eaten_"))
         cells = [str(seed), *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
         cells += [f"{row['energy_mean']:.2f}", f"{row['generation_mean']:.1f}", f"{eaten:,}"]

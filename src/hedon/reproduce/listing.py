@@ -3,14 +3,13 @@
 from dataclasses import replace
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group
-from rich.table import Table
 from rich.text import Text
 
 from hedon.analysis.item.gather import find_runs
 from hedon.analysis.item.request import Request, needs
 from hedon.experiment.progress import duration
+from hedon.printed_table import PrintedTable
 from hedon.record.provenance import usable_cpus
 from hedon.reproduce.estimate import Speed, measure_speed
 from hedon.reproduce.plan import Job, plan_jobs
@@ -36,18 +35,15 @@ def listing(request: Request, folder: Path, threads: int) -> Group:
             total += job.world_steps / speeds[kinds].rate
         return total
 
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
-    for name in ("item", "kind", "what it is", "needs"):
-        table.add_column(name)
-    for name in ("in all", "still to run"):
-        table.add_column(name, justify="right")
+    rows = []
     for item in request.items:
         one = replace(request, items=(item,))
         whole, left = map(seconds, _jobs(one, folder))
-        table.add_row(item.name, item.kind, item.title, _needs(one), _time(whole), _time(left))
-    table.add_section()
+        rows.append((item.name, item.kind, item.title, _needs(one), _time(whole), _time(left)))
     whole, left = map(seconds, _jobs(request, folder))
-    table.add_row("together", "", "worlds that items share counted once", "", _time(whole), _time(left))
+    rows.append(("together", "", "worlds that items share counted once", "", _time(whole), _time(left)))
+    headers = ("item", "kind", "what it is", "needs", "in all", "still to run")
+    table = PrintedTable(headers, rows, text=range(4), total=True)
     notes = [
         f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
         f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"

@@ -9,11 +9,11 @@ from typing import Any
 from rich.console import Console, Group
 from rich.live import Live
 from rich.progress_bar import ProgressBar
-from rich.table import Table
 from rich.text import Text
 
 from hedon.experiment.plan import Moment
 from hedon.experiment.progress import duration
+from hedon.printed_table import PrintedTable
 from hedon.reproduce.plan import Job
 from hedon.reproduce.work import Outcome
 
@@ -101,12 +101,11 @@ class PlanDisplay:
 
     def _draw(self) -> Group:
         done = sum(self._done.values())
-        table = Table(box=None, pad_edge=False, header_style="bold")
-        table.add_column("run")
-        for name in ("step", "of", "alive"):
-            table.add_column(name, justify="right")
-        for folder, moment in self._moments.items():
-            table.add_row(folder.name, f"{moment.step:,}", f"{moment.steps:,}", _alive(moment))
+        rows = [
+            (folder.name, f"{moment.step:,}", f"{moment.steps:,}", _alive(moment))
+            for folder, moment in self._moments.items()
+        ]
+        table = PrintedTable(("run", "step", "of", "alive"), rows, text=(0, 3))
         hint = Text("Ctrl-C ends all runs after their windows; the same command goes on.", style="dim")
         bar = ProgressBar(total=max(self._total, 1), completed=done, width=72)
         return Group(Text(self._head()), bar, table, hint)

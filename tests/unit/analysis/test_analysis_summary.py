@@ -139,7 +139,21 @@ def test_the_page_of_the_figures_has_their_captions() -> None:
     assert figure_table() in page, "put there what hedon.analysis.document.figure_table() gives"
 
 
-def _print(summary: dict) -> str:
-    console = Console(width=120, record=True, file=io.StringIO())
+def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
+    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=3)))
+    text = _print(summary, width=60)
+    assert max(map(len, text.splitlines())) <= 60
+    for world in summary["worlds"]:
+        assert all(format_number(world[key]) in text for key in ("steps", "births", "mean_lifetime", "food_per_step"))
+    alive = summary["alive"]
+    assert f"{format_number(alive['low'])} … {format_number(alive['high'])}" in text
+
+
+def test_one_world_has_no_column_of_intervals(tmp_path: Path) -> None:
+    assert "interval" not in _print(summarize(open_run(write_run(tmp_path / "run", intervals=5, worlds=1))))
+
+
+def _print(summary: dict, width: int = 120) -> str:
+    console = Console(width=width, record=True, file=io.StringIO())
     console.print(summary_table(summary))
     return console.export_text()

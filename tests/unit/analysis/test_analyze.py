@@ -75,6 +75,16 @@ def test_what_is_printed(analysis: Analysis) -> None:
     assert "lifetime_world" not in text
 
 
+def test_what_is_printed_on_a_narrow_terminal(analysis: Analysis) -> None:
+    console = Console(width=60, record=True, file=io.StringIO())
+    console.print(analysis_group(analysis.tables))
+    text = console.export_text()
+    assert max(map(len, text.splitlines())) <= 60
+    for result in analysis.tables.values():
+        if result.shown:
+            assert all(cell in text for row in cells(result)[1] for cell in row if cell[:1].isdigit())
+
+
 def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -> None:
     rows = [
         {"condition": "a", "quantity": "x", "mean": 1.0, "low": 0.5, "high": 1.5, "worlds": 2},

@@ -1,0 +1,125 @@
+"""Tables on a terminal of any width: what does not fit beside the rest is continued below."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rich.box import SIMPLE_HEAD
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+_GAP, _EDGES = 3, 2  # blanks between two columns, and at both ends of a row
+_READABLE = 16  # width that a column of text keeps at least, where it needs as much
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column and the widths between which it is well drawn: numbers are not broken, words go onto further lines."""
+
+    header: str
+    cells: tuple[str, ...]
+    is_text: bool
+    least: int
+    most: int
+
+
+class PrintedTable:
+    """A table for a console, which may be narrower than the table.
+
+    Where it does not fit, columns of text are made narrower; where that is not enough, columns are continued in a
+    further table below, which begins with the columns that tell the rows apart.
+
+    Args:
+        headers: of the columns.
+        rows: cells of each; those that are missing at its end are empty.
+        title: above the table; none where it is empty.
+        text: which columns hold text, on the left side; the others hold numbers, on the right side.
+        dim: rows that are printed dim.
+        total: whether the last row is the sum of the others.
+    """
+
+    def __init__(
+        self,
+        headers: Sequence[str],
+        rows: Sequence[Sequence[str]],
+        *,
+        title: str = "",
+        text: Iterable[int] = (0,),
+        dim: Iterable[int] = (),
+        total: bool = False,
+    ) -> None:
+        whole = [(*row, *[""] * (len(headers) - len(row))) for row in rows]
+        columns = zip(*whole, strict=True) if whole else [()] * len(headers)
+        texts = set(text)
+        self._columns = [
+            _column(header, cells, is_text=i in texts)
+            for i, (header, cells) in enumerate(zip(headers, columns, strict=True))
+        ]
+        self._title, self._dim, self._total = title, frozenset(dim), total
+        self._keys = _key_count(self._columns)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Gives the title and the tables that fit into the width at hand."""
+        if self._title:
+            yield Text(self._title, style="bold")
+        for columns in self._parts(options.max_width):
+            yield self._draw(columns, options.max_width)
+
+    def _parts(self, width: int) -> list[list[_Column]]:
+        """The columns of each table, from top to bottom."""
+        keys, parts = self._columns[: self._keys], [self._columns[: self._keys]]
+        for column in self._columns[self._keys :]:
+            if _needed([*parts[-1], column]) > width and len(parts[-1]) > len(keys):
+                parts.append(list(keys))
+            parts[-1] = [*parts[-1], column]
+        return parts
+
+    def _draw(self, columns: Sequence[_Column], width: int) -> Table:
+        table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
+        for column, own in zip(columns, _widths(columns, width), strict=True):
+            side = "left" if column.is_text else "right"
+            table.add_column(Text(column.header), justify=side, width=own, overflow="fold")
+        rows = list(zip(*(column.cells for column in columns), strict=True))
+        for i, row in enumerate(rows):
+            if self._total and i == len(rows) - 1:
+                table.add_section()
+            table.add_row(*map(Text, row), style="dim" if i in self._dim else None)
+        return table
+
+
+def _column(header: str, cells: tuple[str, ...], *, is_text: bool) -> _Column:
+    lines = [line for cell in cells for line in cell.splitlines()]
+    most = max(map(cell_len, [header, *lines]))
+    words = [word for text in ([header, *lines] if is_text else [header]) for word in text.split()]
+    least = max(map(cell_len, [*words, *([] if is_text else lines)]), default=1)
+    return _Column(header, cells, is_text, max(least, min(most, _READABLE)) if is_text else least, most)
+
+
+def _key_count(columns: Sequence[_Column]) -> int:
+    """How many columns, from the left, tell all rows apart; of those that hold text, but the first in any case."""
+    count = 1
+    while count < len(columns) and columns[count].is_text:
+        rows = list(zip(*(column.cells for column in columns[:count]), strict=True))
+        if len(set(rows)) == len(rows):
+            break
+        count += 1
+    return count
+
+
+def _needed(columns: Sequence[_Column]) -> int:
+    return sum(column.least for column in columns) + _GAP * (len(columns) - 1) + _EDGES
+
+
+def _widths(columns: Sequence[_Column], width: int) -> list[int]:
+    """A width per column: all need no more than the table's, but for a terminal of a few letters."""
+    widths = [column.least for column in columns]
+    spare = width - _needed(columns)
+    while spare > 0 and any(own < column.most for own, column in zip(widths, columns, strict=True)):
+        narrowest = min((own, i) for i, own in enumerate(widths) if own < columns[i].most)[1]
+        widths[narrowest] += 1
+        spare -= 1
+    while spare < 0 and max(widths) > 1:
+        widths[widths.index(max(widths))] -= 1
+        spare += 1
+    return widths

@@ -1,0 +1,88 @@
+"""Tables on terminals of any width: nothing is cut, no line is too long, numbers are whole."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from hedon.experiment.plan import Moment
+from hedon.experiment.progress import LiveDisplay
+from hedon.printed_table import PrintedTable
+
+HEADERS = ("item", "what it is", "steps of a world", "95 % interval", "needs")
+ROWS = [
+    (
+        "weights-baseline",
+        "Weights that evolve in the baseline",
+        "10,240,000",
+        "-0.04 … 0.08",
+        "1 setting, 5 worlds",
+    ),
+    ("walk", "The random walk of mutations", "64", "0.00 … 0.00", "settings [alone]"),
+]
+
+
+def printed(width: int, table: PrintedTable) -> list[str]:
+    console = Console(width=width, file=io.StringIO(), color_system=None)
+    console.print(table)
+    assert isinstance(console.file, io.StringIO)
+    return console.file.getvalue().splitlines()
+
+
+def words(lines: list[str]) -> str:
+    return " ".join(" ".join(lines).split())
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 120, 200])
+def test_no_line_is_longer_than_the_terminal_and_nothing_is_lost(width: int) -> None:
+    lines = printed(width, PrintedTable(HEADERS, ROWS, title="What there is", text=(0, 1, 4)))
+    assert max(map(len, lines)) <= width
+    text = words(lines)
+    for row in ROWS:
+        assert all(word in text for cell in row for word in cell.split())
+    assert all(row[i] in text for row in ROWS for i in (2, 3))  # numbers are whole
+
+
+def test_a_terminal_narrower_than_a_word_breaks_it() -> None:
+    assert max(map(len, printed(20, PrintedTable(HEADERS, ROWS, text=(0, 1, 4))))) <= 20
+
+
+def test_columns_that_do_not_fit_are_continued_with_the_first_one() -> None:
+    numbers = [[str(seed), *[f"{seed}{i:07}" for i in range(12)]] for seed in (1, 2)]
+    lines = printed(60, PrintedTable(["seed", *(f"c{i}" for i in range(12))], numbers))
+    heads = [line.split() for line in lines if "seed" in line]
+    assert len(heads) > 1
+    assert all(head[0] == "seed" for head in heads)
+    assert [name for head in heads for name in head[1:]] == [f"c{i}" for i in range(12)]
+    assert len([line for line in lines if line.split()[:1] == ["2"]]) == len(heads)
+
+
+def test_the_columns_that_tell_rows_apart_are_repeated() -> None:
+    rows = [[kind, weight, "x" * 20, "1" * 20] for kind in ("children", "lifespan") for weight in ("w_a", "w_b")]
+    lines = printed(40, PrintedTable(["fitness", "weight", "remark", "value"], rows, text=(0, 1, 2)))
+    assert len([line for line in lines if line.split()[:2] == ["children", "w_b"]]) == 2
+
+
+def test_a_table_that_fits_is_one_as_narrow_as_it_can_be() -> None:
+    lines = printed(120, PrintedTable(("a", "b"), [("x", "1"), ("together",)], total=True))
+    assert [line.rstrip() for line in lines if line.strip(" ─")] == [" a          b", " x          1", " together"]
+    assert len([line for line in lines if "─" in line or not line.strip()]) == 4  # above, below the head, total, below
+
+
+def test_a_table_without_rows_has_its_head() -> None:
+    assert "seed" in words(printed(60, PrintedTable(("seed", "alive"), [])))
+
+
+def test_the_display_of_a_run_fits_and_tells_who_died_out() -> None:
+    row = dict.fromkeys(("alive", "births", "deaths"), 12) | {"energy_mean": 1.5, "generation_mean": 2.0}
+    row |= {"eaten_normal": 3} | dict.fromkeys(("w_normal_mean", "w_action_mean", "neutral_1_mean"), 0.25)
+    console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)
+    display = LiveDisplay(console, ("normal",), 1, (1, 2))
+    moment = Moment(first=0, step=2048, steps=4096, seconds=1.0, rows=(row, row), extinct=(None, 1500))
+    with display:
+        display.update(moment)
+    assert isinstance(console.file, io.StringIO)
+    text = console.file.getvalue()
+    assert "+0.250" in text
+    assert "generation" in text
+    assert "Seed 2 died out at step 1,500." in text
