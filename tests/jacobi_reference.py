@@ -124,10 +124,10 @@ class ReferenceScene:
             """Adds impulses of all contacts to the bodies."""
             impulse = push[:, None] * normal + rub[:, None] * tangent
             turn = arm * rub / INERTIA
-            np.subtract.at(moving, (first, slice(0, 2)), impulse / MASS)
-            np.subtract.at(moving, (first, 2), turn)
-            np.add.at(moving, (second[pair], slice(0, 2)), impulse[pair] / MASS)
-            np.subtract.at(moving, (second[pair], 2), turn[pair])
+            np.subtract.at(moving[:, :2], first, impulse / MASS)
+            np.subtract.at(moving[:, 2], first, turn)
+            np.add.at(moving[:, :2], second[pair], impulse[pair] / MASS)
+            np.subtract.at(moving[:, 2], second[pair], turn[pair])
 
         push, rub = np.array([self.impulse.get(name, (0.0, 0.0)) for name in found.name]).reshape(-1, 2).T
         approach, _ = relative()

@@ -96,7 +96,7 @@ def test_each_substep_is_that_of_the_reference(seed, corner):
     """From the engine's own state and impulses, substep by substep: motion, kept impulses, and who touched whom. Where
     corners are narrower than a body, their walls' ends matter."""
     scene, circles, ring, rng = dense_scene(seed, corner, substeps=1)
-    seen = dict.fromkeys(KINDS, 0)
+    seen: dict[str, int] = dict.fromkeys(KINDS, 0)
     compared = bounced = 0
     for _ in range(40):
         reference = reference_of(scene, circles, ring)

@@ -128,8 +128,8 @@ def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
 
 
 def test_a_body_that_a_jam_throws_far_fills_no_list():
-    """Under the solver jacobi pushes add up, and a body may fly so far in a substep that nearly all pairs of a full arena
-    get listed. The default solver has no room for these, and needs none."""
+    """Under the solver jacobi pushes add up, and a body may fly so far in a substep that nearly all pairs of a full
+    arena get listed. The default solver has no room for these, and needs none."""
 
     def throw(solver):
         lattice = np.stack(np.meshgrid(np.arange(14.0), np.arange(14.0)), -1).reshape(-1, 2)

@@ -78,7 +78,7 @@ def test_the_display_of_a_run_fits_and_tells_who_died_out() -> None:
     row |= {"eaten_normal": 3} | dict.fromkeys(("w_normal_mean", "w_action_mean", "neutral_1_mean"), 0.25)
     console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)
     display = LiveDisplay(console, ("normal",), 1, (1, 2))
-    moment = Moment(first=0, step=2048, steps=4096, seconds=1.0, rows=(row, row), extinct=(None, 1500))
+    moment = Moment(first=0, step=2048, steps=4096, seconds=1.0, rows=(row, row), extinct=(None, 1500), window=1024)
     with display:
         display.update(moment)
     assert isinstance(console.file, io.StringIO)
