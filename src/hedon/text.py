@@ -1,11 +1,11 @@
-"""Text that comes from outside, made fit to be shown to a person."""
+"""Makes text from outside safe to print in a message."""
 
 LINE = 200
 """Characters of a name or a value that a message shows; more would hide the message."""
 
 
 def printable(text: str) -> str:
-    r"""The text with characters that would not show, or would turn the order of others, as escapes such as \u202e.
+    r"""The text with characters that are invisible, or that reverse the order of others, as escapes such as \u202e.
 
     Line breaks stay: messages have several lines.
     """
@@ -13,5 +13,5 @@ def printable(text: str) -> str:
 
 
 def brief(text: str, limit: int = LINE) -> str:
-    """The text, or its beginning and its length where it has more than `limit` characters."""
+    """The text, or its beginning and its length if it has more than `limit` characters."""
     return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"

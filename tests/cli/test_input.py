@@ -15,7 +15,7 @@ FILES = {
     "sections": ("".join(f"[s{i}]\nx = 1\n" for i in range(20_000)), "more than 5,000 names"),
     "unknown": ("".join(f"[initial{i}]\n" for i in range(4000)), "and 3,980 more"),
     "kinds": ("".join(f"[food.normol{i}]\nx = 1\n" for i in range(2000)), "and 1,980 more"),
-    "size": ("x" * 50_000_000 + " = 1", "larger than a config can be"),
+    "size": ("x" * 50_000_000 + " = 1", "too large for a config"),
     "a long name": ('name = "' + "x" * 900_000 + '"', "(900,002 characters)"),
     "bidirectional": ('"a\u202eb" = 1', r"a\u202eb: unknown name"),
     "escape": ('"a\\u001b[31mb" = 1', r"a\x1b[31mb: unknown name"),

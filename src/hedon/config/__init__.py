@@ -1,4 +1,4 @@
-"""What a run is: settings with meaning, unit, range and source, from presets, files and overrides."""
+"""The settings of a run, each with meaning, unit, range and source; read from presets, files and overrides."""
 
 from hedon.config.config import Config
 from hedon.config.dump import diff, digest, dump_toml

@@ -1,4 +1,4 @@
-"""The arena: a rectangle with rounded corners and, where asked for, walls inside."""
+"""The arena: a rectangle with rounded corners and, if wanted, inner walls."""
 
 import math
 from dataclasses import dataclass
@@ -33,7 +33,12 @@ class ArenaConfig:
     ] = 4
     inner_walls: Annotated[
         tuple[tuple[float, float, float, float], ...],
-        Doc("walls inside, each from (ax, ay) to (bx, by)", "u", OURS, Range(max_items=256)),
+        Doc(
+            "inner walls: a list of [ax, ay, bx, by], each a wall from (ax, ay) to (bx, by)",
+            "u",
+            OURS,
+            Range(max_items=256),
+        ),
     ] = ()
 
 
@@ -52,7 +57,7 @@ def outline(arena: ArenaConfig) -> list[tuple[float, float]]:
         for i in range(arena.corner_chords + 1):
             angle = start - 0.5 * math.pi * i / arena.corner_chords
             points.append((x + r * math.cos(angle), y + r * math.sin(angle)))
-    # The first corner is the last one to be closed: the polygon starts with the left wall.
+    # The polygon starts with the left wall, so the points of the first corner come last.
     return points[arena.corner_chords :] + points[: arena.corner_chords]
 
 

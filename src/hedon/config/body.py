@@ -12,7 +12,7 @@ class BodyConfig:
 
     radius: Annotated[
         float,
-        Doc("of an agent", "u", EITHER, Range(gt=0, le=1e3)),
+        Doc("radius of an agent", "u", EITHER, Range(gt=0, le=1e3)),
     ] = 10.0
     density: Annotated[
         float,
@@ -20,7 +20,7 @@ class BodyConfig:
     ] = 0.1
     food_radius: Annotated[
         float,
-        Doc("of a piece of food", "u", EITHER, Range(gt=0, le=1e3)),
+        Doc("radius of a piece of food", "u", EITHER, Range(gt=0, le=1e3)),
     ] = 4.0
 
 
@@ -30,15 +30,15 @@ class MotorConfig:
 
     min_force: Annotated[
         float,
-        Doc("force of each motor as the action falls", "mass·u/s²", EITHER, Range(ge=-1e4, le=1e4)),
+        Doc("limit of each motor's force for very negative actions", "mass·u/s²", EITHER, Range(ge=-1e4, le=1e4)),
     ] = -20.0
     max_force: Annotated[
         float,
-        Doc("force of each motor as the action rises", "mass·u/s²", EITHER, Range(gt=0, le=1e4)),
+        Doc("limit of each motor's force for very positive actions", "mass·u/s²", EITHER, Range(gt=0, le=1e4)),
     ] = 80.0
     angle: Annotated[
         float,
-        Doc("where the motors sit, to either side of the heading", "degree", EITHER, Range(ge=0, le=180)),
+        Doc("angle between each motor and the heading, one on each side", "degree", EITHER, Range(ge=0, le=180)),
     ] = 135.0
 
 
@@ -48,12 +48,12 @@ class SensorConfig:
 
     ray_count: Annotated[
         int,
-        Doc("range rays; the first is the right-most", "", EITHER, Range(ge=1, le=32)),
+        Doc("number of range rays; the first is the rightmost", "", EITHER, Range(ge=1, le=32)),
     ] = 24
     ray_spread: Annotated[
         float,
         Doc(
-            "angle of the outermost rays, to either side of the heading",
+            "angle between the heading and the outermost ray on each side",
             "degree",
             EITHER,
             Range(ge=0, le=180),
@@ -61,11 +61,13 @@ class SensorConfig:
     ] = 60.0
     ray_length: Annotated[
         float,
-        Doc("reach of a ray from the surface", "u", EITHER, Range(gt=0, le=1e5)),
+        Doc("length of a ray, from the surface of the body", "u", EITHER, Range(gt=0, le=1e5)),
     ] = 200.0
     touch_sectors: Annotated[
         int,
-        Doc("equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)),
+        Doc(
+            "number of equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)
+        ),
     ] = 6
     mouth_spread: Annotated[
         float,
@@ -74,7 +76,7 @@ class SensorConfig:
     scaling: Annotated[
         Literal["raw", "unit"],
         Doc(
-            "observation as released, or with each part scaled to about 1 and the heading as sine and cosine",
+            "observation as in the released code, or each part scaled to about 1, with the heading as sine and cosine",
             "",
             OURS,
         ),

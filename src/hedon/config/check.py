@@ -1,4 +1,4 @@
-"""Contradictions: settings that are each allowed, but not together."""
+"""Contradictions: settings that are allowed one by one, but not together."""
 
 import math
 import re
@@ -12,17 +12,17 @@ from hedon.config.food import MAX_KINDS, FoodConfig
 from hedon.config.problem import Problem, format_value
 
 MAX_TOUCH_BITS = 64
-"""Types times touch sectors that the engine has room for."""
+"""Most types times touch sectors that the engine has room for."""
 MAX_COVERAGE = 0.45
-"""Share of the arena that founders may cover; random placement without overlap jams at 0.547 (Feder 1980)."""
+"""Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 MIN_WALL = 0.01
-"""Length of the shortest outer wall that float32 still gives a direction [u]."""
+"""Length of the shortest outer wall whose direction float32 can still hold [u]."""
 RESERVED_KINDS = ("agent", "wall", "action")
-"""Names that stand for something else in sensor channels or in the columns of records."""
+"""Names with another meaning in sensor channels or in the columns of records."""
 
 
 def contradictions(config: Config) -> Iterator[Problem]:
-    """Everything in a config that cannot be true at the same time."""
+    """Yields every contradiction in a config."""
     yield from _names(config)
     yield from _rounding(config)
     yield from _arena(config)
@@ -35,12 +35,12 @@ def _names(config: Config) -> Iterator[Problem]:
     for field in PROVENANCE:  # folders of runs are named by them
         text = getattr(config, field)
         if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", text):
-            rule = 'must be of letters, digits, "-", "_" and ".", at most 80, and not begin with a "."'
+            rule = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
             yield Problem(field, rule, format_value(text))
 
 
 def _rounding(config: Config) -> Iterator[Problem]:
-    """Numbers that leave their range when they are rounded to the engine's 32 bits."""
+    """Numbers that are outside their range after rounding to the engine's 32 bits."""
     for path, setting, value in leaves(config):
         if setting.type is float:
             rounded = struct.unpack("f", struct.pack("f", value))[0]
@@ -70,7 +70,7 @@ def _corners_fit(arena: ArenaConfig) -> bool:
 
 
 def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
-    """Whether a point lies outside; none does while the outline itself is wrong, which is said elsewhere."""
+    """Whether a point lies outside the outline. False if the outline itself is wrong, which has its own message."""
     return _corners_fit(arena) and not is_inside(arena, x, y)
 
 
@@ -82,7 +82,7 @@ def _bodies(config: Config) -> Iterator[Problem]:
         yield _problem(config, "body.radius", "a body does not fit into the arena")
     elif count * math.pi * radius**2 > MAX_COVERAGE * arena.width * arena.height:
         most = math.floor(MAX_COVERAGE * arena.width * arena.height / (math.pi * radius**2))
-        yield _problem(config, "population.initial_count", f"too many to be placed: the arena has room for {most}")
+        yield _problem(config, "population.initial_count", f"too many to place: the arena has room for {most}")
     if count > config.population.capacity:
         limit = config.population.capacity
         yield _problem(config, "population.initial_count", f"must be at most population.capacity = {limit}")
@@ -98,7 +98,7 @@ def _kinds(config: Config) -> Iterator[Problem]:
     for kind, food in config.food.items():
         path = f"food.{kind}"
         if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind) or kind in RESERVED_KINDS:
-            rule = "a kind's name must be of a-z, 0-9 and _, start with a letter, have at most 32 characters"
+            rule = "a kind's name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
             yield Problem(path, f"{rule} and not be one of " + ", ".join(RESERVED_KINDS))
         if not re.fullmatch(r"#[0-9a-f]{6}", food.color):
             yield Problem(

@@ -1,4 +1,4 @@
-"""The root of a config: everything that a run is, with where it came from."""
+"""The root of a config: all settings of a run, and where they came from."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
@@ -15,7 +15,7 @@ from hedon.config.physics import PhysicsConfig
 from hedon.config.population import PopulationConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
-"""Fields that say where a config came from and change nothing in a run."""
+"""Fields that say where a config came from; they change no result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +27,15 @@ class Config:
 
     name: Annotated[
         str,
-        Doc("what the run is called", "", OURS),
+        Doc("name of the run", "", OURS),
     ] = "baseline"
     preset: Annotated[
         str,
-        Doc("the preset that it started from", "", OURS),
+        Doc("preset that the config is based on", "", OURS),
     ] = "baseline"
     fidelity: Annotated[
         str,
-        Doc("the overlay that was laid on the preset", "", OURS),
+        Doc("fidelity that the preset was combined with", "", OURS),
     ] = "corrected"
     arena: ArenaConfig = field(default_factory=ArenaConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)

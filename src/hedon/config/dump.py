@@ -1,4 +1,4 @@
-"""A config as text, as a digest, and compared with another."""
+"""Writes a config as text or as a digest, and compares two configs."""
 
 import hashlib
 import json
@@ -10,10 +10,10 @@ from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
 EARLIER = {"learning.acting_weights": "float32", "physics.solver": "sequential"}
-"""What runs did before there was a setting. A complete file that lacks it was written then and means this; and digests
-leave the setting out where it says this, so that those of earlier runs hold."""
+"""Settings that older versions did not have, with what those versions did. A complete file without such a setting is
+older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""
 
-_HEAD = "# Complete: every setting stands here, and nothing is taken from the preset or the fidelity.\n"
+_HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
 
 def dump_toml(config: Config, section: str | None = None) -> str:
@@ -24,7 +24,7 @@ def dump_toml(config: Config, section: str | None = None) -> str:
         section: Write only this section ("food", "food.normal", …).
 
     Returns:
-        The text. With a section it is no complete file, but can be pasted into one.
+        The text. With a section it is not a complete file, but a part of one.
 
     Raises:
         KeyError: There is no such section.
@@ -39,7 +39,7 @@ def dump_toml(config: Config, section: str | None = None) -> str:
 
 
 def section_paths(config: Config) -> list[str]:
-    """The sections that `dump_toml` can write by themselves."""
+    """The sections that `dump_toml` can write separately."""
     return [*sections(Config), *(f"food.{kind}" for kind in config.food)]
 
 
@@ -49,7 +49,7 @@ def flatten(config: Config) -> dict[str, Any]:
 
 
 def digest(config: Config) -> str:
-    """A fingerprint of what a run does: equal if all settings are, whatever the names and colors.
+    """A fingerprint of a config: equal if all settings are equal, apart from names and colors.
 
     Returns:
         SHA-256, 64 hexadecimal digits.
@@ -63,11 +63,11 @@ def digest(config: Config) -> str:
 
 
 def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
-    """What differs between two configs.
+    """The settings in which two configs differ.
 
     Returns:
-        (path, value in a, value in b) in order, None where a setting is absent; the path "food" with the
-        names of the kinds, where these or their order differ.
+        (path, value in a, value in b) in order, with None for a setting that is absent. If the kinds of food or
+        their order differ, also the path "food" with their names.
     """
     left, right = flatten(a), flatten(b)
     kinds = [("food", tuple(a.food), tuple(b.food))] if list(a.food) != list(b.food) else []

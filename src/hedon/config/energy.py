@@ -1,4 +1,4 @@
-"""The energy of an agent: what it starts with, what it pays and what a child costs."""
+"""The energy of an agent: its amount at birth, its costs, and what a child costs."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -12,19 +12,19 @@ class EnergyConfig:
 
     initial: Annotated[
         float,
-        Doc("of each founder", "energy", CODE + "; the paper prints 20", Range(ge=0, le=1e6)),
+        Doc("energy of each founder at the start", "energy", CODE + "; the paper prints 20", Range(ge=0, le=1e6)),
     ] = 40.0
     capacity: Annotated[
         float,
-        Doc("most that an agent can hold; what is eaten beyond is lost", "energy", CODE, Range(gt=0, le=1e6)),
+        Doc("most energy that an agent can hold; energy eaten above it is lost", "energy", CODE, Range(gt=0, le=1e6)),
     ] = 400.0
     basic_cost: Annotated[
         float,
-        Doc("of living", "energy/step", PAPER, Range(ge=0, le=1e4)),
+        Doc("cost of living", "energy/step", PAPER, Range(ge=0, le=1e4)),
     ] = 1e-3
     action_cost: Annotated[
         float,
-        Doc("of the norm of the two motor forces", "energy/(step·force)", PAPER, Range(ge=0, le=1e4)),
+        Doc("cost of motor force, per norm of the two forces", "energy/(step·force)", PAPER, Range(ge=0, le=1e4)),
     ] = 2e-5
     birth_share: Annotated[
         float,
@@ -33,7 +33,7 @@ class EnergyConfig:
     starvation: Annotated[
         Literal["floor", "death"],
         Doc(
-            "below zero: energy stays at 0 and the rest is forgiven, or the agent dies",
+            "if costs exceed the energy: it stays at 0 and the rest is forgiven, or the agent dies",
             "",
             CODE + '; "death" is ours',
         ),

@@ -8,12 +8,12 @@ from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 @dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """One weight per food kind, one for action, then neutral markers that enter no reward."""
+    """One weight per food kind, one for action, then neutral markers that have no effect on rewards."""
 
     neutral_count: Annotated[
         int,
         Doc(
-            "neutral markers: inherited and mutated like weights, a control for drift",
+            "number of neutral markers: inherited and mutated like weights, a control for drift",
             "",
             OURS,
             Range(ge=0, le=16),
@@ -42,7 +42,7 @@ class GenomeConfig:
     mutation_noise: Annotated[
         Literal["independent", "frozen"],
         Doc(
-            "noise of every birth its own, or set by seed, gene and the birth's number within its window",
+            "new noise for every birth, or noise fixed by seed, gene and the birth's number within its window",
             "",
             PAPER + '; the code has "frozen"',
         ),
@@ -55,9 +55,9 @@ class RewardConfig:
 
     action_coef: Annotated[
         float,
-        Doc("factor of the action's part", "", EITHER, Range(ge=-1e3, le=1e3)),
+        Doc("factor of the action term", "", EITHER, Range(ge=-1e3, le=1e3)),
     ] = 0.01
     action_norm: Annotated[
         Literal["max_force", "none"],
-        Doc("|force| in units of its largest value, or as it is", "", CODE + '; the paper prints "none"'),
+        Doc("what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'),
     ] = "max_force"

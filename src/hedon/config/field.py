@@ -1,4 +1,4 @@
-"""What stands beside each setting: its meaning, unit, range and source, readable by people and by machine."""
+"""The documentation of each setting: its meaning, unit, range and source, for people and for programs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -9,9 +9,9 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 PAPER = "paper"
 """Printed in Kanagawa & Doya (2024), ALIFE."""
 CODE = "code"
-"""The value that the paper's released code was configured with, where the paper prints another or none."""
+"""The value in the configuration of the paper's released code; the paper prints another value or none."""
 EITHER = "paper or code"
-"""The paper's where it prints one, else that of its released code; the two do not differ."""
+"""The paper's value if it prints one, else that of its released code; the two do not differ."""
 OURS = "ours"
 """A choice of this project."""
 
@@ -20,7 +20,7 @@ OURS = "ours"
 class Range:
     """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`.
 
-    `form` tells the reader how a text must look; `check` looks at it.
+    `form` shows how a text must look; `config.check` checks it.
     """
 
     ge: float | None = None
@@ -55,9 +55,9 @@ class Doc:
 
     Attributes:
         meaning: What the value does, as a phrase.
-        unit: Its unit, or "" where it has none.
-        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark where there is one to make.
-        range: The allowed values, apart from their type.
+        unit: Its unit, or "" if it has none.
+        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if one is needed.
+        range: The allowed values, besides their type.
     """
 
     meaning: str
@@ -67,7 +67,7 @@ class Doc:
     __is_annotated_types_grouped_metadata__: Literal[True] = True
 
     def __iter__(self) -> Iterator[object]:
-        """Yields the range in the validator's own terms (the protocol of grouped metadata)."""
+        """Yields the range in the validator's form (the protocol of grouped metadata)."""
         from pydantic import Field
 
         bounds: Any = Field(
@@ -91,12 +91,12 @@ class Setting:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """The allowed names where the setting is a choice among names, else nothing."""
+        """The allowed names if the setting is a choice among names, else none."""
         return get_args(self.type) if get_origin(self.type) is Literal else ()
 
     @property
     def allowed(self) -> str:
-        """Type, range and unit in words, as error messages and the reference page give them."""
+        """Type, range and unit in words, for error messages and the reference page."""
         if self.choices:
             return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
         limits = str(self.doc.range)
@@ -117,7 +117,7 @@ def type_name(kind: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A field that is a section itself, or a table of such sections by the name of their kind."""
+    """A field that is a section, or a table of sections by the name of their kind."""
 
     type: type
     repeated: bool
@@ -125,7 +125,7 @@ class Section:
 
 @cache
 def settings(section: type) -> Mapping[str, Setting]:
-    """The documented settings of a section by name, in order, without the sections that it holds."""
+    """The documented settings of a section by name, in order, without its inner sections."""
     hints = get_type_hints(section, include_extras=True)
     found = {}
     for field in fields(section):
@@ -137,7 +137,7 @@ def settings(section: type) -> Mapping[str, Setting]:
 
 @cache
 def sections(section: type) -> Mapping[str, Section]:
-    """The sections directly within a section by name, in order."""
+    """The inner sections of a section by name, in order."""
     hints = get_type_hints(section)
     found = {}
     for field in fields(section):
@@ -149,7 +149,7 @@ def sections(section: type) -> Mapping[str, Section]:
 
 
 def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
-    """What stands at a path below a section: the setting that it leads to or into, a section, or nothing."""
+    """Follows a path below a section: gives the setting that it leads to or into, a section, or None."""
     here, parts = root, list(path)
     while parts:
         name = parts.pop(0)
@@ -166,7 +166,7 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
-    """Every setting in a section and below by its path, in order, with its value."""
+    """Every setting in a section and its inner sections by its path, in order, with its value."""
     for name, setting in settings(type(section)).items():
         yield f"{path}{name}", setting, getattr(section, name)
     for name, inner in sections(type(section)).items():

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 MAX_KINDS = 8
-"""Kinds that the engine has room for."""
+"""Most kinds that the engine has room for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,12 +15,12 @@ class PlacementConfig:
 
     form: Annotated[
         Literal["uniform", "gaussian", "switching"],
-        Doc("anywhere, around one center, or around one of several centers in turn", "", PAPER),
+        Doc("everywhere, around one center, or around one of several centers in turn", "", PAPER),
     ] = "uniform"
     centers: Annotated[
         tuple[tuple[float, float], ...],
         Doc(
-            "means of the Gaussians: one for gaussian, at least two for switching",
+            "centers of the Gaussians: one for gaussian, at least two for switching",
             "u",
             CODE,
             Range(max_items=16),
@@ -47,7 +47,7 @@ class FoodConfig:
 
     energy: Annotated[
         float,
-        Doc("gained by eating one", "energy", PAPER, Range(ge=-1e4, le=1e4)),
+        Doc("energy gained by eating one piece", "energy", PAPER, Range(ge=-1e4, le=1e4)),
     ] = 1.0
     growth_rate: Annotated[
         float,
@@ -60,18 +60,23 @@ class FoodConfig:
     ] = 0.2
     capacity: Annotated[
         int,
-        Doc("supply at which growth stops", "food", PAPER, Range(ge=0, le=100_000)),
+        Doc("size of the supply at which growth stops", "food", PAPER, Range(ge=0, le=100_000)),
     ] = 100
     initial_count: Annotated[
         int,
-        Doc("supply and food present at first", "food", EITHER, Range(ge=0, le=100_000)),
+        Doc("size of the supply, and food present, at the start", "food", EITHER, Range(ge=0, le=100_000)),
     ] = 20
     candidates: Annotated[
         int,
-        Doc("places tried for new food in each step; else it waits", "", EITHER, Range(ge=1, le=10_000)),
+        Doc(
+            "random places tried for new food in each step; if none is free, the food waits",
+            "",
+            EITHER,
+            Range(ge=1, le=10_000),
+        ),
     ] = 10
     color: Annotated[
         str,
-        Doc("in figures; the agents do not see it", "", OURS, Range(form="#rrggbb")),
+        Doc("color in figures; agents do not see it", "", OURS, Range(form="#rrggbb")),
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)

@@ -1,4 +1,4 @@
-"""Layers of nested tables: each is laid over those below it, setting by setting."""
+"""Merges layers of nested tables: a later layer replaces the settings of earlier ones, one by one."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -11,10 +11,10 @@ EVERY = "*"
 
 
 def stack(layers: Iterable[Table]) -> Table:
-    """Lays tables over one another, the last on top.
+    """Merges tables; where several have a setting, the last one counts.
 
-    In `food`, a layer's `*` applies to every kind, also to those that later layers add; `kind = false`
-    removes a kind. Kinds keep the place of their first mention.
+    In `food`, a layer's `*` applies to every kind, also to kinds that later layers add; `kind = false`
+    removes a kind. Kinds stay in the order in which they first appear.
     """
     result: Table = {}
     for layer in layers:
@@ -26,7 +26,7 @@ def stack(layers: Iterable[Table]) -> Table:
 
 
 def settle_food(tables: Table) -> Iterator[Problem]:
-    """Takes removed kinds and `*` out of `food`, in place; yields what is wrong with the kinds as such."""
+    """Removes `*` and the kinds that are false from `food`, in place; yields what is wrong with the kinds."""
     food = tables.get("food")
     if not isinstance(food, dict):
         return

@@ -13,7 +13,7 @@ class LearningConfig:
     rollout_steps: Annotated[
         int,
         Doc(
-            "steps of a window, at whose end every agent that lived through it learns",
+            "steps of a window; at its end, every agent that lived through all of it learns",
             "step",
             EITHER,
             Range(ge=1, le=65_536),
@@ -21,27 +21,27 @@ class LearningConfig:
     ] = 1024
     minibatch_size: Annotated[
         int,
-        Doc("steps in one gradient; must divide rollout_steps", "step", EITHER, Range(ge=1, le=65_536)),
+        Doc("steps per gradient; must divide rollout_steps", "step", EITHER, Range(ge=1, le=65_536)),
     ] = 256
     update_epochs: Annotated[
         int,
-        Doc("passes over a rollout", "", EITHER, Range(ge=0, le=1000)),
+        Doc("passes over a rollout in one update", "", EITHER, Range(ge=0, le=1000)),
     ] = 10
     gamma: Annotated[
         float,
-        Doc("discount of later rewards", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("discount factor of later rewards", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 0.999
     gae_lambda: Annotated[
         float,
-        Doc("decay of the advantage estimate", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("decay of the advantage estimate (λ)", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 0.95
     clip_coef: Annotated[
         float,
-        Doc("clip of the probability ratio", "", EITHER, Range(gt=0, le=10)),
+        Doc("clip range of the probability ratio", "", EITHER, Range(gt=0, le=10)),
     ] = 0.2
     learning_rate: Annotated[
         float,
-        Doc("of Adam", "", EITHER, Range(ge=0, le=1)),
+        Doc("learning rate of Adam", "", EITHER, Range(ge=0, le=1)),
     ] = 3e-4
     adam_beta1: Annotated[
         float,
@@ -53,7 +53,7 @@ class LearningConfig:
     ] = 0.999
     adam_epsilon: Annotated[
         float,
-        Doc("added to the root of Adam's second moment", "", EITHER, Range(gt=0, le=1)),
+        Doc("added to the square root of Adam's second moment", "", EITHER, Range(gt=0, le=1)),
     ] = 1e-7
     value_coef: Annotated[
         float,
@@ -66,7 +66,7 @@ class LearningConfig:
     critic_target: Annotated[
         Literal["per_state", "batch_mean"],
         Doc(
-            "what the value learns: each state's return, or the minibatch's mean",
+            "target of the value estimate: each state's return, or the mean over the minibatch",
             "",
             PAPER + '; the code amounts to "batch_mean"',
         ),
@@ -74,7 +74,7 @@ class LearningConfig:
     acting_weights: Annotated[
         Literal["float32", "bfloat16"],
         Doc(
-            "precision in which agents read the weights of both hidden layers when they act; they learn in float32",
+            "precision of the weights of both hidden layers when agents act; they learn in float32",
             "",
             OURS + ", for speed; the code acts in float32",
         ),

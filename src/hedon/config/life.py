@@ -1,4 +1,4 @@
-"""Birth and death: the chances per step, by age and energy."""
+"""Birth and death: their probabilities per step, by age and energy."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -8,42 +8,42 @@ from hedon.config.field import CODE, EITHER, PAPER, Doc, Range
 
 @dataclass(frozen=True, slots=True)
 class HazardConfig:
-    """Chance of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age)."""
+    """Probability of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age)."""
 
     kappa: Annotated[
         float,
-        Doc("scale of the part that energy lowers", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("scale of the part that depends on energy", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 0.01
     alpha_energy: Annotated[
         float,
-        Doc("weight of the energy part", "", EITHER, Range(ge=0, le=1e6)),
+        Doc("weight of the exponential of energy", "", EITHER, Range(ge=0, le=1e6)),
     ] = 0.02
     beta_energy: Annotated[
         float,
-        Doc("how fast energy lowers the chance", "1/energy", EITHER, Range(ge=0, le=100)),
+        Doc("how fast energy lowers the probability", "1/energy", EITHER, Range(ge=0, le=100)),
     ] = 0.2
     alpha_age: Annotated[
         float,
-        Doc("chance from age at age 0", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("the part that depends on age, at age 0", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 2e-7
     beta_age: Annotated[
         float,
-        Doc("how fast age raises the chance", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("how fast age raises the probability", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 4e-6
 
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
-    """Chance of a child: kappa/(1 + exp(−beta·energy)); the child is born at a free place near its parent."""
+    """Probability of a child: kappa/(1 + exp(−beta·energy)); it is born at a free place near its parent."""
 
     kappa: Annotated[
         float,
-        Doc("chance at high energy", "1/step", EITHER, Range(ge=0, le=1)),
+        Doc("probability at high energy", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 4e-4
     beta: Annotated[
         float,
         Doc(
-            "how fast energy raises the chance",
+            "how fast energy raises the probability",
             "1/energy",
             PAPER + ", with the sign of the code",
             Range(ge=0, le=100),
@@ -51,12 +51,12 @@ class BirthConfig:
     ] = 0.1
     attempts: Annotated[
         int,
-        Doc("places tried; if none is free, the birth fails", "", EITHER, Range(ge=1, le=1000)),
+        Doc("random places tried for the child; if none is free, the birth fails", "", EITHER, Range(ge=1, le=1000)),
     ] = 10
     distance_sd: Annotated[
         float,
         Doc(
-            "standard deviation of the child's place around the parent, along x and y",
+            "standard deviation of the child's distance from the parent along x and along y",
             "distance_unit",
             CODE + "; the paper says about 8 % of the width",
             Range(gt=0, le=1e5),
@@ -64,5 +64,5 @@ class BirthConfig:
     ] = 100.0
     distance_unit: Annotated[
         Literal["u", "arena_width"],
-        Doc("what distance_sd is counted in", "", EITHER),
+        Doc("unit of distance_sd", "", EITHER),
     ] = "u"

@@ -1,4 +1,4 @@
-"""From a preset or a file to a config: preset, then fidelity, then the file, then single overrides."""
+"""Reads a config from a preset or a file: preset, then fidelity, then the file, then single overrides."""
 
 import re
 import unicodedata
@@ -22,7 +22,7 @@ DEFAULT_FIDELITY = "corrected"
 PRESETS = ("baseline", "small", "large", "centered", "relocation", "poor", "poison")
 """The conditions of the paper."""
 FIDELITIES = ("corrected", "released", "text")
-"""Overlays for any preset: correct algorithms, the faults of the released code, the values as printed."""
+"""Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
 
 
 def load_config(source: str | Path, fidelity: str | None = None, overrides: Iterable[str] = ()) -> Config:
@@ -30,14 +30,14 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 
     Args:
         source: The name of a preset, or the path of a TOML file, which may start with `preset` and
-            `fidelity` and then gives what differs. A file with `complete = true`, as `dump_toml` writes it,
-            stands alone.
-        fidelity: One of `FIDELITIES`; wins over the file's.
-        overrides: Texts `path=value`, as of `--set`; the last wins.
+            `fidelity` and then has only the settings that differ. A file with `complete = true`, as `dump_toml`
+            writes it, has all settings and takes none from a preset.
+        fidelity: One of `FIDELITIES`; replaces the one in the file.
+        overrides: Texts `path=value`, as for `--set`; the last one counts.
 
     Raises:
-        ConfigError: There is no such preset or file, or anything in it is wrong; all problems at once.
-        ArgumentError: An argument has another type.
+        ConfigError: There is no such preset or file, or something in it is wrong; the error lists all problems.
+        ArgumentError: An argument has a wrong type.
     """
     texts = _texts(overrides)
     path = _path_of(source)
@@ -59,16 +59,16 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 
 
 def parse_config(text: str, origin: str) -> Config:
-    """The config of a complete TOML text, as `dump_toml` writes it; `origin` is what an error calls it.
+    """The config of a complete TOML text, as `dump_toml` writes it; `origin` is its name in errors.
 
     Raises:
-        ConfigError: Anything in it is wrong or missing.
+        ConfigError: Something in it is wrong or missing.
     """
     return from_tables(_settled([_earlier(), parse_toml(text, origin)], origin), origin)
 
 
 def is_modified(config: Config) -> bool:
-    """Whether any setting but names and colors differs from the preset and fidelity that the config names."""
+    """Whether any setting differs from the config's preset and fidelity; names and colors do not count."""
     if config.preset not in PRESETS or config.fidelity not in FIDELITIES:
         return True
     return digest(config) != digest(load_config(config.preset, config.fidelity))
@@ -95,7 +95,7 @@ def _texts(overrides: Iterable[str]) -> list[str]:
 
 
 def _name_of(path: Path) -> str:
-    """What a file that gives no name calls its runs: its own name, in letters that any folder's name can have."""
+    """The name of a run whose file gives none: the file's own name, in characters that every folder's name can have."""
     plain = unicodedata.normalize("NFKD", path.stem).encode("ascii", "ignore").decode()
     return re.sub(r"[^A-Za-z0-9._-]+", "-", plain).strip(".-")[:80] or "config"
 
@@ -107,16 +107,16 @@ def _path_of(source: str | Path) -> Path | None:
     if isinstance(source, Path) or source.endswith(".toml") or "/" in source:
         return Path(source)
     if source not in PRESETS:
-        known = "there is no such preset (there is " + ", ".join(PRESETS) + "); a file's name ends with .toml"
+        known = "there is no such preset (there are " + ", ".join(PRESETS) + "); a file's name ends with .toml"
         raise ConfigError(source, [Problem("", known, nearest=nearest(source, PRESETS))])
     return None
 
 
 def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
-    """The layers that a file rests on; sets the names of preset and fidelity in `own`."""
+    """The layers below a file; sets the names of preset and fidelity in `own`."""
     if own.get("complete") is True:
         if fidelity not in (None, own.get("fidelity")):
-            message = "the file is complete, so no fidelity can be laid below it; start from its preset instead"
+            message = "the file already has all settings, so a fidelity changes none; start from its preset instead"
             problems.append(Problem("--fidelity", message, fidelity))
         return [_earlier()]
     if "complete" in own:
@@ -142,7 +142,7 @@ def _settled(layers: list[Table], origin: str) -> Table:
 
 
 def _earlier() -> Table:
-    """The layer below a complete file: what it means by a setting that there was not when it was written."""
+    """The layer below a complete file: values for settings that did not exist when an older file was written."""
     tables: Table = {}
     for path, value in EARLIER.items():
         section, name = path.split(".")
@@ -160,11 +160,11 @@ def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Pr
 
 def _not_settable(name: str) -> Problem:
     other = "--fidelity" if name == "fidelity" else "the preset or file itself"
-    return Problem(name, f"is not a setting: give it by {other}")
+    return Problem(name, f"is not a setting: give it with {other}")
 
 
 def _preset_layers(name: str) -> list[Table]:
-    """A preset and those that it starts from, the lowest first."""
+    """A preset and the presets that it is based on, the lowest first."""
     own = _settings_of(_FOLDER / "presets" / f"{name}.toml")
     return [*(_preset_layers(own["preset"]) if "preset" in own else []), own]
 

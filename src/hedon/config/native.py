@@ -1,4 +1,4 @@
-"""What the engine takes: the same names, in plain dicts and lists."""
+"""A config in the form that the engine takes: the same names, in plain dicts and lists."""
 
 from dataclasses import asdict
 from typing import Any
@@ -13,13 +13,13 @@ PYTHON_ONLY = (
     "food.color",
     "birth.distance_unit",
 )
-"""Settings that the engine does not see: names, colors, and what arrives as walls or as lengths in u."""
+"""Settings that the engine does not get: names, colors, and what it gets as walls or as lengths in u."""
 
 
 def engine_config(config: Config) -> dict[str, Any]:
-    """The nested dict from which the engine's structs are filled.
+    """The nested dict that the engine's structs are filled from.
 
-    Names are those of the dataclasses, with these differences: `arena` has its size alone (see `arena.walls`
+    Names are those of the dataclasses, with these differences: `arena` has only its size (see `arena.walls`
     for the rest); `food` is a list in the order of the kinds; `birth.distance_sd` is (x, y) in u.
     """
     native = {name: section for name, section in asdict(config).items() if name not in PROVENANCE}

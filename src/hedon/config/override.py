@@ -1,4 +1,4 @@
-"""Single settings given on the command line: `food.normal.growth_rate=0.5`."""
+"""Single settings from the command line, such as `food.normal.growth_rate=0.5`."""
 
 import re
 import tomllib
@@ -15,8 +15,8 @@ def parse_override(text: str) -> Table | Problem:
     """Reads `path=value` as nested tables.
 
     Args:
-        text: A path of names joined by points (a name may stand in quotes, `*` is every kind of food), "=",
-            and a TOML value; a single word that is no TOML value is a text, so that `sensor.scaling=unit`
+        text: A path of names joined by points (a name may be in quotes, `*` is every kind of food), "=",
+            and a TOML value. A single word that is not a TOML value is a text, so that `sensor.scaling=unit`
             needs no quotes.
 
     Returns:
@@ -29,7 +29,7 @@ def parse_override(text: str) -> Table | Problem:
     try:
         value = _value(value_text.strip())
     except (ValueError, RecursionError):
-        return Problem(path.strip(), 'not a TOML value: texts of several words need quotes: "…"', value_text.strip())
+        return Problem(path.strip(), 'not a TOML value; a text of several words needs quotes: "…"', value_text.strip())
     for name in reversed(names):
         value = {name: value}
     return value

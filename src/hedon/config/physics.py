@@ -1,4 +1,4 @@
-"""The rigid-body physics: how time is cut, how contacts are solved, what slows a body down."""
+"""The rigid-body physics: time steps, the solving of contacts, damping."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ class PhysicsConfig:
 
     dt: Annotated[
         float,
-        Doc("time of one substep", "s", EITHER, Range(gt=0, le=1)),
+        Doc("length of one substep", "s", EITHER, Range(gt=0, le=1)),
     ] = 0.1
     substeps: Annotated[
         int,
@@ -46,11 +46,11 @@ class PhysicsConfig:
     ] = 0.6
     max_speed: Annotated[
         float,
-        Doc("cap of the velocity along each axis", "u/s", EITHER, Range(gt=0, le=1e4)),
+        Doc("largest velocity along each axis", "u/s", EITHER, Range(gt=0, le=1e4)),
     ] = 10.0
     max_angular_speed: Annotated[
         float,
-        Doc("cap of the angular velocity", "rad/s", EITHER, Range(gt=0, le=1e3)),
+        Doc("largest angular velocity", "rad/s", EITHER, Range(gt=0, le=1e3)),
     ] = math.pi
     friction: Annotated[
         float,
@@ -58,7 +58,7 @@ class PhysicsConfig:
     ] = 0.2
     restitution: Annotated[
         float,
-        Doc("share of the approach speed that a bounce gives back", "", EITHER, Range(ge=0, le=1)),
+        Doc("share of the approach speed that remains after a bounce", "", EITHER, Range(ge=0, le=1)),
     ] = 0.4
     restitution_threshold: Annotated[
         float,
@@ -70,7 +70,7 @@ class PhysicsConfig:
     ] = 0.2
     slop: Annotated[
         float,
-        Doc("overlap that is left alone", "u", EITHER, Range(ge=0, le=10)),
+        Doc("overlap that is not corrected", "u", EITHER, Range(ge=0, le=10)),
     ] = 0.005
     max_correction: Annotated[
         float,
@@ -79,7 +79,7 @@ class PhysicsConfig:
     neighbor_skin: Annotated[
         float,
         Doc(
-            "distance beyond contact within which pairs stay listed as neighbors",
+            "gap between two surfaces up to which a pair is listed as neighbors",
             "u",
             OURS,
             Range(gt=0, le=1e3),

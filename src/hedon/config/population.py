@@ -1,4 +1,4 @@
-"""The population: how many agents there may be and how many there are at first."""
+"""The population: its largest size and its size at the start."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -12,9 +12,9 @@ class PopulationConfig:
 
     capacity: Annotated[
         int,
-        Doc("agents that can live at a time; births beyond fail", "agent", EITHER, Range(ge=1, le=100_000)),
+        Doc("most agents alive at the same time; further births fail", "agent", EITHER, Range(ge=1, le=100_000)),
     ] = 200
     initial_count: Annotated[
         int,
-        Doc("founders, placed uniformly without overlap", "agent", EITHER, Range(ge=1, le=100_000)),
+        Doc("number of founders, placed uniformly without overlap", "agent", EITHER, Range(ge=1, le=100_000)),
     ] = 50

@@ -1,4 +1,4 @@
-"""What is wrong with a config: every problem by its place, what is allowed, the nearest valid name."""
+"""The problems of a config: each with its place, what is allowed, and the nearest valid name."""
 
 import json
 from collections.abc import Iterable
@@ -10,17 +10,17 @@ from hedon.error import HedonError
 from hedon.text import LINE, brief
 
 SHOWN = 20
-"""Problems that a message lists."""
+"""Most problems that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing to put right.
+    """One problem to fix.
 
     Attributes:
         path: Where it is: "food.normal.growth_rate"; "" for the source as a whole.
         message: What is wrong and what is allowed.
-        value: What stands there, as text; None where that says nothing.
+        value: The value there, as text; None if it would not help.
         nearest: A valid name close to the one that was given, if there is one.
     """
 
@@ -38,11 +38,11 @@ class Problem:
 
 
 class ConfigError(HedonError):
-    """A config that cannot be used. It names all problems at once, in its text the first ones and how many there are.
+    """A config that cannot be used. It has all problems; its text lists the first ones and says how many there are.
 
     Attributes:
         origin: The preset or file that was read.
-        problems: What is wrong, in the order of the file where it has one.
+        problems: What is wrong, in the order of the file if there is one.
     """
 
     def __init__(self, origin: str, problems: Iterable[Problem]) -> None:
@@ -68,7 +68,7 @@ def format_value(value: Any) -> str:
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
-    """The valid name closest to the given one, or None where none is close."""
+    """The valid name closest to the given one, or None if none is close."""
     if len(name) > LINE:  # no valid name is nearly as long, and comparing takes its time
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
@@ -76,7 +76,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def format_path(parts: Iterable[str | int]) -> str:
-    """A path as it is written in messages: names joined by points, positions in brackets."""
+    """A path as messages show it: names joined by points, positions in brackets."""
     text = ""
     for part in parts:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part

@@ -14,7 +14,7 @@ _HEAD = """\
 
 This page is written by `uv run python -m hedon.config.reference > docs/config.md`. Do not edit it.
 
-A config is a TOML file. It may start with `preset` and `fidelity`; after that it gives what differs:
+A config is a TOML file. It may start with `preset` and `fidelity`; after that it has only the settings that differ:
 
 ```toml
 preset = "baseline"
@@ -30,13 +30,14 @@ energy = 0.5
 growth_rate = 0.5
 ```
 
-What is said later wins: preset, then fidelity, then file, then `--set section.name=value` on the command
-line. `normal = false` under `[food]` removes a kind of food. The order of the kinds is the order of the
-sensor's channels and of the genome's weights. A file with `complete = true`, as `hedon config show` prints
-it, stands alone and takes nothing from its preset.
+If a setting is given more than once, the last one counts. The order is: preset, fidelity, file, then
+`--set section.name=value` on the command line. `normal = false` under `[food]` removes a kind of food. The order of
+the kinds is the order of the sensor's channels and of the genome's weights. A file with `complete = true`, as
+`hedon config show` prints it, has all settings and takes none from its preset.
 
-Sources: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code,
-"ours" is a choice of this project; "paper or code" is the paper's value where it prints one, else the code's.
+Sources: "paper" is the value printed in Kanagawa & Doya (2024), "code" is the value in the configuration of its
+released code, "ours" is a choice of this project; "paper or code" is the paper's value if it prints one, else the
+code's.
 """
 
 

@@ -1,4 +1,4 @@
-"""From a TOML file or text to plain tables: of a size and depth that a config can have, or refused by name."""
+"""Reads a TOML file or text into plain tables, and refuses what is too large or too deep to be a config."""
 
 import tomllib
 from collections.abc import Iterator
@@ -9,20 +9,20 @@ from hedon.config.layer import Table
 from hedon.config.problem import ConfigError, Problem
 
 MAX_BYTES = 1_000_000
-"""Size of the largest config file [byte]; the largest that can be run has some 30,000."""
+"""Size of the largest config file [byte]; the largest valid config has about 30,000."""
 MAX_VALUES = 5_000
-"""Names and values in all the tables and lists of a config; the most walls and centers there can be make 1,500."""
+"""Most names and values in a config; the largest number of walls and centers gives 1,500."""
 MAX_DEPTH = 8
-"""Tables and lists within each other; settings need five."""
+"""Most levels of tables and lists inside one another; settings need five."""
 MAX_DIGITS = 1000
-"""Of an integer. Python reads and writes some thousands; what has fewer is refused by its setting, which says more."""
+"""Most digits of an integer that is read at all; its setting then refuses it and says more."""
 
 
 def read_toml(path: Path) -> Table:
     """Reads a file.
 
     Raises:
-        ConfigError: it cannot be read, or is no TOML that could be a config.
+        ConfigError: it cannot be read, or it is not TOML that could be a config.
     """
     origin = str(path)
     try:
@@ -33,19 +33,19 @@ def read_toml(path: Path) -> Table:
     except ValueError as error:  # a path with a null character
         raise ConfigError(origin, [Problem("", f"cannot be read: {error}")]) from None
     if len(content) > MAX_BYTES:
-        raise ConfigError(origin, [Problem("", f"is larger than a config can be ({MAX_BYTES:,} bytes)")])
+        raise ConfigError(origin, [Problem("", f"is too large for a config (at most {MAX_BYTES:,} bytes)")])
     try:
         text = content.decode("utf-8-sig")  # some editors write a byte order mark
     except UnicodeDecodeError:
-        raise ConfigError(origin, [Problem("", "cannot be read: it is not a text in UTF-8")]) from None
+        raise ConfigError(origin, [Problem("", "cannot be read: it is not UTF-8 text")]) from None
     return parse_toml(text.replace("\r\n", "\n"), origin)
 
 
 def parse_toml(text: str, origin: str) -> Table:
-    """Reads a text; `origin` is what an error calls it.
+    """Reads a text; `origin` is its name in errors.
 
     Raises:
-        ConfigError: It is no TOML that could be a config.
+        ConfigError: It is not TOML that could be a config.
     """
     try:
         tables = tomllib.loads(text)
@@ -53,7 +53,7 @@ def parse_toml(text: str, origin: str) -> Table:
         raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
     except RecursionError:
         raise ConfigError(origin, [_TOO_DEEP]) from None
-    except ValueError:  # Python reads no integer of thousands of digits
+    except ValueError:  # Python does not read integers of thousands of digits
         raise ConfigError(origin, [_TOO_LONG]) from None
     require_plain(tables, origin)
     return tables
@@ -70,7 +70,7 @@ def require_plain(tables: Any, origin: str) -> None:
         raise ConfigError(origin, problems)
 
 
-_TOO_LONG = Problem("", f"holds an integer of more than {MAX_DIGITS:,} digits")
+_TOO_LONG = Problem("", f"has an integer of more than {MAX_DIGITS:,} digits")
 _TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} levels")
 
 
@@ -80,7 +80,7 @@ def _oversize(tables: Any) -> Iterator[Problem]:
         values = [value for each in level for value in (each.values() if isinstance(each, dict) else each)]
         count += len(values)
         if count > MAX_VALUES:
-            yield Problem("", f"holds more than {MAX_VALUES:,} names and values, which no config has")
+            yield Problem("", f"has more than {MAX_VALUES:,} names and values, which no config has")
             return
         if any(isinstance(value, int) and abs(value) >= 10**MAX_DIGITS for value in values):
             yield _TOO_LONG

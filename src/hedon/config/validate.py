@@ -1,4 +1,4 @@
-"""The door: plain nested tables become a `Config`, or one error that names everything that is wrong."""
+"""Checks all input: turns plain nested tables into a `Config`, or raises one error that names all problems."""
 
 import json
 import re
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 
 def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
-    """Builds a config from nested tables; what is not given has its default.
+    """Builds a config from nested tables; settings that are not given have their defaults.
 
     Args:
         tables: Sections and settings by name, as TOML gives them.
-        origin: What to call the tables in an error.
+        origin: The name of the tables in errors.
 
     Raises:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another.
@@ -35,7 +35,7 @@ def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
     config, errors = _try(tables)
     problems = list(dict.fromkeys(_problem(details) for details in errors))
     if errors:
-        # What is wrong by itself is set aside, so that what contradicts among the rest is told at once as well.
+        # Leave out what is wrong by itself, so that the same error also lists contradictions among the rest.
         config, _ = _try(_without(tables, [details["loc"] for details in errors]))
     if config is not None:
         wrong = [_parts(problem.path) for problem in problems]
@@ -51,14 +51,14 @@ def _try(tables: Mapping[str, Any]) -> "tuple[Config | None, list[ErrorDetails]]
     from pydantic import ValidationError
 
     try:
-        # By way of JSON: only there does a strict validator take tables for dataclasses, lists for tuples.
+        # Through JSON: only there does a strict validator accept tables for dataclasses and lists for tuples.
         return _validator().validate_json(json.dumps(tables, default=_plain)), []
     except ValidationError as error:
         return None, error.errors(include_url=False)
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers as Python's, anything else as text, which no setting takes by mistake."""
+    """NumPy's numbers as Python's, anything else as text, which a setting for numbers refuses."""
     return value.item() if hasattr(value, "item") else str(value)
 
 
@@ -67,7 +67,7 @@ def _parts(path: str) -> list[str]:
 
 
 def _overlap(path: list[str], other: list[str]) -> bool:
-    """Whether two paths name the same setting, or one the other's section."""
+    """Whether two paths name the same setting, or one path names a section that holds the other."""
     return all(x == y for x, y in zip(path, other, strict=False))
 
 
@@ -86,11 +86,11 @@ def _without(tables: Mapping[str, Any], locations: Sequence[Sequence[str | int]]
 
 
 def validated(config: Config, origin: str = "config") -> Config:
-    """The same config, after all checks: for one that was put together in Python.
+    """The same config, after all checks; for a config that was made in Python.
 
     Raises:
         ConfigError: As `from_tables`.
-        ArgumentError: It is no `Config`.
+        ArgumentError: It is not a `Config`.
     """
     if not isinstance(config, Config):
         raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
@@ -120,7 +120,7 @@ def _problem(details: "ErrorDetails") -> Problem:
 
 
 def _nearest_name(location: Sequence[str | int]) -> str | None:
-    """The nearest name beside an unknown one, else the places where the same name is known."""
+    """The name nearest to an unknown one in its section, else the sections that have this name."""
     name, section = str(location[-1]), find(Config, location[:-1])
     if not isinstance(section, type):
         return None

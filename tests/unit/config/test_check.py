@@ -4,7 +4,7 @@ from hedon.config import ConfigError, load_config
 
 NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
 
-NAME_RULE = 'must be of letters, digits, "-", "_" and ".", at most 80, and not begin with a "."'
+NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
 
 
 @pytest.mark.parametrize(
@@ -16,7 +16,7 @@ NAME_RULE = 'must be of letters, digits, "-", "_" and ".", at most 80, and not b
         ),
         (
             ["population={capacity=250, initial_count=250}"],
-            "population.initial_count = 250: too many to be placed: the arena has room for 247",
+            "population.initial_count = 250: too many to place: the arena has room for 247",
         ),
         (["body.radius=300"], "body.radius = 300.0: a body does not fit into the arena"),
         (
@@ -110,7 +110,7 @@ def test_each_contradiction(overrides: list[str], line: str) -> None:
 
 @pytest.mark.parametrize("kind", ["agent", "wall", "action", "Big", "1st", "a-b"])
 def test_names_of_kinds(kind: str) -> None:
-    with pytest.raises(ConfigError, match=f"food.{kind}: a kind's name must be of a-z"):
+    with pytest.raises(ConfigError, match=f"food.{kind}: a kind's name must have only a-z"):
         load_config("baseline", overrides=[f"food.{kind}.energy=1"])
 
 

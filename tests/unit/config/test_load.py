@@ -144,7 +144,7 @@ def test_removed_kinds_can_be_too_many() -> None:
 
 def test_unknown_preset_names_the_nearest() -> None:
     assert "did you mean relocation?" in problems("relocaton")
-    assert "(there is baseline, small" in problems("zzz")
+    assert "(there are baseline, small" in problems("zzz")
 
 
 def test_file_errors(write: Write, tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_file_errors(write: Write, tmp_path: Path) -> None:
     assert "is not valid TOML: " in problems(write("[energy\n"))
     path = tmp_path / "latin.toml"
     path.write_bytes(b'name = "\xff"\n')
-    assert "it is not a text in UTF-8" in problems(path)
+    assert "it is not UTF-8 text" in problems(path)
 
 
 def test_bad_names_at_the_top_come_together(write: Write) -> None:
@@ -172,7 +172,7 @@ def test_complete_file_takes_no_fidelity(write: Write) -> None:
     path = write('complete = true\nfidelity = "text"\n')
     assert load_config(path).energy.initial == 40.0, "nothing is taken from the overlay"
     assert load_config(path, "text") == load_config(path)
-    assert "--fidelity = released: the file is complete" in problems(path, "released")
+    assert "--fidelity = released: the file already has all settings" in problems(path, "released")
 
 
 def test_name_can_be_given(write: Write) -> None:
