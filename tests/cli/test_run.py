@@ -107,7 +107,7 @@ def test_a_folder_that_holds_a_run_is_left_alone(finished):
     before = (folder / "manifest.json").read_bytes()
     answer = call("run", "baseline", "--steps", 10, "--out", folder)
     assert answer.returncode == 2
-    assert "holds a run already" in answer.stderr
+    assert "already holds a run" in answer.stderr
     assert answer.stdout == ""
     assert "Traceback" not in answer.stderr
     assert (folder / "manifest.json").read_bytes() == before

@@ -134,7 +134,7 @@ def test_a_missing_manifest_is_named_and_nothing_is_touched(tmp_path):
     (folder / MANIFEST).unlink()
     with pytest.raises(RecordError, match=f"not a run folder: it has no {MANIFEST}"):
         resume(folder, steps=100)
-    with pytest.raises(RecordError, match="holds a run already"):
+    with pytest.raises(RecordError, match="already holds a run"):
         small_run(folder, 50)
     (folder / MANIFEST).write_text(text)
     assert resume(folder, steps=100).status == "finished"

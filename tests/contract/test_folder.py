@@ -153,7 +153,7 @@ def test_a_folder_that_is_removed_ends_the_run_at_once(tmp_path):
     thread = threading.Thread(target=remove)
     thread.start()
     begun = time.monotonic()
-    with pytest.raises(RecordError, match="was removed or replaced while the run goes on"):
+    with pytest.raises(RecordError, match="was removed or replaced during the run"):
         small_run(tmp_path / "run", 10_000_000)
     thread.join()
     assert time.monotonic() - begun < 20

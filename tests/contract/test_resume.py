@@ -111,7 +111,7 @@ def test_a_damaged_checkpoint_is_passed_over(half, whole):
     data = bytearray(first.read_bytes())
     data[len(data) // 2] ^= 1
     first.write_bytes(data)
-    with pytest.raises(RecordError, match="has no checkpoint that is whole"):
+    with pytest.raises(RecordError, match="has no undamaged checkpoint"):
         resume(half, steps=STEPS)
     first.write_bytes(data[: len(data) // 2] + bytes([data[len(data) // 2] ^ 1]) + data[len(data) // 2 + 1 :])
     resume(half, steps=STEPS)
@@ -224,7 +224,7 @@ def test_a_branch_without_changes_is_the_same_life(half, whole):
 
 def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
     out = half.with_name("branch")
-    with pytest.raises(RecordError, match="keeps no checkpoint of step 64; it keeps those of steps 0, 300"):
+    with pytest.raises(RecordError, match="has no checkpoint of step 64; it has those of steps 0, 300"):
         branch(half, out, at=64)
     with pytest.raises(RecordError, match="is at step 300: a branch needs more steps"):
         branch(half, out)
@@ -233,7 +233,7 @@ def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
     assert manifest.parent.step == 0
     assert manifest.modified
     assert manifest.world_digests != load_manifest(whole).world_digests
-    with pytest.raises(RecordError, match="holds a run already"):
+    with pytest.raises(RecordError, match="already holds a run"):
         branch(half, out, steps=STEPS)
 
 

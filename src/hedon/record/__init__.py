@@ -1,1 +1,1 @@
-"""What a run leaves behind: tables, manifest and last state, how they are written and how they are read."""
+"""The files of a run: tables, manifest, checkpoints and last state; writing and reading them."""

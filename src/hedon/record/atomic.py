@@ -1,4 +1,4 @@
-"""Files that are either whole or not there."""
+"""Writes files so that each is either complete or not there."""
 
 import errno
 import os
@@ -9,22 +9,22 @@ from pathlib import Path
 from typing import BinaryIO
 
 _NO_UNNAMED = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL)
-"""What file systems answer that have no files without a name."""
+"""Errors of file systems that do not support files without a name."""
 _OWN = "/proc/self/fd"
 
 
 def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Writes a file so that a reader, or a crash, finds the old content or the new, never a mix.
+    """Writes a file so that a reader sees the old content or the new, never a mix, even after a crash.
 
-    While it is written the file has no name, where the file system allows for that: a process that is killed leaves
-    nothing behind. Several processes may write the same file; the last one's content stays.
+    If the file system allows it, the file has no name while it is written: a process that is killed leaves nothing
+    behind. Several processes may write the same file; the content of the last one stays.
 
     Args:
-        path: the file; its folder must exist. Replaced where it exists.
-        write: is given the open binary file to fill.
+        path: the file; its folder must exist. An existing file is replaced.
+        write: called with the open binary file, to fill it.
 
     Raises:
-        OSError: as the file system raises it; `path` is then as before, and nothing is left beside it.
+        OSError: as the file system raises it; `path` is then as before, and no other file is left.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
     try:
@@ -43,7 +43,7 @@ def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
 
 
 def _create(temporary: Path) -> int:
-    """Opens a new file: without a name, or else under this one."""
+    """Opens a new file: without a name if possible, else with this one."""
     if hasattr(os, "O_TMPFILE") and os.path.isdir(_OWN):
         try:
             return os.open(temporary.parent, os.O_TMPFILE | os.O_RDWR, 0o666)
@@ -55,14 +55,14 @@ def _create(temporary: Path) -> int:
 
 def _give_name(descriptor: int, path: Path) -> None:
     folder = os.open(path.parent, os.O_RDONLY)
-    try:  # only with a folder's descriptor does Python ask the system to follow the link in /proc
+    try:  # Python asks the system to follow the link in /proc only if it gets a folder's descriptor
         os.link(f"{_OWN}/{descriptor}", path.name, src_dir_fd=folder, dst_dir_fd=folder, follow_symlinks=True)
     finally:
         os.close(folder)
 
 
 def _sync_folder(folder: Path) -> None:
-    if os.name != "posix":  # elsewhere a folder cannot be opened to be synced
+    if os.name != "posix":  # other systems cannot open a folder to sync it
         return
     descriptor = os.open(folder, os.O_RDONLY)
     try:

@@ -1,4 +1,4 @@
-"""Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading executes nothing."""
+"""Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading runs no code."""
 
 import hashlib
 import io
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 KEPT = 2
-"""Checkpoints that a run keeps: the newest, and one in case that it is damaged."""
-_HEAD, _DIGEST = "head", "digest"  # the members that are not arrays of a world: JSON, and SHA-256 of all else
+"""Checkpoints that a run keeps: the newest, and one more in case the newest is damaged."""
+_HEAD, _DIGEST = "head", "digest"  # the members that are not arrays of a world: JSON, and SHA-256 of all other members
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """What a row of the table `population` counts from: the counters of a world when the last row was taken."""
+    """The counters of a world at the last row of the table `population`; the next row counts from them."""
 
     step: int
     counters: dict[str, int | float]
@@ -37,19 +37,19 @@ class Sampled:
 
 @dataclass(frozen=True)
 class CheckpointHead:
-    """What a checkpoint says of itself, besides the arrays of its worlds.
+    """The data of a checkpoint besides the arrays of its worlds.
 
     Attributes:
         step: steps completed [step].
         config: the complete config, as TOML.
         seeds: one per world.
         kernel: instruction set that the engine used.
-        hedon_version: that made it.
+        hedon_version: the version that made it.
         frames: steps between two frames; 0 for none [step].
-        run_seconds: time spent in stepping so far [s].
+        run_seconds: time spent on steps so far [s].
         sampled: one per world.
         digests: `World.digest()` of each world.
-        parts: SHA-256 of each part that was on disk, in order, by table: all rows up to here, and no later ones.
+        parts: SHA-256 of each part that was on disk, in order, by table. They hold all rows up to here, none later.
     """
 
     step: int
@@ -66,7 +66,7 @@ class CheckpointHead:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """A head, and the arrays of all worlds: "0/params" is what the engine calls `params` in world 0."""
+    """A head and the arrays of all worlds: "0/params" is the engine's array `params` of world 0."""
 
     head: CheckpointHead
     arrays: dict[str, NDArray[Any]]
@@ -81,7 +81,7 @@ def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
     """Writes a checkpoint of a run atomically, then removes all but the newest ones.
 
     Raises:
-        OSError: as the file system raises it; the earlier checkpoints are then as they were.
+        OSError: as the file system raises it; the earlier checkpoints are then unchanged.
     """
     write_checkpoint(checkpoint_path(folder, checkpoint.head.step), checkpoint)
     for old in checkpoint_paths(folder)[:-KEPT]:
@@ -89,7 +89,7 @@ def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Writes one checkpoint atomically, and its folder where it is missing.
+    """Writes one checkpoint atomically; makes its folder if it is missing.
 
     Raises:
         OSError: as the file system raises it.
@@ -102,32 +102,32 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
 
 
 def load_checkpoint(path: Path) -> Checkpoint:
-    """Reads a checkpoint. It may come from anywhere: its arrays are those that were written, but nothing says that the
-    engine can use them; the engine checks that itself.
+    """Reads a checkpoint, which may come from anyone. Checks that its content was not changed since it was written;
+    whether the arrays are valid, the engine checks.
 
     Raises:
-        RecordError: the file cannot be read, is damaged, or is no checkpoint.
+        RecordError: the file cannot be read, is damaged, or is not a checkpoint.
     """
     try:
         members = _read_members(path)
         digest = members.pop(_DIGEST).tobytes().decode()
         if digest != _digest(members):
-            raise ValueError("its content differs from its digest")
+            raise ValueError("its content does not match its digest")
         head = _heads().validate_json(members.pop(_HEAD).tobytes())
         if path.name != checkpoint_path(path.parent, head.step).name:
-            raise ValueError(f"it is of step {head.step}, which its name does not say")
+            raise ValueError(f"it is of step {head.step}, but its name gives another step")
         return Checkpoint(head, members)
-    except Exception as error:  # a file that is none of ours fails in any way
+    except Exception as error:  # a file that is not from hedon can raise any exception
         raise RecordError(f"damaged checkpoint {path}: {error}") from error
 
 
 def _read_members(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz file, whose sizes are checked before memory is taken."""
+    """The arrays of an npz file; checks their sizes before it takes memory."""
     members: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(path) as archive:
         entries = archive.infolist()
         if sum(entry.file_size for entry in entries) > path.stat().st_size:
-            raise ValueError("it says to hold more than it does")
+            raise ValueError("it is shorter than the sizes that it declares")
         for entry in entries:
             if entry.compress_type != zipfile.ZIP_STORED or entry.filename in members:
                 raise ValueError(f"{entry.filename} was not written by hedon")
@@ -138,17 +138,17 @@ def _read_members(path: Path) -> dict[str, NDArray[Any]]:
 def _parse_array(data: bytes) -> NDArray[Any]:
     file = io.BytesIO(data)
     if np.lib.format.read_magic(file) != (1, 0):
-        raise ValueError("an array of an unknown format")
+        raise ValueError("an array has an unknown format")
     shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
     if dtype.kind not in "iuf" or not dtype.isnative or in_columns:
-        raise ValueError(f"an array of type {dtype}, where plain numbers are stored")
+        raise ValueError(f"an array has type {dtype}, but only plain numbers are allowed")
     if math.prod(shape) * dtype.itemsize != len(data) - file.tell():
-        raise ValueError("an array is not as long as it says")
+        raise ValueError("the length of an array does not match its shape")
     return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape)
 
 
 def _digest(members: Mapping[str, NDArray[Any]]) -> str:
-    """SHA-256 over names, types, shapes and bytes of arrays, whatever their order."""
+    """SHA-256 over names, types, shapes and bytes of arrays; does not depend on their order."""
     digest = hashlib.sha256()
     for name, array in sorted(members.items()):
         digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())

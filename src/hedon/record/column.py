@@ -1,4 +1,4 @@
-"""What a column and a table are: the types that the schema is written in."""
+"""Columns and tables: the types that the schema uses."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class Column:
         dtype: "i32", "i64", "f32", "f64" or "string".
         unit: "1" for counts and pure numbers.
         meaning: one phrase.
-        nullable: whether a value may be missing; given to the writer as −1 (integers) or NaN (floats).
+        nullable: whether a value may be missing; pass −1 (integers) or NaN (floats) to the writer for such a value.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """One table: its folder's name, what a row stands for, and its columns in order."""
+    """One table: the name of its folder, the meaning of a row, and its columns in order."""
 
     name: str
     row: str

@@ -1,4 +1,4 @@
-"""A digest of what a run recorded: equal for equal rows, however they were split into parts and sessions."""
+"""A digest of the records of a run: equal for equal rows, no matter how parts and sessions divide them."""
 
 import hashlib
 from pathlib import Path
@@ -12,14 +12,14 @@ from hedon.record.folder import LIVING, part_paths
 from hedon.record.schema import run_tables
 
 PARTS_AT_ONCE = 64
-"""Parts that are held in memory together: some 100 MB at most."""
+"""Parts that are in memory together: at most about 100 MB."""
 
 
 def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int) -> str:
     """The digest of all tables of a run: SHA-256, 64 hexadecimal digits.
 
-    The rows of each world are taken in the order in which they were written, which a run repeats; how the worlds'
-    rows stand among one another, and where one part ends, may differ between repetitions and does not count.
+    The rows of each world count in the order in which they were written, which is the same in every repetition of a
+    run. The order of rows of different worlds, and the ends of parts, can differ between repetitions and do not count.
 
     Raises:
         RecordError: a part cannot be read.
@@ -52,7 +52,7 @@ def _read(path: Path, table: Table) -> pl.DataFrame:
 
 
 def _row_bytes(rows: pl.DataFrame, table: Table) -> np.ndarray:
-    """Each row as bytes, (rows, bytes): the value of each column, after whether it is missing where it may be."""
+    """Each row as bytes, (rows, bytes): the value of each column; a nullable one after a byte that is 1 if missing."""
     columns = []
     for column in table.columns:
         series = rows[column.name]

@@ -4,4 +4,4 @@ from hedon.error import HedonError
 
 
 class RecordError(HedonError):
-    """A record cannot be written or read: the message names the file or column and what to do."""
+    """A record cannot be written or read. The message names the file or column and says what to do."""

@@ -1,4 +1,4 @@
-"""Where the files of a run lie."""
+"""The paths of the files of a run."""
 
 import os
 import shlex
@@ -13,35 +13,35 @@ SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
 PARTS_BEFORE = "parts"
-"""What the file of the living says of itself: how many parts hold those who died before it was written."""
+"""Metadata of the file of the living: how many parts hold the agents that died before it was written."""
 CHECKPOINTS = "checkpoints"
 FAULT = "fault"
 LOCK = ".lock"
 CHECKPOINT_SECONDS = 180.0
-"""Time after which a run keeps a checkpoint, unless told otherwise [s]."""
+"""Default time between two checkpoints of a run [s]."""
 TABLE_FOLDERS = ("agents", "population", "frames")
 
 
 def require_unicode(folder: Path) -> None:
-    """Refuses a folder whose name has bytes that are no UTF-8: tables could be written there, and never read.
+    """Refuses a folder whose name is not UTF-8: tables could be written there, but not read.
 
     Raises:
-        RecordError: it has.
+        RecordError: its name is not UTF-8.
     """
     try:
         str(folder).encode()
     except UnicodeEncodeError:
         name = str(folder).encode("utf-8", "backslashreplace").decode()
-        raise RecordError(f"{name}: the name of a run's folder must be UTF-8: choose or give it another") from None
+        raise RecordError(f"{name}: the name of a run's folder must be UTF-8: use another name") from None
 
 
 def require_plain(folder: Path) -> None:
-    """Refuses a run's folder in which anything is neither a file nor a folder: a symbolic link leads out of it.
+    """Refuses a run's folder that holds anything but files and folders: a symbolic link could lead out of it.
 
-    The folder itself may be a link, and need not be there.
+    The folder itself may be a link, and need not exist.
 
     Raises:
-        RecordError: something is; the message names the first.
+        RecordError: there is such an entry; the message names the first.
     """
     places = [folder]
     while places:
@@ -53,18 +53,18 @@ def require_plain(folder: Path) -> None:
                     elif not entry.is_file(follow_symlinks=False):
                         kind = "a symbolic link" if entry.is_symlink() else "neither a file nor a folder"
                         raise RecordError(
-                            f"{entry.path} is {kind}: hedon follows no link inside a run's folder; put what it points "
-                            "to in its place, or remove it"
+                            f"{entry.path} is {kind}: hedon follows no links inside a run's folder; replace it by a "
+                            "copy of what it points to, or remove it"
                         )
-        except OSError:  # not there, or not to be read: said by whoever reads or writes it
+        except OSError:  # missing or unreadable: the code that reads or writes it reports that
             continue
 
 
 def holds_run(folder: Path) -> bool:
     """Whether a folder holds a run.
 
-    The manifest comes last when a run begins: without one, empty tables are what a run left that was killed before it
-    began, and hold nothing.
+    When a run begins, its manifest is written last. Empty tables without a manifest are from a run that was killed
+    before it began, and hold nothing.
     """
     if (folder / MANIFEST).exists():
         return True
@@ -75,14 +75,14 @@ def holds_run(folder: Path) -> bool:
 
 
 def require_no_run(folder: Path) -> None:
-    """Refuses a folder for a new run that holds one.
+    """Refuses a folder for a new run if it already holds a run.
 
     Raises:
-        RecordError: it does.
+        RecordError: it holds a run.
     """
     if holds_run(folder):
         raise RecordError(
-            f"{folder} holds a run already: go on with it by `hedon resume {shlex.quote(str(folder))}`, "
+            f"{folder} already holds a run: continue it with `hedon resume {shlex.quote(str(folder))}`, "
             "choose another folder, or remove it first"
         )
 
@@ -98,22 +98,22 @@ def part_paths(folder: Path, table: str) -> list[Path]:
 
 
 def checkpoint_path(folder: Path, step: int) -> Path:
-    """The path of the checkpoint that was taken after so many steps."""
+    """The path of the checkpoint after this number of steps."""
     return folder / CHECKPOINTS / f"step-{step:010d}.npz"
 
 
 def fault_path(folder: Path, step: int) -> Path:
-    """The path of the checkpoint of a run that stopped at a fault after so many steps."""
+    """The path of the checkpoint of a run that stopped at a fault after this number of steps."""
     return folder / FAULT / f"step-{step:010d}.npz"
 
 
 def fault_paths(folder: Path) -> list[Path]:
-    """The checkpoint of a run that stopped at a fault, or nothing."""
+    """The checkpoint of a run that stopped at a fault, or an empty list."""
     return sorted((folder / FAULT).glob("step-??????????.npz"))
 
 
 def misplaced_checkpoints(folder: Path) -> list[Path]:
-    """Folders where a checkpoint would stand: hedon makes none, and leaves them alone."""
+    """Folders with the name of a checkpoint. Hedon does not make such folders and does not change them."""
     return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_dir())
 
 

@@ -1,4 +1,4 @@
-"""Locks of folders, which the operating system gives back when their process ends, however it ends."""
+"""Locks on folders. The operating system releases a lock when its process ends, in whatever way it ends."""
 
 import errno
 import fcntl
@@ -14,20 +14,20 @@ from hedon.record.error import RecordError
 from hedon.record.folder import LOCK, require_plain, require_unicode
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
-"""What file systems answer that know no locks: there the user alone keeps two runs apart."""
+"""Errors of file systems without locks: there, only the user can prevent two runs in one folder."""
 
 
 class FolderLock:
-    """Holds a run's folder for this process. Use it as a context manager.
+    """Locks a run's folder for this process. Use it as a context manager.
 
-    The lock is advisory (`flock`) and dies with its process; the file that carries it stays and says who held it last.
+    The lock is advisory (`flock`) and ends with its process. The lock file stays and says which process had it last.
 
     Args:
-        folder: made where it does not exist.
+        folder: made if it does not exist.
 
     Raises:
-        RecordError: another process holds it, the folder cannot be written or holds a symbolic link, or its name is no
-            UTF-8.
+        RecordError: another process has the lock, the folder cannot be written or holds a symbolic link, or its name
+            is not UTF-8.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -62,9 +62,9 @@ class FolderLock:
 
 @contextmanager
 def one_writer(folder: Path) -> Iterator[None]:
-    """Lets one process at a time write a report into a folder, which it makes; the others wait.
+    """Makes a folder and lets one process at a time write a report into it; the others wait.
 
-    The folder itself carries the lock, so that nothing is left in it.
+    The lock is on the folder itself, so that no file is left in it.
 
     Raises:
         OSError: the folder cannot be made or opened.
@@ -89,5 +89,5 @@ def _read_owner(descriptor: int) -> str:
     try:
         owner = json.loads(os.pread(descriptor, 1000, 0))
         return f" (process {int(owner['process'])} on {owner['host']})"
-    except (OSError, ValueError, KeyError, TypeError):  # its owner has not yet written it
+    except (OSError, ValueError, KeyError, TypeError):  # its owner has not written it yet
         return ""

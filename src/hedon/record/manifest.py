@@ -1,4 +1,4 @@
-"""What a run was made with: enough to repeat it, to judge it and to read its tables."""
+"""The manifest says how a run was made: enough to repeat it, to judge it and to read its tables."""
 
 import json
 import re
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 MAX_COLUMNS = 1000
-"""Food kinds and neutral markers that a manifest may name; each is a column of the tables."""
+"""Most food kinds and neutral markers that a manifest may name; each is a column of the tables."""
 MAX_NUMBER = 2**63 - 1
 
 STATUSES = ("running", "finished", "interrupted", "failed")
@@ -26,12 +26,12 @@ STATUSES = ("running", "finished", "interrupted", "failed")
 
 @dataclass(frozen=True)
 class Session:
-    """One time that a run was worked on; a run that is resumed has several.
+    """One session of a run, from a start to an end; a run that was resumed has several.
 
     Attributes:
-        started, ended: ISO 8601, UTC; `ended` is None where the session goes on, or was killed.
-        from_step: step that it began at [step].
-        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, while it lasted.
+        started, ended: ISO 8601, UTC; `ended` is None if the session is still running, or was killed.
+        from_step: step at which it began [step].
+        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, during this session.
     """
 
     started: str | None
@@ -49,12 +49,12 @@ class Session:
 
 @dataclass(frozen=True)
 class Parent:
-    """What a branch branched off from.
+    """The run that a branch started from.
 
     Attributes:
         folder: name of the parent's folder.
         config_digest: digest of the parent's config.
-        step: of the checkpoint that the branch went on from [step].
+        step: step of the checkpoint that the branch started from [step].
     """
 
     folder: str
@@ -70,29 +70,29 @@ class Manifest:
         food_kinds: names, in the order of the config; fixes the columns of the tables.
         neutral_count: number of neutral markers; fixes the columns of the tables.
         seeds: one per world.
-        steps_asked: steps that each world was to make [step].
-        preset: name of the preset that the config began with.
+        steps_asked: total steps that each world is to run [step].
+        preset: name of the preset that the config is based on.
         fidelity: "corrected", "released" or "text".
-        name: what the config calls itself: the preset, or the file without its ending.
-        modified: whether any setting differs from the preset with the fidelity; None in manifests of old.
+        name: name of the config: by default the preset, or the file without its ending.
+        modified: whether any setting differs from the preset with the fidelity; None in old manifests.
         config_digest: digest of the resolved config.
         kernel: instruction set that the engine used.
         threads: threads that the engine used.
         hedon_version, python, platform, cpu_count, git_revision, git_modified, command_line: the
             provenance; the revision is that of hedon's source checkout, None for an installed package.
-        started, ended: ISO 8601, UTC, of the first start and the last end; `ended` is None while the run goes on.
+        started, ended: ISO 8601, UTC, of the first start and the last end; `ended` is None until it ends.
         status: one of `STATUSES`.
-        steps_done: steps made, per world [step].
-        extinct_steps: per world the step at which nobody was left, or None.
-        run_seconds: time spent in stepping, for steps per second; None where it was not measured [s]. What was
-            taken back when the run was resumed does not count.
+        steps_done: steps completed, per world [step].
+        extinct_steps: per world, the steps completed when the last agent died, or None.
+        run_seconds: time spent on steps, for steps per second; None if it was not measured [s]. Steps that were
+            removed when the run was resumed do not count.
         food_colors: color per food kind for figures, "#rrggbb"; empty for the default colors.
-        frames: steps between two frames; 0 where none were asked for [step].
+        frames: steps between two frames; 0 for no frames [step].
         sessions: one for each time that the run was started or resumed.
-        parent: of a branch, the run that it branched off from; its folder, config_digest and step.
-        world_digests: per world the digest of its last state, as `World.digest()` gives it; empty until the end.
-        records_digest: digest of all rows of all tables, whatever parts they stand in; None until the end.
-        fault: what the engine said where the run stopped at a fault; None otherwise.
+        parent: for a branch, the run that it started from: its folder, config_digest and step.
+        world_digests: per world, the digest of its last state, as `World.digest()` gives it; empty until the end.
+        records_digest: digest of all rows of all tables, no matter which parts hold them; None until the end.
+        fault: the engine's message if the run stopped at a fault; None otherwise.
         format_version: of the run folder.
     """
 
@@ -143,10 +143,10 @@ class Manifest:
             yield f"status {brief(repr(self.status))} is not one of {', '.join(STATUSES)}"
         for kind in self.food_kinds:
             if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind):
-                yield f"food_kinds: {brief(repr(kind))} is no name of a food kind"
+                yield f"food_kinds: {brief(repr(kind))} is not the name of a food kind"
         for color in self.food_colors:
             if not re.fullmatch(r"#[0-9a-fA-F]{6}", color):
-                yield f'food_colors: {brief(repr(color))} is no color "#rrggbb"'
+                yield f'food_colors: {brief(repr(color))} is not a color "#rrggbb"'
         for name, low, high, value in (
             ("neutral_count", 0, MAX_COLUMNS, self.neutral_count),
             ("food_kinds", 0, MAX_COLUMNS, len(self.food_kinds)),
@@ -189,7 +189,9 @@ def load_manifest(folder: Path) -> Manifest:
         text = f"{error!r}" if isinstance(error, KeyError) else " ".join(str(error).split())
         raise RecordError(f"damaged manifest {path}: {brief(text, 2 * LINE)}") from error
     if manifest is None:
-        raise RecordError(f"{path}: format {version} is newer than this hedon reads ({FORMAT_VERSION}): update hedon")
+        raise RecordError(
+            f"{path}: format {version} is newer than this hedon can read ({FORMAT_VERSION}): update hedon"
+        )
     return manifest
 
 

@@ -1,4 +1,4 @@
-"""Gathers rows in memory and writes them as Parquet parts. It knows no thread: `writer` runs it in one."""
+"""Collects rows in memory and writes them as Parquet parts. It uses no threads itself; `writer` runs it in one."""
 
 import hashlib
 import io
@@ -13,14 +13,14 @@ from hedon.record.folder import LIVING, PARTS_BEFORE, part_path
 
 
 class PartWriter:
-    """Buffers of all tables, and when and how they are written.
+    """The buffers of all tables; writes them to parts.
 
     Attributes:
-        part_rows: rows of one table that are written as a part at once.
+        part_rows: number of rows of one table that make up a part.
         parts: SHA-256 of each part on disk, in order, by table.
 
     Args:
-        parts: those that are there already, where a run goes on.
+        parts: existing parts, if a run is resumed.
     """
 
     def __init__(
@@ -38,14 +38,14 @@ class PartWriter:
         self.parts = {name: list((parts or {}).get(name, ())) for name in tables}
 
     def append(self, table: str, rows: pl.DataFrame) -> None:
-        """Keeps rows; writes a part if they are enough."""
+        """Adds rows to the buffer; writes a part if there are enough."""
         self._waiting[table].append(rows)
         self._rows[table] += rows.height
         if self._rows[table] >= self.part_rows:
             self._write_part(table)
 
     def replace_living(self, rows: pl.DataFrame) -> None:
-        """Writes all that waits, then the living of this moment with the number of parts that hold the dead."""
+        """Writes all buffers, then the living of this moment with the number of parts that hold the dead."""
         self.flush()
         metadata = {PARTS_BEFORE: str(len(self.parts["agents"]))}
         write_atomically(
@@ -53,7 +53,7 @@ class PartWriter:
         )
 
     def flush(self) -> None:
-        """Writes all that waits. Readers see these deaths once the living are written next."""
+        """Writes all buffers. Readers see these deaths after the living are written the next time."""
         for table in self.tables:
             self._write_part(table)
 

@@ -1,4 +1,4 @@
-"""Where and with what a run was made."""
+"""How and where a run was made: versions, machine, source, command line."""
 
 import os
 import platform
@@ -29,7 +29,7 @@ def collect_provenance() -> dict[str, Any]:
 
 
 def to_unicode(text: str) -> str:
-    r"""An argument or a file's name as text that every encoding of Unicode takes: bytes that are none as \udcff."""
+    r"""An argument or a file's name as valid Unicode text; bytes that are not UTF-8 become escapes such as \udcff."""
     return text.encode("utf-8", "backslashreplace").decode()
 
 
@@ -39,7 +39,7 @@ def utc_now() -> str:
 
 
 def usable_cpus() -> int:
-    """The processors that this process may use."""
+    """The number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -49,8 +49,8 @@ def git_revision(folder: Path) -> tuple[str | None, bool | None]:
     """Revision of hedon's own checkout around a folder, and whether its tracked files differ from it.
 
     Returns:
-        (None, None) where the folder lies in no checkout, where the checkout does not track it (hedon
-        installed into an environment inside somebody's project), or where there is no git.
+        (None, None) if the folder is not in a checkout, if the checkout does not track it (hedon is
+        installed in an environment inside another project), or if there is no git.
     """
     if _git(folder, "ls-files", ".") in (None, ""):
         return None, None

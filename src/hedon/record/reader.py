@@ -1,4 +1,4 @@
-"""Reads a run's folder, also while the run goes on."""
+"""Reads a run's folder, also while the run is still running."""
 
 import difflib
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from hedon.record.schema import food_weight_names, neutral_names, run_tables, we
 
 @dataclass(frozen=True)
 class Run:
-    """A run on disk. Tables are read anew at each call, so that a run that goes on shows what it has written.
+    """A run on disk. Every call reads the tables again, so that a run that is still running shows its newest rows.
 
     Attributes:
         path: the folder.
@@ -49,7 +49,7 @@ class Run:
 
     @property
     def reward_names(self) -> tuple[str, ...]:
-        """Names of the genome columns that enter the reward: food kinds, then action."""
+        """Names of the genome columns that have an effect on the reward: food kinds, then action."""
         return (*food_weight_names(self.food_kinds), "w_action")
 
     @property
@@ -60,7 +60,8 @@ class Run:
     def agents(self, *, skip_damaged: bool = False) -> pl.DataFrame:
         """All agents of one moment: the dead, in the order in which they were written, then the living.
 
-        While a run goes on, this is the moment at which the living were last written; who died since counts as alive.
+        Before a run has ended, this is the moment when the living were last written; agents that died later count as
+        alive.
 
         Raises:
             RecordError: a part is damaged, and `skip_damaged` is false.
@@ -79,7 +80,7 @@ class Run:
         return rows.sort("world", "step", maintain_order=True)
 
     def frames(self) -> pl.LazyFrame:
-        """The frames, lazily: they can be larger than memory. Empty where none were recorded."""
+        """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded."""
         table = self._tables["frames"]
         paths = part_paths(self.path, "frames")
         return pl.scan_parquet(paths) if paths else pl.LazyFrame(schema=table.polars_schema)
@@ -91,11 +92,11 @@ class Run:
         return [path for path in paths if _fault(path) is not None]
 
     def _living(self, skip_damaged: bool) -> tuple[pl.DataFrame, int | None]:
-        """The living, and how many parts hold the deaths before that moment; None for all that are there."""
+        """The living, and how many parts hold the deaths before that moment; None for all existing parts."""
         table, path = self._tables["agents"], self.path / LIVING
         if path.exists():
             try:
-                content = BytesIO(path.read_bytes())  # at once: the file may be replaced meanwhile
+                content = BytesIO(path.read_bytes())  # in one read, because the file can be replaced at any time
                 rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
                 parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
                 return rows, None if parts is None else int(parts)
@@ -113,7 +114,7 @@ def open_run(path: Path | str) -> Run:
     """Opens a run's folder.
 
     Raises:
-        RecordError: it is no run folder, its manifest or config cannot be read, or it holds a symbolic link.
+        RecordError: it is not a run folder, its manifest or config cannot be read, or it holds a symbolic link.
     """
     folder = Path(path)
     require_unicode(folder)
@@ -152,7 +153,7 @@ def _fault(path: Path) -> str | None:
 
 
 def _nearest(folder: Path) -> str:
-    """A hint at runs that may have been meant: around the folder, within it, or of a similar name."""
+    """A hint at runs that the user may mean: above the folder, inside it, or with a similar name."""
     if folder.is_dir():
         around = [parent for parent in folder.resolve().parents[:2] if holds_run(parent)]
         inside = sorted(child for child in folder.iterdir() if child.is_dir() and holds_run(child))

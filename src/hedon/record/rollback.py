@@ -1,4 +1,4 @@
-"""Takes a run's records back to a checkpoint, so that a run goes on without losing or doubling a row."""
+"""Returns a run's records to a checkpoint, so that the run continues without a missing or repeated row."""
 
 import hashlib
 import shlex
@@ -21,10 +21,10 @@ from hedon.record.folder import (
 
 
 def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
-    """The newest checkpoint of a run that is whole, or that of a step.
+    """The newest undamaged checkpoint of a run, or the one of a given step.
 
     Returns:
-        The checkpoint, None for a run that was killed before its first, and what is to be said about damaged ones.
+        The checkpoint, or None for a run that was killed before its first; and messages about damaged ones.
 
     Raises:
         RecordError: there is no checkpoint of that step, all are damaged, or they were removed.
@@ -34,26 +34,26 @@ def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint |
         path = checkpoint_path(folder, step)
         if path not in paths:
             kept = ", ".join(str(int(path.stem.removeprefix("step-"))) for path in paths)
-            raise RecordError(f"{folder} keeps no checkpoint of step {step}; it keeps those of steps {kept or 'none'}")
+            raise RecordError(f"{folder} has no checkpoint of step {step}; it has those of steps {kept or 'none'}")
         return load_checkpoint(path), []
-    faults = [f"{path} is a folder, where a checkpoint would stand" for path in misplaced_checkpoints(folder)]
+    faults = [f"{path} is a folder, but should be a checkpoint" for path in misplaced_checkpoints(folder)]
     for path in reversed(paths):
         try:
             return load_checkpoint(path), faults
         except RecordError as error:
             faults.append(str(error))
     if faults:
-        raise RecordError(f"{folder} has no checkpoint that is whole: {'; '.join(faults)}")
+        raise RecordError(f"{folder} has no undamaged checkpoint: {'; '.join(faults)}")
     if any(part_paths(folder, table) for table in TABLE_FOLDERS):
-        raise RecordError(f"{folder} has records but no checkpoint to go on from: nothing in {folder / CHECKPOINTS}")
+        raise RecordError(f"{folder} has records but no checkpoint to continue from: {folder / CHECKPOINTS} is empty")
     return None, []
 
 
 def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
-    """Compares the parts on disk with those that a checkpoint was taken after.
+    """Compares the parts on disk with those that a checkpoint lists.
 
     Raises:
-        RecordError: one is missing or has another content.
+        RecordError: a part is missing or its content was changed.
     """
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
@@ -63,18 +63,18 @@ def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
             except OSError as error:
                 raise RecordError(f"damaged records: cannot read {path}: {error}{_remedy(folder)}") from error
             if not same:
-                raise RecordError(f"damaged records: {path} is not as it was written{_remedy(folder)}")
+                raise RecordError(f"damaged records: {path} was changed after it was written{_remedy(folder)}")
 
 
 def _remedy(folder: Path) -> str:
     return (
-        "; put the file back from a copy, or go on in a new folder, whose records begin at the checkpoint: "
+        "; restore the file from a copy, or continue in a new folder, whose records begin at the checkpoint: "
         f"hedon branch {shlex.quote(str(folder))}"
     )
 
 
 def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> None:
-    """Removes what came after a checkpoint: later parts and checkpoints, a fault, and files that never got finished.
+    """Removes everything later than a checkpoint: parts, checkpoints, a fault, and files that were not completed.
 
     Raises:
         RecordError: a file cannot be removed.
@@ -85,9 +85,9 @@ def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> No
         last = part_path(folder, table, len(parts.get(table, ())))
         later += [path for path in part_paths(folder, table) if path >= last]
     for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS, FAULT))):
-        later += place.glob(".*.tmp")  # where the file system has no files without a name
+        later += place.glob(".*.tmp")  # left by a killed run on a file system without unnamed files
     try:
         for path in reversed(later):
             path.unlink(missing_ok=True)
     except OSError as error:
-        raise RecordError(f"cannot take the records of {folder} back to step {step}: {error}") from error
+        raise RecordError(f"cannot return the records of {folder} to step {step}: {error}") from error

@@ -1,4 +1,4 @@
-"""From the arrays that the engine hands over to a table as it is stored."""
+"""Turns arrays from the engine into a table as it is stored."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from hedon.record.column import NUMPY_TYPES, Column, Table
 from hedon.record.error import RecordError
 
-MISSING_INTEGER = -1  # how the engine says "none" in a nullable integer column
+MISSING_INTEGER = -1  # the engine's "none" in a nullable integer column
 
 
 def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
@@ -17,7 +17,7 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
 
     Args:
         table: the schema.
-        rows: one array of shape (n,) per column, in any order; a scalar stands for n equal values; a
+        rows: one array of shape (n,) per column, in any order; a scalar means n equal values; a
             nullable column may be left out. In nullable columns −1 (integers) and NaN (floats) become
             missing values.
 
@@ -25,7 +25,7 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
         The rows with exactly the table's columns and types; it shares no memory with `rows`.
 
     Raises:
-        RecordError: a column is missing, unknown, of another length, or holds a value that its type cannot.
+        RecordError: a column is missing or unknown, has another length, or holds a value that its type cannot hold.
     """
     known = {column.name for column in table.columns}
     unknown = sorted(set(rows) - known)
@@ -35,7 +35,7 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
     arrays = {name: np.asarray(values) for name, values in rows.items()}
     lengths = {name: len(array) for name, array in arrays.items() if array.ndim == 1}
     if any(array.ndim > 1 for array in arrays.values()) or len(set(lengths.values())) > 1:
-        raise RecordError(f"rows of {table.name}: columns need one length and one dimension, got {lengths}")
+        raise RecordError(f"rows of {table.name}: columns need the same length and one dimension, got {lengths}")
     count = next(iter(lengths.values()), 1)
     return pl.DataFrame([_series(table, column, arrays.get(column.name), count) for column in table.columns])
 

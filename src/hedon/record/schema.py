@@ -1,6 +1,6 @@
-"""Every table of a run, column by column: the single source of the writer, the reader and the documentation.
+"""Every table of a run, column by column. The writer, the reader and the documentation all use this.
 
-Columns that depend on the setting are generated: one `eaten_<kind>`, `w_<kind>` and so on for each food
+Columns that depend on the settings are generated: one `eaten_<kind>`, `w_<kind>` and so on for each food
 kind, in the order of the config, and one `neutral_<i>` for each neutral marker.
 """
 
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
-FORMAT_VERSION = 1  # of the run folder; raised when an older reader would misread a newer folder
+FORMAT_VERSION = 1  # of the run folder; increased when an older reader would misread a newer folder
 
 WORLD = Column("world", "i32", "1", "index of the world in the run")
 SEED = Column("seed", "i64", "1", "seed of the world")
@@ -35,17 +35,17 @@ def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
     """One row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
     return _table(
         "agents",
-        "one agent; those that live have no death_step",
+        "one agent; living agents have no death_step",
         WORLD,
         SEED,
         Column("agent_id", "i64", "1", "unique within the world, never used again"),
         Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
-        Column("generation", "i32", "1", "depth below the founders, who have 0"),
-        Column("birth_step", "i64", "step", "step at whose end the agent was born; 0 for founders"),
-        Column("death_step", "i64", "step", "step at whose end it died; missing while it lives", nullable=True),
+        Column("generation", "i32", "1", "generations since the founders; 0 for founders"),
+        Column("birth_step", "i64", "step", "steps completed when the agent was born; 0 for founders"),
+        Column("death_step", "i64", "step", "steps completed when it died; missing while it lives", nullable=True),
         Column("birth_energy", "f32", "energy", "energy at birth"),
         Column("energy", "f32", "energy", "energy at death, or at the last flush"),
-        *(Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten") for kind in food_kinds),
+        *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in food_kinds),
         Column("energy_gained", "f32", "energy", "energy of all food eaten; poison counts negative"),
         Column("energy_spent", "f32", "energy", "energy charged for living and for action"),
         Column("children", "i32", "1", "children born"),
@@ -67,11 +67,11 @@ def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
         Column("step", "i64", "step", "end of the interval"),
         Column("steps", "i32", "step", "length of the interval"),
         Column("alive", "i32", "1", "agents alive at the end"),
-        Column("agent_steps", "i64", "agent·step", "sum over the interval's steps of the agents alive"),
+        Column("agent_steps", "i64", "agent·step", "agents alive, summed over the steps of the interval"),
         Column("births", "i32", "1", "births in the interval"),
         Column("deaths", "i32", "1", "deaths in the interval"),
         Column("births_failed_full", "i32", "1", "births that failed because the world was at capacity"),
-        Column("births_failed_space", "i32", "1", "births that failed because no candidate place was free"),
+        Column("births_failed_space", "i32", "1", "births that failed because none of the tried places was free"),
         *_spread("energy", "energy", "of the living at the end"),
         *_spread("age", "step", "of the living at the end"),
         Column("generation_mean", "f32", "1", "mean generation of the living at the end", nullable=True),
@@ -81,14 +81,20 @@ def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
             for name in weight_names(food_kinds, neutral_count)
             for statistic, word in (("mean", "mean"), ("sd", "standard deviation"))
         ),
-        *(Column(f"food_{kind}", "i32", "1", f"foods of kind {kind} present at the end") for kind in food_kinds),
-        *(Column(f"eaten_{kind}", "i32", "1", f"foods of kind {kind} eaten in the interval") for kind in food_kinds),
+        *(
+            Column(f"food_{kind}", "i32", "1", f"pieces of food of kind {kind} present at the end")
+            for kind in food_kinds
+        ),
+        *(
+            Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten in the interval")
+            for kind in food_kinds
+        ),
         Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
-        Column("energy_eaten", "f64", "energy", "taken up with food in the interval; poison counts negative"),
+        Column("energy_eaten", "f64", "energy", "gained from food in the interval; poison counts negative"),
         Column("energy_basic", "f64", "energy", "charged for living in the interval"),
         Column("energy_action", "f64", "energy", "charged for action in the interval"),
         Column("energy_forgiven", "f64", "energy", "charged but not paid, because energy cannot fall below 0"),
-        Column("energy_capped", "f64", "energy", "eaten but destroyed at the capacity for energy"),
+        Column("energy_capped", "f64", "energy", "eaten but lost, because energy cannot rise above the capacity"),
         Column("energy_lost", "f64", "energy", "held by those who died in the interval"),
         Column("energy_shared", "f64", "energy", "given by parents to children in the interval"),
         Column("energy_total", "f64", "energy", "held by the living at the end"),
@@ -96,12 +102,12 @@ def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
 
 
 def frame_table() -> Table:
-    """One row per agent or food and frame; written only where frames were asked for."""
+    """One row per agent or food and frame; written only if frames were asked for."""
     return _table(
         "frames",
         "one agent or one food in one frame",
         WORLD,
-        Column("step", "i64", "step", "when the frame was taken"),
+        Column("step", "i64", "step", "steps completed when the frame was taken"),
         Column("kind", "string", "", '"agent", or the name of the food kind'),
         Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
         Column("x", "f32", "u", "position of the center"),
@@ -126,7 +132,7 @@ def _weight_column(name: str, food_kinds: Sequence[str]) -> Column:
         return Column(name, "f32", "1", f"reward weight for a food of kind {name.removeprefix('w_')}")
     if name == "w_action":
         return Column(name, "f32", "1", "reward weight for motor action")
-    return Column(name, "f32", "1", "neutral marker: inherited and mutated, enters no reward")
+    return Column(name, "f32", "1", "neutral marker: inherited and mutated, no effect on the reward")
 
 
 def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:

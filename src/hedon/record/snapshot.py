@@ -32,21 +32,21 @@ class Snapshot:
     Attributes:
         world: its index in the run.
         seed: its seed.
-        step: when [step].
+        step: steps completed [step].
         agent_id: of the n living agents, shape (n,).
         x, y: their positions [u], shape (n,).
         angle: their headings [rad], 0 along +y, counter-clockwise, shape (n,).
         energy: their energies, shape (n,).
-        rays: what their rays read, shape (n, rays, types): 1 − distance / ray length for the type that is
-            hit, −1 elsewhere; types are agent, each food kind, wall. Without agents (0, rays, types).
+        rays: readings of their rays, shape (n, rays, types): 1 − distance / ray length for the type that is
+            hit, −1 for the others; types are agent, each food kind, wall. Without agents (0, rays, types).
         food_kind: index into `food_kinds` of the m foods present, shape (m,).
         food_x, food_y: their positions [u], shape (m,).
         walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4).
         food_kinds: names, in the order of the config.
         radius, food_radius: of the bodies [u].
         ray_length: [u].
-        ray_spread: angle of the outermost rays, either side of the heading [degree].
-        mouth_spread: half the opening of the mouth [degree].
+        ray_spread: angle between the heading and the outermost ray on each side [degree].
+        mouth_spread: half-width of the mouth [degree].
         energy_capacity: largest energy that an agent can hold.
     """
 
@@ -96,7 +96,7 @@ def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
 
 
 def load_snapshot(folder: Path) -> Snapshot | None:
-    """Reads `final.npz` of a run; None where there is none.
+    """Reads `final.npz` of a run; None if there is none.
 
     Raises:
         RecordError: the file is damaged.

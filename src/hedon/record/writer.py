@@ -1,4 +1,4 @@
-"""Writes a run's folder while the engine computes on: rows go through a bounded queue to a thread."""
+"""Writes a run's folder while the engine computes: rows go through a bounded queue to a thread."""
 
 import queue
 import shlex
@@ -24,26 +24,26 @@ from hedon.record.schema import run_tables
 Rows = Mapping[str, ArrayLike]
 
 PART_ROWS = 20_000
-"""Rows after which a part is written at once, unless told otherwise."""
+"""Default number of rows after which a part is written."""
 
 _CLOSE = object()
 
 
 class Writer:
-    """The one way to write a run's folder.
+    """Writes a run's folder; nothing else does.
 
-    Use it as a context manager. Rows may be reused by the caller as soon as a call returns. A fault of the
-    writing thread (a full disk) is raised as `RecordError` by the next call, `close` at the latest; what
-    was written before stays readable. A caller that computes faster than the disk writes is made to wait:
-    no row is ever dropped.
+    Use it as a context manager. The caller may reuse the arrays of rows as soon as a call returns. An error of
+    the writing thread, such as a full disk, is raised as `RecordError` by the next call, at the latest by
+    `close`; what was written before stays readable. If the caller computes faster than the disk writes, it
+    waits: no row is dropped.
 
     Args:
-        folder: made where it does not exist; must not hold a run already, unless `parts` says that one goes on.
-        config_text: the complete config, as TOML; where a run goes on, it stands there already.
+        folder: made if it does not exist; must not hold a run already, unless `parts` is given.
+        config_text: the complete config, as TOML; not written for a resumed run, which has it already.
         manifest: its food kinds and its number of neutral markers fix the columns.
-        part_rows: rows after which a part is written at once.
+        part_rows: rows after which a part is written.
         queue_size: calls that may wait for the thread.
-        parts: for a run that goes on: the SHA-256 of each part that it has, in order, by table.
+        parts: for a resumed run: the SHA-256 of each existing part, in order, by table.
 
     Raises:
         RecordError: the folder holds a run already, or cannot be written.
@@ -79,7 +79,7 @@ class Writer:
 
         Args:
             table: "agents", "population" or "frames".
-            rows: one array of shape (n,) per column of the schema; a scalar stands for n equal values.
+            rows: one array of shape (n,) per column of the schema; a scalar means n equal values.
                 Missing values of nullable columns are −1 (integers) or NaN (floats).
 
         Raises:
@@ -90,12 +90,12 @@ class Writer:
         self._put((table, rows_to_frame(self.tables[table], rows)))
 
     def replace_living(self, *rows: Rows) -> None:
-        """Replaces the rows of the living agents of all worlds, with all rows given so far on disk before.
+        """Writes all rows so far, then replaces the rows of the living agents of all worlds.
 
-        This is the moment that readers see. Call it now and then.
+        Readers see this moment. Call it from time to time.
 
         Args:
-            rows: rows of the table `agents`, for instance one mapping per world; none where nobody lives.
+            rows: rows of the table `agents`, for example one mapping per world; none if no agent is alive.
 
         Raises:
             RecordError: as `append`.
@@ -105,7 +105,7 @@ class Writer:
         self._put(("living", pl.concat([pl.DataFrame(schema=table.polars_schema), *frames])))
 
     def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Keeps a checkpoint, once all rows given so far are on disk; its head is completed by their parts.
+        """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
 
         Raises:
             RecordError: as `append`.
@@ -114,7 +114,7 @@ class Writer:
         self._put(Checkpoint(head, dict(arrays)))
 
     def save_fault(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Keeps the state of a run that stopped at a fault, beside its checkpoints, once all rows are on disk.
+        """Saves the state of a run that stopped at a fault, in its own folder, after all rows are on disk.
 
         Raises:
             RecordError: as `append`.
@@ -128,11 +128,11 @@ class Writer:
 
     @property
     def saving(self) -> bool:
-        """Whether a checkpoint still waits to be on disk. One holds as much memory as its worlds' networks."""
+        """Whether a checkpoint is not yet on disk. It uses as much memory as the networks of its worlds."""
         return self._saving.is_set()
 
     def save_manifest(self, manifest: Manifest) -> None:
-        """Replaces the manifest, at once.
+        """Replaces the manifest immediately.
 
         Raises:
             RecordError: it cannot be written.
@@ -141,7 +141,7 @@ class Writer:
         save_manifest(self.folder, manifest)
 
     def flush(self) -> None:
-        """Returns when all rows given so far are on disk.
+        """Waits until all rows so far are on disk.
 
         Raises:
             RecordError: as `append`.
@@ -152,7 +152,7 @@ class Writer:
         self._raise_fault()
 
     def close(self) -> None:
-        """Writes what waits and ends the thread. A second call does nothing.
+        """Writes all remaining rows and ends the thread. A second call does nothing.
 
         Raises:
             RecordError: something could not be written.
@@ -173,7 +173,7 @@ class Writer:
         try:
             self.close()
         except RecordError:
-            if not isinstance(error, RecordError):  # else the same fault is on its way already
+            if not isinstance(error, RecordError):  # otherwise the same error is already being raised
                 raise
 
     def _prepare(self, config_text: str, manifest: Manifest) -> None:
@@ -193,33 +193,33 @@ class Writer:
         self._queue.put(item)
 
     def require_folder(self) -> None:
-        """Notices at once that the folder is gone, and not only when the next rows are written.
+        """Checks that the folder still exists, without waiting until the next rows are written.
 
         Raises:
             RecordError: it, or the folder of a table, was removed or replaced.
         """
         for path, identity in self._folders.items():
             if _identity(path) != identity:
-                raise RecordError(f"{path} was removed or replaced while the run goes on: the run ends here")
+                raise RecordError(f"{path} was removed or replaced during the run: the run ends here")
 
     def _raise_fault(self) -> None:
         if isinstance(self._fault, RecordError):
             raise self._fault
         if self._fault is not None:
             raise RecordError(
-                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable, and "
-                f"when the cause is gone, the run goes on by: hedon resume {shlex.quote(str(self.folder))}"
+                f"cannot write records to {self.folder}: {self._fault}; what was written before is readable. "
+                f"After the cause is removed, continue with: hedon resume {shlex.quote(str(self.folder))}"
             ) from self._fault
 
     def _work(self) -> None:
-        """The thread: takes items until it is closed, also after a fault, so that no caller hangs."""
+        """The thread: takes items until it is closed, also after an error, so that no caller waits forever."""
         item = None
         while item is not _CLOSE:
             item = self._queue.get()
             if self._fault is None:
                 try:
                     self._handle(item)
-                except Exception as error:  # handed to the caller by _raise_fault
+                except Exception as error:  # _raise_fault raises it in the caller
                     self._fault = error
             if isinstance(item, threading.Event):
                 item.set()
@@ -242,7 +242,7 @@ class Writer:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """What the file system knows a folder by; None where it is gone."""
+    """The file system's identity of a folder; None if the folder does not exist."""
     try:
         found = path.stat()
     except OSError:

@@ -112,7 +112,7 @@ def test_a_folder_that_is_removed_or_replaced_is_noticed_at_once(tmp_path: Path)
     writer = Writer(tmp_path / "run", "", MANIFEST)
     writer.require_folder()
     (tmp_path / "run").rename(tmp_path / "moved")
-    with pytest.raises(RecordError, match="was removed or replaced while the run goes on"):
+    with pytest.raises(RecordError, match="was removed or replaced during the run"):
         writer.require_folder()
     (tmp_path / "run" / "agents").mkdir(parents=True)
     with pytest.raises(RecordError, match="was removed or replaced"):
@@ -125,7 +125,7 @@ def test_a_folder_that_is_removed_or_replaced_is_noticed_at_once(tmp_path: Path)
 def test_refuses_a_folder_that_holds_a_run(tmp_path: Path) -> None:
     write_run(tmp_path / "run", intervals=1, worlds=1)
     before = sorted(path.stat().st_mtime_ns for path in (tmp_path / "run").rglob("*"))
-    with pytest.raises(RecordError, match="holds a run already"):
+    with pytest.raises(RecordError, match="already holds a run"):
         Writer(tmp_path / "run", "", MANIFEST)
     assert sorted(path.stat().st_mtime_ns for path in (tmp_path / "run").rglob("*")) == before
 
@@ -141,7 +141,7 @@ def test_a_file_in_the_way_is_named(tmp_path: Path) -> None:
     [
         (lambda rows: rows | {"colour": rows["alive"]}, r"unknown columns \['colour'\]"),
         (lambda rows: {k: v for k, v in rows.items() if k != "alive"}, r"missing columns \['alive'\]"),
-        (lambda rows: rows | {"alive": rows["alive"][:1]}, "one length"),
+        (lambda rows: rows | {"alive": rows["alive"][:1]}, "the same length"),
         (lambda rows: rows | {"alive": rows["alive"][None]}, "one dimension"),
         (lambda rows: rows | {"alive": rows["alive"] + 2**40}, "alive needs integers of type i32"),
         (lambda rows: rows | {"alive": rows["alive"] + 0.5}, "alive needs integers"),
