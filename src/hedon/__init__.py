@@ -68,7 +68,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Imported on first use, so that `hedon --help` does not wait for the engine and the table library.
+    # Imported on first use: `hedon --help` must not wait for the engine and the table library.
     if name not in _HOME:
         raise AttributeError(f"module 'hedon' has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)

@@ -1,8 +1,8 @@
-"""The root of every error that hedon raises about what its user asked for, and those that no part owns."""
+"""The base class of all errors that hedon raises about a user's input, and the errors that several parts share."""
 
 
 class HedonError(Exception):
-    """Something that the user can put right; the command line prints it as a message, without a traceback."""
+    """A problem that the user can fix; the command line prints it as a message, without a traceback."""
 
 
 class ArgumentError(HedonError):
@@ -10,4 +10,4 @@ class ArgumentError(HedonError):
 
 
 class EngineError(HedonError):
-    """What the engine reports: a world that cannot go on, or a simulation that cannot be made or used."""
+    """An error of the engine: a world that cannot continue, or a simulation that cannot be made or used."""

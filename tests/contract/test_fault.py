@@ -94,5 +94,5 @@ def test_worlds_whose_slots_cannot_be_relied_upon_are_not_read(tmp_path, monkeyp
 
 def test_a_run_without_a_fault_has_none_to_replay(tmp_path):
     small_run(tmp_path / "run", WINDOW)
-    with pytest.raises(RecordError, match="recorded no fault: it is finished"):
+    with pytest.raises(RecordError, match="recorded no fault: its status is finished"):
         replay_fault(tmp_path / "run")

@@ -95,9 +95,9 @@ def test_rows_after_the_checkpoint_are_taken_back(half, whole):
 
 
 def test_what_is_finished_needs_more_steps(half):
-    with pytest.raises(RecordError, match="has made all its 300 steps: say by --steps"):
+    with pytest.raises(RecordError, match="has already done all its 300 steps: give a larger total with --steps"):
         resume(half)
-    with pytest.raises(RecordError, match="has made 300 steps already"):
+    with pytest.raises(RecordError, match="has already done 300 steps"):
         resume(half, steps=200)
 
 
@@ -107,7 +107,7 @@ def test_a_damaged_checkpoint_is_passed_over(half, whole):
     with hold(half, STEPS) as found:
         assert found.step == 0
         assert found.notes[0].startswith(f"damaged checkpoint {last}: ")
-        assert "going on from the one before" in found.notes[0]
+        assert "continuing from the checkpoint before it" in found.notes[0]
     data = bytearray(first.read_bytes())
     data[len(data) // 2] ^= 1
     first.write_bytes(data)
@@ -226,7 +226,7 @@ def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
     out = half.with_name("branch")
     with pytest.raises(RecordError, match="has no checkpoint of step 64; it has those of steps 0, 300"):
         branch(half, out, at=64)
-    with pytest.raises(RecordError, match="is at step 300: a branch needs more steps"):
+    with pytest.raises(RecordError, match="is at step 300: a branch needs more total steps"):
         branch(half, out)
     manifest = branch(half, out, ["energy.basic_cost=0.05", "population.capacity=40"], at=0, steps=STEPS)
     assert manifest.parent is not None
@@ -250,7 +250,7 @@ def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
 )
 def test_a_branch_cannot_change_the_shape_of_a_world(half, setting):
     path = setting.partition("=")[0]
-    with pytest.raises(RecordError, match=rf"cannot change {path}: the saved worlds are laid out by it"):
+    with pytest.raises(RecordError, match=rf"cannot change {path}: the saved worlds depend on it"):
         branch(half, half.with_name("branch"), [setting], steps=STEPS)
     assert not half.with_name("branch").exists()
 

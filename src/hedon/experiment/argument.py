@@ -1,4 +1,4 @@
-"""Arguments from Python and from the command line, checked where all pass: numbers, seeds, folders."""
+"""Checks arguments from Python and from the command line: numbers, seeds, folders."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -11,7 +11,7 @@ from hedon.error import ArgumentError
 from hedon.text import brief
 
 MAX_SEED = 2**63 - 1
-"""Largest seed of a run: records keep seeds as 64-bit integers with a sign."""
+"""Largest seed of a run: records store seeds as signed 64-bit integers."""
 MAX_WORLDS = 10_000
 MAX_STEPS = 2**31 - 1
 MAX_THREADS = 1024
@@ -19,10 +19,10 @@ MAX_SECONDS = 1e9
 
 
 def integer(name: str, value: Any, low: int, high: int) -> int:
-    """A whole number within bounds; NumPy's are taken too.
+    """A whole number within bounds; NumPy's integers are valid too.
 
     Raises:
-        ArgumentError: It is none.
+        ArgumentError: It is not.
     """
     with suppress(TypeError):
         if not isinstance(value, bool) and low <= index(value) <= high:
@@ -34,7 +34,7 @@ def number(name: str, value: Any, low: float, high: float) -> float:
     """A number within bounds.
 
     Raises:
-        ArgumentError: It is none.
+        ArgumentError: It is not.
     """
     with suppress(TypeError, ValueError, OverflowError):
         if not isinstance(value, str | bool) and low <= float(value) <= high:
@@ -46,7 +46,7 @@ def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
     """Seeds, one per world.
 
     Raises:
-        ArgumentError: It is no list of whole numbers, it is empty or too long, or a seed is out of bounds.
+        ArgumentError: It is not a list of whole numbers, it is empty or too long, or a seed is out of bounds.
     """
     if isinstance(values, str | bytes) or not isinstance(values, Iterable):
         raise ArgumentError(f"seeds = {_text(values)}: must be a list of whole numbers, one per world, such as [1, 2]")
@@ -85,5 +85,5 @@ def folder(name: str, value: Any) -> Path:
 def _text(value: Any) -> str:
     try:
         return brief(repr(value), 60)
-    except ValueError:  # Python writes no integer of thousands of digits
+    except ValueError:  # Python does not print integers of thousands of digits
         return "an integer of thousands of digits"

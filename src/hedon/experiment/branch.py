@@ -1,4 +1,4 @@
-"""Goes on from a checkpoint of a run under changed rules, as a new run that names its parent."""
+"""Continues from a checkpoint of a run with changed settings, as a new run that names its parent."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -31,17 +31,17 @@ SHAPE = (
     "genome.neutral_count",
     "learning.rollout_steps",
 )
-"""Settings, and sections, that the arrays of a world are laid out by; so are the kinds of food and their capacities."""
+"""Settings and sections that fix the shapes of a world's arrays. The kinds of food and their capacities do so too."""
 
 
 @dataclass(frozen=True, slots=True)
 class BranchPlan:
-    """A branch that can begin.
+    """A branch that is ready to begin.
 
     Attributes:
-        run: What to run, with the steps in all.
-        parent: Where it branches off.
-        checkpoint: The worlds to go on with.
+        run: What to run, with the total steps.
+        parent: The run and the step that it starts from.
+        checkpoint: The worlds to start from.
         kernel: Instruction set to use.
     """
 
@@ -61,7 +61,7 @@ def plan_branch(
     frames: int | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> BranchPlan:
-    """Looks at a run and says how a branch of it would begin; changes nothing. Arguments and errors as of `branch`."""
+    """Plans a branch of a run; changes nothing. Arguments and errors as for `branch`."""
     folder = argument.folder("folder", folder)
     old = open_run(folder).manifest
     config = load_config(folder / CONFIG)
@@ -69,7 +69,7 @@ def plan_branch(
     step = None if at is None else argument.integer("at", at, 0, argument.MAX_STEPS)
     checkpoint, _ = find_checkpoint(folder, step)
     if checkpoint is None:
-        raise RecordError(f"{folder} keeps no checkpoint to branch off from")
+        raise RecordError(f"{folder} has no checkpoint to branch from")
     name = f"the checkpoint of {folder}"
     check_head(checkpoint.head, config, old.seeds, name)
     _check_shape(config, changed)
@@ -77,8 +77,8 @@ def plan_branch(
     total = old.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
     if total <= step:
         raise RecordError(
-            f"{name} is at step {step:,}: a branch needs more steps in all than that, and {total:,} were asked for; "
-            "say by --steps how many"
+            f"{name} is at step {step:,}: a branch needs more total steps than that, not {total:,}; "
+            "give the total with --steps"
         )
     parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
     place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
@@ -88,7 +88,7 @@ def plan_branch(
 
 
 def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
-    """Begins a branch that `plan_branch` has planned; see `branch`."""
+    """Begins a branch that `plan_branch` planned; see `branch`."""
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel)
@@ -108,17 +108,17 @@ def branch(
     display: Display | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> Manifest:
-    """Goes on from a checkpoint that a run has kept, in a new folder, with some settings changed.
+    """Continues from a checkpoint of a run, in a new folder, with some settings changed.
 
-    The new run's tables begin at the checkpoint: `agents` has those who lived then or were born later, and the
+    The new run's tables begin at the checkpoint. `agents` has the agents that lived then or were born later. The
     first row of `population` counts from the last row before the checkpoint.
 
     Args:
-        folder: Of the parent, which is only read.
-        out: Of the new run; must not hold a run already. None for one beside the parent.
-        overrides: Texts `path=value`, as of `--set`.
+        folder: Folder of the parent, which is only read.
+        out: Folder of the new run; must not hold a run already. None for one next to the parent's.
+        overrides: Texts `path=value`, as for `--set`.
         at: Step of the checkpoint; None for the newest one.
-        steps: Steps of each world in all, those before the checkpoint included; None for the parent's.
+        steps: Total steps of each world, including those before the checkpoint; None for the parent's.
         threads: Threads to use; 0 for all processors. Changes no result.
         frames: Steps between two frames; None for the parent's.
         display: Shows progress.
@@ -147,5 +147,5 @@ def _check_shape(config: Config, changed: Config) -> None:
     ]
     if fixed:
         raise RecordError(
-            f"a branch cannot change {', '.join(fixed)}: the saved worlds are laid out by it; begin a new run instead"
+            f"a branch cannot change {', '.join(fixed)}: the saved worlds depend on it; begin a new run instead"
         )

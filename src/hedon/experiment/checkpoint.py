@@ -1,4 +1,4 @@
-"""From a checkpoint back to a simulation: whether it fits, and that it is the same world again."""
+"""Restores a simulation from a checkpoint: checks that it fits and that the worlds are the same as before."""
 
 import os
 from importlib.metadata import version
@@ -16,13 +16,13 @@ from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
 
 SAME_BITS = (frozenset({"avx2", "avx512"}),)
-"""Instruction sets that compute the same bits, so that one goes on where the other stopped."""
+"""Instruction sets that compute the same bits, so that one can continue what another began."""
 SHOWN = 5
-"""Differing settings that a message lists."""
+"""Most differing settings that a message lists."""
 
 
 def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], name: str) -> None:
-    """Compares a checkpoint with what it is to go on as.
+    """Compares a checkpoint with the run that is to continue from it.
 
     Raises:
         RecordError: The version, a setting or the seeds differ; the message says which.
@@ -30,8 +30,8 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
     here = version("hedon")
     if head.hedon_version != here:
         raise RecordError(
-            f"{name} was made by hedon {head.hedon_version}, and this is {here}, which may compute other bits: "
-            f"install hedon {head.hedon_version} to go on with it"
+            f"{name} was made by hedon {head.hedon_version}, and this is {here}, which may compute different results: "
+            f"install hedon {head.hedon_version} to continue"
         )
     settings = diff(parse_config(head.config, f"config in {name}"), config)
     if settings:
@@ -39,40 +39,40 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
         more = f", and {len(lines) - SHOWN} more" if len(lines) > SHOWN else ""
         raise RecordError(
             f"{name} was made with another config: {'; '.join(lines[:SHOWN])}{more}; "
-            "put config.toml back, or change settings in a new folder by `hedon branch --set`"
+            "restore config.toml, or change settings in a new folder with `hedon branch --set`"
         )
     if head.seeds != seeds:
-        raise RecordError(f"{name} is of seeds {_text(head.seeds)}, and the run of {_text(seeds)}")
+        raise RecordError(f"{name} has seeds {_text(head.seeds)}, and the run has {_text(seeds)}")
     worlds = (len(head.sampled), len(head.digests))
     if worlds != (len(seeds), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
-        raise RecordError(f"{name} does not hold what it says: worlds or tables are missing")
+        raise RecordError(f"{name} is not complete: worlds or tables are missing")
 
 
 def same_kernel(kernel: str | None) -> str:
-    """The instruction set that goes on where `kernel` stopped: of those with the same bits the best here.
+    """The instruction set to continue with after `kernel`: the best one on this processor with the same bits.
 
     Raises:
-        RecordError: HEDON_KERNEL names one with other bits.
+        RecordError: HEDON_KERNEL names one with different bits.
     """
     family = next((names for names in SAME_BITS if kernel in names), frozenset({kernel}))
     asked = os.environ.get(KERNEL_VARIABLE, "")
     if asked and kernel is not None and asked not in family:
         raise RecordError(
             f"the run was made with the instruction set {kernel}, and {KERNEL_VARIABLE} asks for {asked}, which "
-            f"computes other bits: unset {KERNEL_VARIABLE}"
+            f"computes different results: unset {KERNEL_VARIABLE}"
         )
     known = [name for name in _engine.kernel.kernel_names() if name in family]
     return asked or (known[0] if known else kernel or "")
 
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
-    """Puts the worlds of a checkpoint into a simulation, and makes sure that they are those that were saved.
+    """Puts the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
 
     Returns:
         Where the simulation now is.
 
     Raises:
-        RecordError: The arrays are not what the simulation can use; it is then of no more use.
+        RecordError: The simulation cannot use the arrays. Do not use the simulation after that.
     """
     head = checkpoint.head
     for world, sampled, digest in zip(simulation.worlds, head.sampled, head.digests, strict=True):
@@ -83,7 +83,7 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
         now = PopulationSampler(world).since
         same_names = (now.counters.keys(), len(now.eaten)) == (sampled.counters.keys(), len(sampled.eaten))
         if world.digest() != digest or not same_names or not (world.extinct or world.step == head.step):
-            raise RecordError(f"{name} does not hold what it says: world {world.index} is not as it was saved")
+            raise RecordError(f"{name} is damaged: world {world.index} is not as it was saved")
     return Start(head.step, head.run_seconds, head.sampled)
 
 

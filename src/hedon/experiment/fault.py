@@ -1,4 +1,4 @@
-"""Computes the way to a run's fault again."""
+"""Computes the last steps before a run's fault again."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,17 +13,17 @@ from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 
 PIECE = 64
-"""Steps at a time: few enough that the deaths of a piece find room until they are read [step]."""
+"""Steps at a time: few enough that the engine has room for their deaths until they are read [step]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FaultReplay:
-    """A fault that was recorded, and what came of computing it again.
+    """A fault that was recorded, and the result of computing the same steps again.
 
     Attributes:
-        recorded: What the engine said then.
-        recurred: What it says now; None where nothing is wrong.
-        start: Step of the checkpoint that was gone on from [step].
+        recorded: The engine's error then.
+        recurred: The engine's error now; None if there is none.
+        start: Step of the checkpoint that the replay started from [step].
     """
 
     recorded: str
@@ -32,10 +32,10 @@ class FaultReplay:
 
 
 def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
-    """Goes on from the newest checkpoint of a run that stopped at a fault, to the fault. Changes nothing.
+    """Computes from the newest checkpoint of a run that stopped at a fault, up to the fault. Changes nothing.
 
     Args:
-        folder: Of the run.
+        folder: Folder of the run.
         threads: Threads to use; 0 for all processors. Changes no result.
 
     Raises:
@@ -45,7 +45,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
     folder = Path(folder)
     manifest = open_run(folder).manifest
     if manifest.fault is None:
-        raise RecordError(f"{folder} recorded no fault: it is {manifest.status}")
+        raise RecordError(f"{folder} recorded no fault: its status is {manifest.status}")
     config = load_config(folder / CONFIG)
     checkpoint, _ = find_checkpoint(folder)
     simulation = Simulation(config, manifest.seeds, threads, same_kernel(manifest.kernel))
@@ -54,7 +54,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
         name = f"the checkpoint of {folder}"
         check_head(checkpoint.head, config, manifest.seeds, name)
         step = start = restore(simulation, checkpoint, name).step
-    end = max(manifest.steps_done) + 1  # a fault within a step is found before that step counts as done
+    end = max(manifest.steps_done) + 1  # a fault in a step is found before the step counts as completed
     try:
         while step < end:
             simulation.run(min(PIECE, end - step))

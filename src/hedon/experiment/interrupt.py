@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM, counted instead of raised at an arbitrary place: the host loop looks at the count."""
+"""Counts Ctrl-C and SIGTERM, instead of raising an exception anywhere: the host loop checks the count."""
 
 import signal
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 @dataclass(slots=True)
 class Interrupts:
-    """How often the user, or the system, has asked the run to end."""
+    """How many times the user or the system has asked the run to end."""
 
     count: int = 0
 
 
 @contextmanager
 def count_interrupts() -> Iterator[Interrupts]:
-    """Counts the signals that ask to end, until the block ends."""
+    """Counts the signals that ask the run to end, until the block ends."""
     seen = Interrupts()
 
     def note(number: int, frame: Any) -> None:

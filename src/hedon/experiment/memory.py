@@ -1,4 +1,4 @@
-"""Whether a run fits into the memory of this machine: asked before it begins."""
+"""Checks, before a run begins, whether it fits into the memory of this machine."""
 
 import os
 import resource
@@ -13,7 +13,7 @@ from hedon.record.schema import run_tables
 from hedon.record.writer import PART_ROWS
 
 CONTROL_GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
-"""Where a container says how much memory it gives, in version 2 and 1 of control groups."""
+"""Files with the memory limit of a container, in version 2 and 1 of control groups."""
 LARGEST_VALUE = 8
 """Bytes of the largest value of a column."""
 
@@ -23,17 +23,17 @@ class MemoryNeedError(HedonError):
 
 
 def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, int]:
-    """Bytes that a run needs at most, by what they are for.
+    """Most memory that a run needs, by purpose [byte].
 
     Args:
         config: What the worlds are.
-        worlds: How many of them.
+        worlds: Number of worlds.
         threads: Threads to use; 0 for all processors.
     """
     given = engine_input(config)
     need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
     tables = run_tables(tuple(config.food), config.genome.neutral_count).values()
-    # A checkpoint waits for the disk as a copy of all worlds, while one of them may be copied for its digest.
+    # A checkpoint is a copy of all worlds until it is on disk; one world may be copied at the same time for its digest.
     learned = need["networks"] + need["rollouts"]
     return {
         "networks and moments": need["networks"],
@@ -41,13 +41,13 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
         "physics": need["physics"],
         "rest of the worlds": need["rest"],
         "a checkpoint": learned + learned // worlds,
-        # Rows wait for their part; it is put together, and then written, from copies.
+        # Rows wait in memory until their part is full; joining and writing it needs copies.
         "records": 3 * PART_ROWS * LARGEST_VALUE * sum(len(table.columns) for table in tables),
     }
 
 
 def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
-    """Bytes of memory that this process may come to use: of the machine, of its container, or by `ulimit -v`."""
+    """Memory that this process can use: of the machine, of its container, or by `ulimit -v` [byte]."""
     present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     addresses, _ = resource.getrlimit(resource.RLIMIT_AS)
     if addresses != resource.RLIM_INFINITY:
@@ -64,7 +64,7 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     """Refuses a run that does not fit.
 
     Raises:
-        MemoryNeedError: It needs more than there is; the message says for what.
+        MemoryNeedError: It needs more than there is; the message says what for.
     """
     need, present = memory_needed(config, worlds, threads), memory_present()
     total = sum(need.values())

@@ -1,4 +1,4 @@
-"""What a simulation is made from, as the engine takes it: the one door from configs to the engine."""
+"""Turns a checked config into the engine's input. All configs reach the engine through here."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,13 +15,13 @@ from hedon.config.validate import validated
 
 @dataclass(frozen=True, slots=True)
 class EngineInput:
-    """A config that has passed all checks, and what the engine makes worlds from.
+    """A config that has passed all checks, and the engine's input made from it.
 
     Attributes:
-        config: What was checked.
-        settings: For the engine's structs.
+        config: The checked config.
+        settings: Values for the engine's structs.
         walls: (count, 4) float32, the outer polygon first [u].
-        outer_walls: How many of the walls make up the outer polygon.
+        outer_walls: Number of walls that make up the outer polygon.
     """
 
     config: Config
@@ -31,12 +31,12 @@ class EngineInput:
 
 
 def engine_input(config: Config) -> EngineInput:
-    """Checks a config, however it was put together, and turns it into what the engine takes.
+    """Checks a config, however it was made, and turns it into the engine's input.
 
     Raises:
         ConfigError: A setting is wrong.
-        ArgumentError: It is no `Config`.
+        ArgumentError: It is not a `Config`.
     """
-    with _engine.FloatMode():  # the caller's rounding must not reach the walls
+    with _engine.FloatMode():  # the walls must not depend on the caller's rounding mode
         config = validated(config)
         return EngineInput(config, engine_config(config), walls(config.arena), outer_count(config.arena))

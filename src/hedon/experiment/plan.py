@@ -1,4 +1,4 @@
-"""What a run is asked to do, where its records go, and what it tells while it goes on."""
+"""The plan of a run: what to compute, where its records go, and what its progress display shows."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class RunPlan:
     Attributes:
         config: What the worlds are.
         seeds: One world per seed; given as any sequence of different whole numbers from 0 to 2^63 − 1.
-        steps: Steps of each world, in all.
+        steps: Total steps of each world.
         out: The run's folder; given as a path or a text. It must not hold a run already.
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; 0 for none.
@@ -36,7 +36,7 @@ class RunPlan:
 
     Raises:
         ConfigError: A setting is wrong.
-        ArgumentError: Something else is.
+        ArgumentError: Another value is wrong.
     """
 
     config: Config
@@ -72,16 +72,16 @@ class RunPlan:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Where a run is: what a progress display shows.
+    """The state of a run at one moment, for a progress display.
 
     Attributes:
-        first: Step at which the run began, or was last gone on with.
+        first: Step at which the run began, or was last continued.
         step: Steps completed.
-        steps: Steps asked for.
+        steps: Total steps of each world.
         seconds: Time since the first step after `first` [s].
         rows: The last row of the table `population` of each world.
         extinct: The step at which each world died out, or None.
-        window: Steps of a window, at whose end agents learn.
+        window: Steps of a window; agents learn at its end.
     """
 
     first: int
@@ -94,7 +94,7 @@ class Moment:
 
 
 class Display(Protocol):
-    """Something that shows progress."""
+    """A progress display."""
 
     def update(self, moment: Moment) -> None:
         """Shows a moment; called about five times a second."""
@@ -102,12 +102,12 @@ class Display(Protocol):
 
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:
-    """A folder of its own for a run that names none: runs/NAME-FIDELITY-sSEEDS, with a number where it is taken."""
+    """The default folder of a run: runs/NAME-FIDELITY-sSEEDS, with a number if that exists already."""
     return free_folder(Path("runs") / "-".join((config.name, config.fidelity, seed_span(seeds))))
 
 
 def seed_span(seeds: Sequence[int]) -> str:
-    """Some seeds in a folder's name: "s3", "s1-5", or their number where they do not follow each other."""
+    """Seeds as part of a folder's name: "s3", "s1-5", or how many there are if they are not consecutive."""
     if len(seeds) == 1:
         return f"s{seeds[0]}"
     if tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
@@ -116,7 +116,7 @@ def seed_span(seeds: Sequence[int]) -> str:
 
 
 def free_folder(path: Path, taken: Collection[Path] = ()) -> Path:
-    """A path that is not there, nor taken otherwise: this one, or with a number after it."""
+    """A path that does not exist and is not in `taken`: this one, or this one with a number after it."""
     folder, number = path, 2
     while folder.exists() or folder in taken:
         folder, number = path.with_name(f"{path.name}-run{number}"), number + 1

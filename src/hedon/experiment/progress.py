@@ -1,4 +1,4 @@
-"""Shows how a run goes: a live table on a terminal, plain lines elsewhere."""
+"""Shows the progress of a run: a live table on a terminal, plain lines elsewhere."""
 
 import time
 from collections import deque
@@ -28,7 +28,7 @@ def duration(seconds: float) -> str:
 
 
 class _Speed:
-    """Steps per second over the last seconds, and at least over a window, since learning at its end takes most time."""
+    """Steps per second over the last seconds, at least over one window: learning at its end takes most of the time."""
 
     SPAN = 10.0  # seconds
 
@@ -36,7 +36,7 @@ class _Speed:
         self._seen: deque[tuple[float, int]] = deque()
 
     def update(self, moment: Moment) -> float | None:
-        """The speed, or None before the first window of the session has ended."""
+        """The speed, or None before the end of the session's first window."""
         if not self._seen:
             self._seen.append((0.0, moment.first))
         self._seen.append((moment.seconds, moment.step))
@@ -47,7 +47,7 @@ class _Speed:
 
 
 def _head(moment: Moment, speed: float | None, gap: str) -> str:
-    """Where the run is, how fast it goes and how long it will take."""
+    """The run's step, its speed and the time left."""
     place = f"step {moment.step:,} of {moment.steps:,}"
     if speed is None:
         return f"{place}{gap}the speed is known after a window of {moment.window:,} steps"
@@ -55,7 +55,7 @@ def _head(moment: Moment, speed: float | None, gap: str) -> str:
 
 
 class LineDisplay:
-    """One plain line now and then, for logs."""
+    """Plain lines from time to time, for logs."""
 
     def __init__(self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
         self._stream = stream
@@ -71,7 +71,7 @@ class LineDisplay:
         self._stream.flush()
 
     def update(self, moment: Moment) -> None:
-        """Prints a line for each world, if it is time or the run is at its end."""
+        """Prints a line for each world, if enough time has passed or the run is at its end."""
         speed = self._speed.update(moment)
         if moment.seconds < self._due and moment.step < moment.steps:
             return
@@ -95,7 +95,7 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
 
 
 class LiveDisplay:
-    """A bar and a table of the worlds that renew themselves on a terminal."""
+    """A progress bar and a table of the worlds, updated on a terminal."""
 
     def __init__(self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
         self._weights = weight_names(kinds, neutral_count)
@@ -149,7 +149,7 @@ class LiveDisplay:
 def make_display(
     console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
 ) -> LiveDisplay | LineDisplay:
-    """The display that fits where the output goes."""
+    """The display that fits the output: a terminal or not."""
     if console.is_terminal:
         return LiveDisplay(console, kinds, neutral_count, seeds)
     return LineDisplay(console.file, kinds, neutral_count, seeds)

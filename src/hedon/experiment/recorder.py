@@ -1,4 +1,4 @@
-"""Moves what the engine knows into the records: deaths, intervals, frames, the living, checkpoints."""
+"""Copies data from the engine into the records: deaths, intervals, frames, the living, checkpoints."""
 
 import time
 from contextlib import suppress
@@ -17,20 +17,20 @@ from hedon.record.checkpoint import CheckpointHead, Sampled
 from hedon.record.writer import Writer
 
 FLUSH_SECONDS = 30.0
-"""Time after which rows are written, and what readers see is renewed [s]."""
+"""Time after which rows are written, so that readers see them [s]."""
 FLUSH_GROWTH = 0.005
-"""The same as a share of the session so far. A part costs some 10 kB for its footer and an open file for each reader:
-so parts come less often as a run grows older, some hundreds of them in a run of many hours."""
+"""The same as a share of the session so far. A part costs about 10 kB for its footer, and an open file for each
+reader. So parts are written less often as a run gets longer: a run of many hours has some hundreds of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a run begins: at nothing, or at a checkpoint.
+    """Where a session begins: at step 0, or at a checkpoint.
 
     Attributes:
         step: Steps completed.
-        seconds: Time spent in stepping before [s].
-        sampled: What the next rows of the table `population` count from, one per world; none at a run's beginning.
+        seconds: Time spent on steps before [s].
+        sampled: What the next rows of the table `population` count from, one per world; empty at step 0.
     """
 
     step: int = 0
@@ -39,13 +39,13 @@ class Start:
 
 
 class Recorder:
-    """What a simulation has to tell, written at the right moments.
+    """Writes the records of a simulation.
 
     Args:
         simulation: In the state of `start`.
         writer: Where the rows go.
-        frames: Steps between two frames, for the checkpoints.
-        start: Where the run begins or goes on.
+        frames: Steps between two frames; stored in checkpoints.
+        start: Where the session begins.
     """
 
     def __init__(self, simulation: Simulation, writer: Writer, frames: int, start: Start) -> None:
@@ -61,7 +61,7 @@ class Recorder:
         self.shown = False
 
     def deaths(self) -> None:
-        """Writes those who died since the last call. The engine has room for some, so this is done in every piece."""
+        """Writes the agents that died since the last call. The engine has little room for them, so call it often."""
         for world in self.simulation.worlds:
             lives = world.deaths()
             if len(lives["agent_id"]):
@@ -70,20 +70,20 @@ class Recorder:
             self.living()
 
     def interval(self) -> None:
-        """Writes one population row per world that moved since its last one."""
+        """Writes one population row per world that advanced since its last row."""
         for i, (world, sampler) in enumerate(zip(self.simulation.worlds, self.samplers, strict=True)):
             if world.step == sampler.since.step:
                 continue
             self.rows[i] = sampler.row()
             sampler.advance()
             self.writer.append("population", self.rows[i])
-        if not self.shown:  # the first rows reach the disk at once, so that a reader sees that the run is on
+        if not self.shown:  # write the first rows immediately, so that a reader sees that the run has begun
             self.living()
             self.writer.flush()
             self.shown = True
 
     def living(self) -> None:
-        """Writes all rows so far, and the living: the moment that readers see. The deaths so far must be written."""
+        """Writes all rows so far and the living, so that readers see this moment. All deaths must be written before."""
         now = time.perf_counter()
         self.flush_due = now + max(FLUSH_SECONDS, FLUSH_GROWTH * (now - self.begun))
         rows = []
@@ -93,19 +93,19 @@ class Recorder:
         self.writer.replace_living(*rows)
 
     def frame(self) -> None:
-        """Writes every agent and food of every living world as they are now."""
+        """Writes every agent and food of every world that is not extinct, as they are now."""
         for world in self.simulation.worlds:
             if not world.extinct:
                 for rows in frame_rows(world):
                     self.writer.append("frames", rows)
 
     def checkpoint(self, step: int, seconds: float) -> None:
-        """Keeps all that it takes to go on from here. Deaths and frames of this step must have been written."""
+        """Saves a checkpoint to continue from. Deaths and frames of this step must be written before."""
         self.living()
         self.writer.save_checkpoint(*self._saved(step, seconds))
 
     def fault(self, seconds: float) -> None:
-        """Keeps the worlds as they are now that one of them has stopped at a fault, and who died before it."""
+        """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""
         self.deaths()
         step = max(world.step for world in self.simulation.worlds)
         self.writer.save_fault(*self._saved(step, seconds))

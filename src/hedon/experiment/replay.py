@@ -1,4 +1,4 @@
-"""Computes a run again and compares: its records, and the worlds at its end."""
+"""Computes a run again, and compares its records and the worlds at its end."""
 
 import tempfile
 from collections.abc import Iterator
@@ -15,23 +15,23 @@ from hedon.record.reader import Run, open_run
 
 
 def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...], str]:
-    """Computes a run again, from the oldest checkpoint that it keeps to its end, and compares.
+    """Computes a run again, from its oldest checkpoint to its end, and compares.
 
     Args:
-        folder: Of a run that has ended and was found to be whole; it is only read.
+        folder: Folder of a run that has ended and in which nothing is wrong; it is only read.
         threads: Threads to use; 0 for all processors.
 
     Returns:
-        What differs, and in a sentence what was compared.
+        What differs, and one sentence on what was compared.
     """
     folder = Path(folder)
     run = open_run(folder)
     steps = max(run.manifest.steps_done, default=0)
     kept = [int(path.stem.removeprefix("step-")) for path in checkpoint_paths(folder)]
     if run.manifest.status not in ("finished", "interrupted") or not run.manifest.world_digests:
-        return (), f"not computed again: the run is {run.manifest.status}, and says nothing of its end"
+        return (), f"not computed again: the run's status is {run.manifest.status}, so there is no end to compare with"
     if not kept or kept[0] >= steps:
-        return (), "not computed again: no checkpoint before the end is kept"
+        return (), "not computed again: there is no checkpoint before the end"
     start = kept[0]
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:
         try:
@@ -40,13 +40,13 @@ def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...
             findings = tuple(_compare(run, open_run(again), manifest, start))
         except HedonError as error:
             return (Finding(f"checkpoint of step {start:,}", f"cannot be computed again: {error}"),), "not compared"
-    return findings, f"computed again from step {start:,} to {steps:,}, and compared"
+    return findings, f"computed again from step {start:,} to {steps:,} and compared"
 
 
 def _compare(run: Run, again: Run, manifest: Manifest, start: int) -> Iterator[Finding]:
     for world, (old, new) in enumerate(zip(run.manifest.world_digests, manifest.world_digests, strict=True)):
         if old != new:
-            yield Finding("manifest.json", f"world {world}: computed again, its digest is {new}, and not {old}")
+            yield Finding("manifest.json", f"world {world}: computed again, its digest is {new}, not {old}")
     later = pl.col("death_step").is_null() | (pl.col("death_step") > start)
     tables = {
         "agents": (run.agents().filter(later), again.agents(), ["world", "agent_id"]),
@@ -56,9 +56,9 @@ def _compare(run: Run, again: Run, manifest: Manifest, start: int) -> Iterator[F
     for name, (old, new, keys) in tables.items():
         old, new = (rows.sort(keys, maintain_order=True) for rows in (old, new))
         if old.height != new.height:
-            yield Finding(name, f"computed again, {new.height:,} rows follow step {start:,}, and not {old.height:,}")
+            yield Finding(name, f"computed again, has {new.height:,} rows after step {start:,}, not {old.height:,}")
         elif not old.equals(new):
             differs = pl.any_horizontal([~old[column].eq_missing(new[column]) for column in old.columns])
             row = old.select(keys).filter(pl.select(differs).to_series()).row(0)
             where = ", ".join(f"{key} {value}" for key, value in zip(keys, row, strict=True))
-            yield Finding(name, f"computed again, rows differ, the first of {where}")
+            yield Finding(name, f"computed again, rows differ; the first is at {where}")

@@ -1,4 +1,4 @@
-"""Goes on with a run that was interrupted, killed, or finished: with the same bits as if it had never stopped."""
+"""Continues a run that was interrupted, killed, or finished; with the same bits as if it had never stopped."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,13 +28,13 @@ from hedon.record.writer import Writer
 
 @dataclass(frozen=True, slots=True)
 class Resumption:
-    """A run that can go on.
+    """A run that is ready to continue.
 
     Attributes:
-        plan: What is left to do, with the steps in all.
-        manifest: As the last session left it.
-        checkpoint: Where it goes on; None for a run that was killed before its first.
-        notes: What the user should know: a damaged checkpoint, a changed source.
+        plan: What to run, with the total steps.
+        manifest: The manifest from the last session.
+        checkpoint: Where it continues; None for a run that was killed before its first checkpoint.
+        notes: What the user should know, such as a damaged checkpoint or a changed source.
     """
 
     plan: RunPlan
@@ -44,7 +44,7 @@ class Resumption:
 
     @property
     def step(self) -> int:
-        """The step at which it goes on."""
+        """The step at which it continues."""
         return self.checkpoint.head.step if self.checkpoint else 0
 
 
@@ -52,7 +52,7 @@ class Resumption:
 def hold(
     folder: Path | str, steps: int | None = None, threads: int = 0, checkpoint_seconds: float = CHECKPOINT_SECONDS
 ) -> Iterator[Resumption]:
-    """Takes hold of a run's folder and says how the run would go on. Changes nothing by itself; see `go_on`.
+    """Locks a run's folder and plans how the run continues. Changes nothing else; see `go_on`.
 
     Args:
         folder: Of the run.
@@ -61,13 +61,13 @@ def hold(
         checkpoint_seconds: Time between two checkpoints [s].
 
     Raises:
-        RecordError: It is no run, is in use, has no step left to do, or its checkpoint does not fit; the message says
+        RecordError: It is not a run, is in use, has no steps left, or its checkpoint does not fit; the message says
             why.
         ConfigError: Its config cannot be read.
         ArgumentError: A number is out of bounds.
     """
     folder = argument.folder("folder", folder)
-    open_run(folder)  # before the lock, which would make the folder
+    open_run(folder)  # before the lock, because the lock makes the folder
     with FolderLock(folder):
         manifest = open_run(folder).manifest
         config = load_config(folder / CONFIG)
@@ -77,7 +77,7 @@ def hold(
             verify_parts(folder, checkpoint.head.parts)
         total = manifest.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
         plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds)
-        notes = [f"{fault}: going on from the one before" for fault in faults]
+        notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
         found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
         _check_steps(found)
         yield found
@@ -90,7 +90,7 @@ def resume(
     display: Display | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> Manifest:
-    """Goes on with a run from its newest whole checkpoint. What was recorded after it is taken back and made again.
+    """Continues a run from its newest undamaged checkpoint. Later records are removed and computed again.
 
     Args:
         folder: Of the run.
@@ -113,7 +113,7 @@ def resume(
 
 
 def go_on(found: Resumption, display: Display | None = None) -> Manifest:
-    """Goes on with a run that `hold` holds; see `resume`."""
+    """Continues a run that `hold` has locked; see `resume`."""
     plan, checkpoint = found.plan, found.checkpoint
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
@@ -136,20 +136,20 @@ def _check_steps(found: Resumption) -> None:
             f"{plan.out} is finished: every world has died out, the last at step {max(manifest.steps_done):,}"
         )
     if whole and plan.steps == step:
-        raise RecordError(f"{plan.out} has made all its {step:,} steps: say by --steps how many it is to have in all")
+        raise RecordError(f"{plan.out} has already done all its {step:,} steps: give a larger total with --steps")
     if plan.steps < step:
         raise RecordError(
-            f"--steps: {plan.out} has made {step:,} steps already, which is more than {plan.steps:,} in all"
+            f"--steps: {plan.out} has already done {step:,} steps, which is more than the total of {plan.steps:,}"
         )
 
 
 def _source_notes(manifest: Manifest) -> list[str]:
-    """A word on a source that has changed since, which may or may not change bits."""
+    """A note if hedon's source has changed since, which can change results."""
     before = manifest.sessions[-1].git_revision if manifest.sessions else manifest.git_revision
     now, _ = git_revision(Path(__file__).resolve().parent)
     if before is None or now is None or before == now:
         return []
     return [
         f"hedon's source has changed since (revision {before[:12]}, now {now[:12]}): "
-        "only the same source is sure to give the same bits"
+        "only the same source is certain to give the same results"
     ]

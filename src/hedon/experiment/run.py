@@ -1,4 +1,4 @@
-"""The host loop: advances a simulation, writes its records and checkpoints, tells of its progress."""
+"""The host loop: advances a simulation, writes its records and checkpoints, and shows its progress."""
 
 import time
 from collections.abc import Iterator
@@ -22,14 +22,14 @@ from hedon.record.writer import Writer
 from hedon.text import brief
 
 PIECE_SECONDS = 0.2
-"""Longest time in the engine without a look at the keyboard [s]."""
+"""Longest time in the engine between two checks for Ctrl-C [s]."""
 
 
 def run(plan: RunPlan, display: Display | None = None) -> Manifest:
-    """Runs a plan and keeps its records, silently where no display is given.
+    """Runs a plan and writes its records; prints nothing if no display is given.
 
-    Ctrl-C or SIGTERM ends it after the current window, with all results kept; a second one ends it at once, likewise.
-    `hedon.experiment.resume.resume` goes on with it, also after it was killed.
+    Ctrl-C or SIGTERM ends it after the current window, a second one immediately; both keep all results.
+    `hedon.experiment.resume.resume` continues it, even if it was killed.
 
     Returns:
         The manifest as it was saved at the end.
@@ -55,7 +55,7 @@ def begin(
     display: Display | None,
     interrupted: Interrupts,
 ) -> Manifest:
-    """Begins a new folder with a simulation that is at `start`, and drives it; see `run`."""
+    """Makes a new folder for a simulation that is at `start`, and runs it; see `run`."""
     with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest) as writer:
         return drive(simulation, plan, manifest, writer, start, display, interrupted)
 
@@ -69,7 +69,7 @@ def drive(
     display: Display | None,
     interrupted: Interrupts,
 ) -> Manifest:
-    """Advances a simulation from `start` to the end of the plan, and records it; see `run`."""
+    """Advances a simulation from `start` to the end of the plan and records it; see `run`."""
     recorder = Recorder(simulation, writer, plan.frames, start)
     begun = time.perf_counter()
     seconds, step, status = start.seconds, start.step, "failed"
@@ -88,7 +88,7 @@ def drive(
                 recorder.checkpoint(step, seconds)
             if display is not None:
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
-        # First the checkpoint, then the rows of a window that may be unfinished: who goes on takes those back.
+        # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
         recorder.checkpoint(step, seconds)
         recorder.interval()
         status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
@@ -97,10 +97,10 @@ def drive(
         try:
             recorder.fault(seconds)
         except RecordError as lost:
-            raise EngineError(f"{error} The state of its worlds could not be kept: {lost}") from error
+            raise EngineError(f"{error} The state of its worlds could not be saved: {lost}") from error
         raise
     finally:
-        with suppress(RecordError) if status == "failed" else nullcontext():  # what went wrong first is on its way
+        with suppress(RecordError) if status == "failed" else nullcontext():  # the first error is already being raised
             recorder.living()
             manifest = last_manifest(manifest, simulation, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
@@ -108,7 +108,7 @@ def drive(
 
 
 class _Due:
-    """When to keep a checkpoint: at intervals, and at once when somebody wants to end the run."""
+    """Decides when to save a checkpoint: at intervals, and immediately when the run is asked to end."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
@@ -123,7 +123,7 @@ class _Due:
 
 
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
-    """Advances to each step at which there is something to do, and yields it."""
+    """Advances to each step at which something must be done, and yields it."""
     window = plan.config.learning.rollout_steps
     piece = 64
     while step < plan.steps and not simulation.extinct:
@@ -136,7 +136,7 @@ def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interr
         begun = time.perf_counter()
         simulation.run(steps)
         seconds = max(time.perf_counter() - begun, 1e-6)
-        # The engine keeps the deaths of a piece until they are read: let them fill an eighth of its room, not all.
+        # The engine keeps deaths until they are read: make pieces so short that deaths fill an eighth of its room.
         full = 8 * max(world.waiting_deaths for world in simulation.worlds)
         piece = max(1, int(min(steps * PIECE_SECONDS / seconds, 4 * piece, steps / full if full else steps * 4)))
         step += steps

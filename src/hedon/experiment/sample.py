@@ -1,4 +1,4 @@
-"""From a world to rows of the records, and to the picture of its end."""
+"""Makes rows of the records, and the data for the picture of the end, from a world."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ LEDGER = (
 
 
 def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
-    """Rows of the table `agents` from lives as the engine gives them (`take_rows`, `living_rows`)."""
+    """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`)."""
     kinds = tuple(world.config.food)
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
     steps = np.maximum(end - lives["birth_step"], 1)
@@ -45,11 +45,11 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
 
 
 class PopulationSampler:
-    """Rows of the table `population` of one world: its state now, and what was counted since the last row.
+    """Makes rows of the table `population` of one world: its state now, and counts since the last row.
 
     Args:
-        world: Whose rows.
-        since: What the next row counts from; None for the world as it is now.
+        world: The world.
+        since: What the next row counts from; None for the world's present state.
     """
 
     def __init__(self, world: World, since: Sampled | None = None) -> None:
@@ -57,7 +57,7 @@ class PopulationSampler:
         self.since = since or self._now()
 
     def advance(self) -> None:
-        """Lets the next row count from now on."""
+        """Makes the next row count from now."""
         self.since = self._now()
 
     def row(self) -> Rows:
@@ -106,7 +106,7 @@ def frame_rows(world: World) -> list[Rows]:
 
 
 def snapshot(world: World) -> Snapshot:
-    """A world as it is now, for a picture."""
+    """The present state of a world, for a picture."""
     lives, foods, config = world.agents(), world.foods(), world.config
     return Snapshot(
         world=world.index,

@@ -1,4 +1,4 @@
-"""What a session of a run writes into its manifest, at its beginning and at its end."""
+"""The manifest that a session of a run writes at its beginning and at its end."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from hedon.record.writer import Writer
 
 
 def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) -> Manifest:
-    """The manifest of a run that begins now, at a step that is 0 unless it branches off from another."""
+    """The manifest of a run that begins now, at step 0 or, for a branch, at a later one."""
     config = plan.config
     manifest = Manifest(
         food_kinds=tuple(config.food),
@@ -37,7 +37,7 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
 
 
 def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, from_step: int) -> Manifest:
-    """The manifest of a run that goes on now: of its first session, but with a new one on the list."""
+    """The manifest of a run that continues now: as before, with a new session at the end of the list."""
     here = replace(
         manifest,
         kernel=simulation.engine.kernel,
@@ -57,7 +57,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
 
 
 def last_manifest(manifest: Manifest, simulation: Simulation, status: str, seconds: float, writer: Writer) -> Manifest:
-    """Saves the manifest of a session that ends now and returns it. Unless it failed, all rows are on disk by then."""
+    """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk."""
     now = utc_now()
     digests: tuple[str, ...] = ()
     records = None

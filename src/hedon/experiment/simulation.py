@@ -1,4 +1,4 @@
-"""The engine's worlds as Python objects: build them from a config, run them, look into them."""
+"""The engine's worlds as Python objects: make them from a config, run them, read them."""
 
 import os
 from collections.abc import Sequence
@@ -16,12 +16,12 @@ from hedon.experiment.native import engine_input
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
 MAX_WORLD_SEED = 2**64 - 1
-"""Largest seed of a world; the records of a run hold half as many."""
+"""Largest seed of a world; records of a run hold only the lower half of these."""
 MAX_RUN_STEPS = 2**62
 
 
 class Simulation:
-    """Worlds of one config, advanced together. A seed gives the same life, alone or in company.
+    """Worlds of one config, advanced together. A seed gives the same world, whatever other worlds run with it.
 
     Example:
         >>> from hedon.config.load import load_config
@@ -31,20 +31,20 @@ class Simulation:
         >>> simulation.worlds[0].agents()["energy"].mean()
 
     Args:
-        config: What the worlds are.
+        config: Settings of the worlds.
         seeds: One world per seed, each in [0, 2^64).
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
-        kernel: Instruction set, as `hedon._engine.kernel.kernel_names` lists them; empty for the best one, or
-            the one that the environment variable HEDON_KERNEL names.
+        kernel: Instruction set, one of `hedon._engine.kernel.kernel_names`; empty for the one that the environment
+            variable HEDON_KERNEL names, or else the best one.
 
     Raises:
         ConfigError: A setting is wrong.
-        ArgumentError: Another argument is.
-        EngineError: The kernel is unknown or not for this processor, there is too little memory, or the initial agents
-            or foods find no place.
+        ArgumentError: Another argument is wrong.
+        EngineError: The kernel is unknown or not for this processor, there is too little memory, or there is no room
+            for the initial agents or foods.
 
-    Every method, and those of its worlds, raise EngineError while the simulation runs in another thread, and in a
-    process that was forked from the one that made it: its threads do not exist there.
+    Every method, and every method of its worlds, raises EngineError while the simulation runs in another thread, and
+    in a process that was forked from the one that made it: the simulation's threads do not exist there.
     """
 
     def __init__(self, config: Config, seeds: Sequence[int], threads: int = 0, kernel: str = "") -> None:
@@ -61,24 +61,25 @@ class Simulation:
         self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
 
     def run(self, steps: int) -> None:
-        """Advances every world that is not extinct; learning happens at the end of each window.
+        """Advances every world that is not extinct; agents learn at the end of each window.
 
-        Other Python threads go on meanwhile. Ctrl-C in the main thread is heard within a fraction of a second, or when
-        the learning at the end of a window is done; the worlds are whole then, and can go on.
+        Other Python threads can run at the same time. Ctrl-C in the main thread takes effect within a fraction of a
+        second, or when the learning at the end of a window is done. The worlds are then in a valid state and can
+        continue.
 
         Args:
             steps: How many steps; any number, not only whole windows.
 
         Raises:
-            ArgumentError: `steps` is no whole number, or negative.
+            ArgumentError: `steps` is negative or not a whole number.
             EngineError: A world reports an error; it names the world, the step and the agent.
-            KeyboardInterrupt: Ctrl-C was pressed; fewer steps than asked for were made.
+            KeyboardInterrupt: Ctrl-C was pressed; the worlds have done fewer steps than `steps`.
         """
         self.engine.run(integer("steps", steps, 0, MAX_RUN_STEPS))
 
     @property
     def extinct(self) -> bool:
-        """Whether nobody lives in any world."""
+        """Whether no agent is alive in any world."""
         return all(world.extinct for world in self.worlds)
 
 
@@ -93,7 +94,7 @@ class World:
 
     @property
     def step(self) -> int:
-        """Steps completed; it stands still after extinction."""
+        """Steps completed; it does not change after extinction."""
         return self._engine.clock(self.index)["step"]
 
     @property
@@ -103,18 +104,18 @@ class World:
 
     @property
     def extinct_step(self) -> int | None:
-        """The step at whose end the last agent died, or None."""
+        """Steps completed when the last agent died, or None."""
         step = self._engine.clock(self.index)["extinct_step"]
         return None if step < 0 else step
 
     @property
     def extinct(self) -> bool:
-        """Whether nobody lives."""
+        """Whether no agent is alive."""
         return self.extinct_step is not None
 
     @property
     def waiting_deaths(self) -> float:
-        """Deaths that have not been read yet, as a share of the engine's room for them."""
+        """Deaths that have not been read, as a share of the engine's room for them."""
         return self._engine.clock(self.index)["event_count"] / len(self.view("event.birth_step"))
 
     @property
@@ -129,7 +130,7 @@ class World:
 
     @property
     def living(self) -> NDArray[np.int32]:
-        """Slots of the living in the order of their ids, (alive,): the rows to take from the views."""
+        """Slots of the living in the order of their ids, (alive,): their rows in the views."""
         return self.view("living")[: self.alive]
 
     def view(self, path: str) -> NDArray[Any]:
@@ -145,7 +146,7 @@ class World:
         return self._engine.view(self.index, path)
 
     def agents(self) -> dict[str, NDArray[Any]]:
-        """Copies of what is known of each living agent, (alive,) each, with `genome` (alive, genes)."""
+        """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes)."""
         rows = self._engine.living_rows(self.index)
         living = self.living
         rows["age"] = self.step - rows["birth_step"]
@@ -154,9 +155,9 @@ class World:
         return rows
 
     def deaths(self) -> dict[str, NDArray[Any]]:
-        """Takes what is known of each agent that died since the last call, (deaths,) each, with `genome`.
+        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`.
 
-        The engine has room for 16 deaths per slot: who runs a world for long calls this between runs.
+        The engine has room for 16 deaths per slot: in a long simulation, call this between runs.
         """
         return self._engine.take_rows(self.index)
 
@@ -169,14 +170,14 @@ class World:
         return {"kind": kind[present], **circles}
 
     def observations(self) -> NDArray[np.float32]:
-        """What each living agent senses now, (alive, observation size)."""
+        """What each living agent observes now, (alive, observation size)."""
         return self._engine.observations(self.index)
 
     def rays(self) -> NDArray[np.float32]:
-        """The ray part of the observations: (alive, rays, types), types being agent, each food kind, wall."""
+        """The rays of the observations: (alive, rays, types); the types are agent, each food kind, wall."""
         rays, types = self.config.sensor.ray_count, len(self.config.food) + 2
         return self.observations()[:, : types * rays].reshape(-1, types, rays).swapaxes(1, 2)
 
     def digest(self) -> str:
-        """A hash of all the world's state: equal for equal bits."""
+        """A hash of the world's whole state: equal for equal bits."""
         return f"{self._engine.digest(self.index):016x}"
