@@ -1,1 +1,1 @@
-"""Whether a run's folder holds what it says, and what of it can still be used. Needs no engine."""
+"""Checks whether a run's folder is complete and consistent, and what can still be used. Needs no engine."""

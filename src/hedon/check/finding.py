@@ -1,4 +1,4 @@
-"""What a check says: what is wrong, what is worth knowing, what can still be used."""
+"""The results of a check: what is wrong, notes, what can still be used."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import polars as pl
 
 SHOWN = 3
-"""Rows that a finding names."""
+"""Most rows that a finding names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +24,12 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What a check of a run found.
+    """The results of a check of one run.
 
     Attributes:
-        findings: What is wrong; empty where all is well.
-        notes: What is worth knowing and not wrong: what was not looked at, and why.
-        usable: What the folder is still good for.
+        findings: What is wrong; empty if nothing is.
+        notes: What the user should know but is not wrong, such as what was not checked, and why.
+        usable: What can still be used.
     """
 
     findings: tuple[Finding, ...]
@@ -41,15 +41,16 @@ def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapp
     """One finding for each rule that some rows break.
 
     Args:
-        rows: With the columns that the rules speak of.
-        table: What to call it.
-        keys: Columns that tell which row it is.
-        rules: What is wrong with a row, by an expression that is true for such rows; null counts as false.
+        rows: With the columns that the rules use.
+        table: Its name in findings.
+        keys: Columns that identify a row.
+        rules: Texts that say what is wrong with a row, each with an expression that is true for such rows; null
+            counts as false.
     """
     for what, wrong in rules.items():
         found = rows.filter(wrong)
         if found.height:
-            yield Finding(table, f"{name_rows(found, keys)} {what}")
+            yield Finding(table, f"{name_rows(found, keys)}: {what}")
 
 
 def name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:

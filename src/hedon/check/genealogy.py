@@ -1,4 +1,4 @@
-"""The table `agents`: every agent once, of known descent, with a life that can have been."""
+"""Checks the table `agents`: every agent once, with known parents and a possible life."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ def check_agents(agents: pl.DataFrame, manifest: Manifest, *, complete: bool) ->
 
     Args:
         agents: The dead and the living.
-        manifest: Of the run; a branch's tables begin at its first session's step.
+        manifest: Of the run. A branch's tables begin at the step of its first session.
         complete: Whether all agents up to the last step must be there.
     """
     yield from break_rules(agents, "agents", _KEYS, _life_rules(manifest))
@@ -33,45 +33,47 @@ def first_step(manifest: Manifest) -> int:
 
 
 def world_rules(manifest: Manifest) -> dict[str, pl.Expr]:
-    """Rows of worlds that the run does not have, or with the seed of another."""
+    """Rules on the world and seed of a row."""
     worlds = pl.col("world").is_between(0, len(manifest.seeds) - 1)
     seed = pl.col("world").replace_strict(dict(enumerate(manifest.seeds)), default=None, return_dtype=pl.Int64)
     return {
-        "of a world that the run does not have": ~worlds,
-        "another seed than the world has in the manifest": pl.col("seed") != seed,
+        "the run has no such world": ~worlds,
+        "the seed is not the one in the manifest": pl.col("seed") != seed,
     }
 
 
 def _life_rules(manifest: Manifest) -> dict[str, pl.Expr]:
     rules = {
         **world_rules(manifest),
-        "more than one row of the same id": pl.struct(_KEYS).is_duplicated(),
-        "died no later than it was born": pl.col("death_step") <= pl.col("birth_step"),
-        "holds less energy than none": (pl.col("energy") < 0) | (pl.col("birth_energy") < 0),
-        "no founder, and yet without a parent": pl.col("parent_id").is_null()
+        "more than one row has this id": pl.struct(_KEYS).is_duplicated(),
+        "died before its birth or in the same step": pl.col("death_step") <= pl.col("birth_step"),
+        "has negative energy": (pl.col("energy") < 0) | (pl.col("birth_energy") < 0),
+        "has no parent but is not a founder": pl.col("parent_id").is_null()
         & ((pl.col("generation") != 0) | (pl.col("birth_step") != 0)),
     }
     if manifest.status != "running" and len(manifest.steps_done) == len(manifest.seeds):
         last = pl.col("world").replace_strict(dict(enumerate(manifest.steps_done)), default=None, return_dtype=pl.Int64)
-        rules["born or died after the last step of the run"] = pl.max_horizontal("birth_step", "death_step") > last
+        rules["was born or died after the last step of the run"] = pl.max_horizontal("birth_step", "death_step") > last
     return rules
 
 
 def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
-    """Rules on an agent beside its parent. In a branch, those who had died before it stand in the parent's run."""
+    """Rules on an agent and its parent. Agents that died before a branch began are only in the parent run."""
     child, known = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
     counted, begun = pl.col("counted"), first_step(manifest)
     rules = {
-        "names itself, or one younger, as its parent": pl.col("parent_id") >= pl.col("agent_id"),
-        "another generation than one more than its parent's": pl.col("generation") != pl.col("parent_generation") + 1,
-        "born no later than its parent": pl.col("birth_step") <= pl.col("parent_birth"),
-        "born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
+        "its parent is itself or a younger agent": pl.col("parent_id") >= pl.col("agent_id"),
+        "its generation is not one more than its parent's": pl.col("generation") != pl.col("parent_generation") + 1,
+        "was born before its parent or in the same step": pl.col("birth_step") <= pl.col("parent_birth"),
+        "was born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
     }
     if complete:
-        rules["has a parent that is not there"] = child & ~known & (pl.col("birth_step") > begun)
+        rules["its parent is missing"] = child & ~known & (pl.col("birth_step") > begun)
         fewer = pl.col("children") < counted
         born_here = (pl.col("birth_step") > begun) | (begun == 0)
-        rules["another number of children than it says"] = fewer | (born_here & (pl.col("children") != counted))
+        rules["its number of children is not the number of agents that name it as parent"] = fewer | (
+            born_here & (pl.col("children") != counted)
+        )
     return rules
 
 
@@ -90,7 +92,7 @@ def _with_parents(agents: pl.DataFrame) -> pl.DataFrame:
 
 
 def _cycles(agents: pl.DataFrame) -> Iterator[Finding]:
-    """Agents that are their own ancestors. Only a parent that is not older can begin a cycle."""
+    """Agents that are their own ancestors. Every cycle has an agent whose parent is not older."""
     suspects = agents.filter(pl.col("parent_id") >= pl.col("agent_id"))
     if not suspects.height:
         return
@@ -102,12 +104,12 @@ def _cycles(agents: pl.DataFrame) -> Iterator[Finding]:
             path.append(above)
         if above == start:
             circle = " → ".join(map(str, [*path, start]))
-            yield Finding("agents", f"world {world}: a cycle, in which an agent is its own ancestor: {circle}")
+            yield Finding("agents", f"world {world}: an agent is its own ancestor: {circle}")
             return
 
 
 def _gaps(agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
-    """Ids that were never recorded, though later ones were."""
+    """Ids that are missing, though later ones are recorded."""
     begun = first_step(manifest)
     for world in range(len(manifest.seeds)):
         mine = agents.filter(pl.col("world") == world, (pl.col("birth_step") > begun) | (begun == 0))
@@ -119,5 +121,5 @@ def _gaps(agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
         if missing:
             shown = ", ".join(map(str, missing[:5])) + (" …" if len(missing) > 5 else "")
             yield Finding(
-                "agents", f"world {world} lacks {len(missing):,} agents, though later ones are there: {shown}"
+                "agents", f"world {world}: {len(missing):,} agents are missing, though later ones are there: {shown}"
             )

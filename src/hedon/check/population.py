@@ -1,4 +1,4 @@
-"""The table `population`: intervals without gaps, counts that agree with the agents, a closed ledger of energy."""
+"""Checks the table `population`: intervals without gaps, counts that agree with the agents, the energy ledger."""
 
 from collections.abc import Iterator
 
@@ -14,7 +14,7 @@ from hedon.record.manifest import Manifest
 _KEYS = ("world", "step")
 _FLOWS = tuple(f"energy_{name}" for name in ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared"))
 _ROUNDING = 8 * 2.0**-53
-"""An agent's step rounds at most eight sums, each by at most 2^-53 of the largest that it can be."""
+"""A step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible value."""
 
 
 def check_population(
@@ -24,7 +24,7 @@ def check_population(
 
     Args:
         population: Rows in the order in which they were written.
-        agents: All agents, each once; None where some are missing, so that nothing can be compared.
+        agents: All agents, each once; None if some are missing, so that counts cannot be compared.
         manifest: Of the run.
         ended: Whether the rows must reach to the last step.
     """
@@ -42,32 +42,32 @@ def _check_order(rows: pl.DataFrame, world: int, manifest: Manifest, ended: bool
     begun, before = first_step(manifest), pl.col("step").shift(1)
     start = pl.col("step") - pl.col("steps")
     rules = {
-        "a row that comes twice, or out of order": pl.col("step") <= before,
-        "an interval without length": pl.col("steps") <= 0,
+        "the row is repeated or out of order": pl.col("step") <= before,
+        "the interval has no length": pl.col("steps") <= 0,
     }
     wrong = list(break_rules(rows, "population", _KEYS, rules))
     # A branch's first interval counts from its parent's last row.
     first = start > begun if manifest.parent else start != begun
-    gap = {"a gap before the interval": pl.when(before.is_null()).then(first).otherwise(start != before)}
+    gap = {"there is a gap before the interval": pl.when(before.is_null()).then(first).otherwise(start != before)}
     yield from wrong or break_rules(rows, "population", _KEYS, gap)
     last = rows["step"][-1] if rows.height else begun
     if ended and last != manifest.steps_done[world]:
-        end = f"ends at step {last:,}, and the manifest says that {manifest.steps_done[world]:,} were made"
+        end = f"ends at step {last:,}, but the manifest has {manifest.steps_done[world]:,} steps"
         yield Finding("population", f"world {world}: {end}")
 
 
 def _check_world(rows: pl.DataFrame, agents: pl.DataFrame | None, manifest: Manifest) -> Iterator[Finding]:
     living = pl.col("alive").shift(1) + pl.col("births") - pl.col("deaths")
     rules = {
-        "fewer than none alive, born or dead": pl.min_horizontal("alive", "births", "deaths") < 0,
-        "another number alive than births and deaths leave": pl.col("alive") != living,
+        "alive, births or deaths is negative": pl.min_horizontal("alive", "births", "deaths") < 0,
+        "alive does not agree with births and deaths": pl.col("alive") != living,
     }
     if agents is not None:
         rows = rows.with_columns(**_count_agents(rows, agents))
         known = pl.col("step") - pl.col("steps") >= first_step(manifest)
         for name in ("births", "deaths", "alive", "agent_steps"):
             other = pl.col(name) != pl.col(f"{name}_of_agents")
-            rules[f"another number of {name} than the agents show"] = known & other
+            rules[f"{name} does not agree with the table agents"] = known & other
     yield from break_rules(rows, "population", _KEYS, rules)
     if agents is not None and manifest.parent is None:
         yield from _check_meals(rows, agents, manifest)
@@ -75,14 +75,12 @@ def _check_world(rows: pl.DataFrame, agents: pl.DataFrame | None, manifest: Mani
     else:
         gap = interval_residuals(rows, None)
     rows = rows.with_columns(gap=pl.Series(gap), rounding=pl.Series(_ledger_rounding(rows)))
-    open_ledger = {
-        "the ledger of energy does not close": ~(pl.col("gap") <= pl.col("rounding")) & ~pl.col("gap").is_nan()
-    }
+    open_ledger = {"the energy ledger does not close": ~(pl.col("gap") <= pl.col("rounding")) & ~pl.col("gap").is_nan()}
     yield from break_rules(rows, "population", _KEYS, open_ledger)
 
 
 def _count_agents(rows: pl.DataFrame, agents: pl.DataFrame) -> dict[str, pl.Series]:
-    """What the agents' lives say of each interval."""
+    """Counts for each interval, from the table `agents`."""
     births = np.sort(agents["birth_step"].to_numpy())
     deaths = np.sort(agents["death_step"].drop_nulls().to_numpy())
     end = rows["step"].to_numpy()
@@ -92,7 +90,7 @@ def _count_agents(rows: pl.DataFrame, agents: pl.DataFrame) -> dict[str, pl.Seri
         return np.searchsorted(events, end, "right") - np.searchsorted(events, start, "right")
 
     def lived(until: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Steps that all agents had lived together by a step."""
+        """Steps lived by all agents up to a step, summed."""
         return _time_since(births, until) - _time_since(deaths, until)
 
     alive = np.searchsorted(births, end, "right") - np.searchsorted(deaths, end, "right")
@@ -118,15 +116,15 @@ def _check_meals(rows: pl.DataFrame, agents: pl.DataFrame, manifest: Manifest) -
         if rows["step"][-1] == manifest.steps_done[rows["world"][0]] and eaten != recorded:
             yield Finding(
                 "population",
-                f"world {rows['world'][0]}: the agents ate {eaten:,} of {kind}, and the intervals count {recorded:,}",
+                f"world {rows['world'][0]}: the agents ate {eaten:,} of {kind}, but the intervals have {recorded:,}",
             )
 
 
 def _ledger_rounding(rows: pl.DataFrame) -> NDArray[np.float64]:
-    """By how much rounding may leave the ledger of each interval open: the counters are sums since the beginning."""
+    """Largest ledger error of each interval from rounding; the counters are sums since the beginning."""
     flows = sum(np.cumsum(np.abs(rows[name].to_numpy())) for name in _FLOWS) + rows["energy_total"].to_numpy()
     first = rows["step"][0] - rows["steps"][0]
     recorded = rows["step"].to_numpy() - first
-    # What moved before the first row of a branch is not recorded; it is taken to have moved as fast.
+    # Energy flows before the first row of a branch are not recorded; assume the same flow per step.
     moved = (flows + rows["energy_total"][0]) * (rows["step"].to_numpy() / recorded)
     return _ROUNDING * (rows["agent_steps"].to_numpy() + rows["alive"].to_numpy() + 1) * moved

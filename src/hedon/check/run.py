@@ -1,4 +1,4 @@
-"""Checks a run's folder: everything that it says of itself, against everything else."""
+"""Checks a run's folder: compares each of its files with the others."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -39,7 +39,7 @@ from hedon.record.snapshot import load_snapshot
 
 @dataclass
 class _Folder:
-    """A run's folder as far as it can be read, and what was found on the way."""
+    """The readable contents of a run's folder, and what was found so far."""
 
     path: Path
     findings: list[Finding] = field(default_factory=list)
@@ -47,11 +47,11 @@ class _Folder:
     manifest: Manifest | None = None
     config: Config | None = None
     checkpoints: list[Checkpoint] = field(default_factory=list)
-    """Those that can be used, by step."""
+    """Those that can be used, in the order of steps."""
     tables: dict[str, pl.DataFrame] = field(default_factory=dict)
     """Rows of `agents` and `population` that can be read."""
     whole: bool = True
-    """Whether no part is missing or unreadable."""
+    """Whether all parts are there and readable."""
 
     def add(self, findings: Iterator[Finding]) -> int:
         before = len(self.findings)
@@ -60,13 +60,13 @@ class _Folder:
 
 
 def check_run(path: Path | str) -> Verdict:
-    """Checks a run's folder; reads it only, and needs no engine.
+    """Checks a run's folder. Only reads it, and needs no engine.
 
     Args:
-        path: Of the folder; the run may be finished or interrupted, killed or going on.
+        path: Of the folder; the run may be finished, interrupted, killed or still running.
 
     Returns:
-        What is wrong, what is worth knowing, and what can still be used.
+        What is wrong, notes, and what can still be used.
 
     Raises:
         RecordError: It is not the folder of a run.
@@ -75,7 +75,7 @@ def check_run(path: Path | str) -> Verdict:
     require_unicode(path)
     require_plain(path)
     if not holds_run(path):
-        open_run(path)  # says what it is instead, and which may have been meant
+        open_run(path)  # raises an error that says what is missing, with a hint at similar names
     folder = _Folder(path)
     _check_manifest(folder)
     _check_config(folder)
@@ -100,17 +100,17 @@ def _check_manifest(folder: _Folder) -> None:
         lists.append(("world_digests", manifest.world_digests))
     for name, values in lists:
         if len(values) != worlds:
-            what = f"{name} has {len(values)} entries, and there are {worlds} seeds"
+            what = f"{name} has {len(values)} entries, but there are {worlds} seeds"
             folder.findings.append(Finding(MANIFEST, what))
             folder.manifest = None
     for step in manifest.steps_done:
         if not 0 <= step <= manifest.steps_asked:
-            what = f"steps_done is {step:,}, and {manifest.steps_asked:,} were asked for"
+            what = f"steps_done is {step:,}, but must be from 0 to steps_asked = {manifest.steps_asked:,}"
             folder.findings.append(Finding(MANIFEST, what))
     if manifest.status == "running":
         folder.notes.append(
-            "the run goes on, or was killed: what was recorded last may be incomplete, and whether agents are missing "
-            f"is not checked (`hedon resume {folder.path}` goes on with a killed run)"
+            "the run is still running, or was killed: its last records may be incomplete, and missing agents are not "
+            f"reported (`hedon resume {folder.path}` continues a killed run)"
         )
     if manifest.status == "failed":
         folder.notes.append("the run stopped at a fault" + (f": {manifest.fault}" if manifest.fault else ""))
@@ -127,9 +127,9 @@ def _check_config(folder: _Folder) -> None:
         folder.config = config
         return
     if manifest.config_digest is not None and digest(config) != manifest.config_digest:
-        folder.findings.append(Finding(CONFIG, "was changed: its digest is not the one in the manifest"))
+        folder.findings.append(Finding(CONFIG, "was changed: its digest differs from the one in the manifest"))
     elif (tuple(config.food), config.genome.neutral_count) != (manifest.food_kinds, manifest.neutral_count):
-        what = "the kinds of food or the neutral markers are not those of the config"
+        what = "the kinds of food or the neutral markers differ from those in the config"
         folder.findings.append(Finding(MANIFEST, what))
     else:
         folder.config = config
@@ -138,9 +138,7 @@ def _check_config(folder: _Folder) -> None:
 def _check_checkpoints(folder: _Folder) -> None:
     manifest = folder.manifest
     for path in misplaced_checkpoints(folder.path):
-        folder.findings.append(
-            Finding(str(path.relative_to(folder.path)), "is a folder, where a checkpoint would stand")
-        )
+        folder.findings.append(Finding(str(path.relative_to(folder.path)), "is a folder, but should be a checkpoint"))
     for path in checkpoint_paths(folder.path):
         name = str(path.relative_to(folder.path))
         try:
@@ -151,9 +149,9 @@ def _check_checkpoints(folder: _Folder) -> None:
             folder.findings.append(Finding(name, f"cannot be used: {text}"))
             continue
         if manifest is not None and manifest.config_digest not in (None, digest(config)):
-            folder.findings.append(Finding(name, "is of another config than the manifest says"))
+            folder.findings.append(Finding(name, "its config is not the one in the manifest"))
         elif manifest is not None and checkpoint.head.seeds != manifest.seeds:
-            folder.findings.append(Finding(name, "is of other seeds than the manifest says"))
+            folder.findings.append(Finding(name, "its seeds are not those in the manifest"))
         else:
             folder.checkpoints.append(checkpoint)
     for path in fault_paths(folder.path):
@@ -162,13 +160,13 @@ def _check_checkpoints(folder: _Folder) -> None:
         except RecordError as error:
             folder.findings.append(Finding(str(path.relative_to(folder.path)), f"cannot be used: {error}"))
     if not checkpoint_paths(folder.path):
-        folder.notes.append(f"nothing in {CHECKPOINTS}: the run cannot be gone on with")
+        folder.notes.append(f"{CHECKPOINTS} is empty: the run cannot be continued")
 
 
 def _check_tables(folder: _Folder) -> None:
     source = folder.manifest or folder.config
     if source is None:
-        folder.notes.append("the tables were not checked: neither manifest nor config says which columns they have")
+        folder.notes.append("the tables were not checked: without manifest and config, their columns are not known")
         return
     kinds = source.food_kinds if isinstance(source, Manifest) else tuple(source.food)
     neutral = source.neutral_count if isinstance(source, Manifest) else source.genome.neutral_count
@@ -182,14 +180,14 @@ def _check_tables(folder: _Folder) -> None:
     for name, table in run_tables(kinds, neutral).items():
         wrong += folder.add(check_numbering(folder.path, name))
         if name == "agents" and not (folder.path / LIVING).exists():
-            wrong += folder.add(iter([Finding(LIVING, "is missing: those who live are not known")]))
+            wrong += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
         parts = [pl.DataFrame(schema=table.polars_schema)]
         latest: dict[int, int] = {}
         for part, rows, faults in read_parts(folder.path, table):
             wrong += folder.add(iter(faults))
             if rows is None:
                 continue
-            if name == "frames":  # may be larger than memory: each part by itself
+            if name == "frames":  # may be larger than memory, so check each part separately
                 folder.add(_check_frames(part, rows, latest))
             else:
                 parts.append(rows)
@@ -199,7 +197,7 @@ def _check_tables(folder: _Folder) -> None:
 
 
 def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iterator[Finding]:
-    """Frames of a world follow one another; `latest` is the last step seen so far, by world."""
+    """Checks that the frames of each world are in order; `latest` is the last step so far, by world."""
     for (world,), mine in rows.group_by("world", maintain_order=True):
         steps = mine["step"]
         if not steps.is_sorted() or steps[0] < latest.get(world, 0):
@@ -208,13 +206,13 @@ def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iter
 
 
 def _check_rows(folder: _Folder) -> None:
-    """The rows against one another; where parts are missing, only what each row says by itself."""
+    """Compares rows with one another; if parts are missing, checks only each row by itself."""
     manifest = folder.manifest
     if manifest is None or not folder.tables:
         return
     ended = manifest.status in ("finished", "interrupted")
     agents = folder.tables["agents"]
-    if manifest.status == "running":  # who died since the living were last written stands in both
+    if manifest.status == "running":  # agents that died after the living were last written are in both files
         agents = agents.unique(["world", "agent_id"], keep="first", maintain_order=True)
     complete = ended and folder.whole
     broken = folder.add(check_agents(agents, manifest, complete=complete))
@@ -223,7 +221,7 @@ def _check_rows(folder: _Folder) -> None:
 
 
 def _check_end(folder: _Folder) -> None:
-    """What the manifest says of the end: digests of the records and of the worlds."""
+    """Compares the digests in the manifest, of the records and of the worlds, with the files."""
     manifest = folder.manifest
     try:
         load_snapshot(folder.path)
@@ -232,15 +230,17 @@ def _check_end(folder: _Folder) -> None:
     if manifest is None:
         return
     if manifest.status in ("finished", "interrupted") and not manifest.records_digest:
-        folder.findings.append(Finding(MANIFEST, "lacks the digest of the records, which every ended run has"))
+        folder.findings.append(Finding(MANIFEST, "has no digest of the records, which every ended run must have"))
     if manifest.records_digest and folder.whole:
         found = records_digest(folder.path, manifest.food_kinds, manifest.neutral_count)
         if found != manifest.records_digest:
-            folder.findings.append(Finding("records", "their digest is not the one in the manifest: rows were changed"))
+            folder.findings.append(
+                Finding("records", "rows were changed: their digest differs from the one in the manifest")
+            )
     if manifest.world_digests and folder.checkpoints:
         head = folder.checkpoints[-1].head
         if head.step == max(manifest.steps_done) and head.digests != manifest.world_digests:
-            what = "the digests of the worlds are not those of the checkpoint of the last step"
+            what = "the digests of the worlds differ from those in the checkpoint of the last step"
             folder.findings.append(Finding(MANIFEST, what))
 
 
@@ -252,13 +252,13 @@ def _usable(folder: _Folder) -> Iterator[str]:
         parts = len(list((folder.path / table).glob("*.parquet")))
         bad = sum(name.startswith(f"{table}/") for name in names)
         if parts:
-            yield f"{table}: {max(parts - bad, 0)} of {parts} files are whole"
+            yield f"{table}: {max(parts - bad, 0)} of {parts} files are undamaged"
     for checkpoint in reversed(folder.checkpoints):
         step, parts = checkpoint.head.step, checkpoint.head.parts
         if folder.manifest is None or CONFIG in names:
-            yield f"checkpoint of step {step:,}: whole, and usable once the manifest and config are put back"
+            yield f"checkpoint of step {step:,}: undamaged, and usable after the manifest and config are restored"
         elif not any(check_digests(folder.path, parts)):
-            yield f"checkpoint of step {step:,}: `hedon resume` can go on from it, and makes what came later again"
+            yield f"checkpoint of step {step:,}: `hedon resume` can continue from it, and computes later steps again"
             break
         else:
-            yield f"checkpoint of step {step:,}: `hedon branch --at {step}` can go on from it in a new folder"
+            yield f"checkpoint of step {step:,}: `hedon branch --at {step}` can continue from it in a new folder"

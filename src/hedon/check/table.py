@@ -1,4 +1,4 @@
-"""The parts of the tables: all there, readable, of the right columns, and as they were written."""
+"""Checks the parts of the tables: all there, readable, with the right columns, and not changed."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,15 +12,17 @@ from hedon.record.folder import LIVING, part_path, part_paths
 
 
 def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
-    """Compares the parts on disk with the SHA-256 that a checkpoint took of them."""
+    """Compares the parts on disk with their SHA-256 in a checkpoint."""
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
             path = part_path(folder, table, index)
             name = str(path.relative_to(folder))
             if not path.is_file():
-                yield Finding(name, "is missing; a checkpoint names it")
+                yield Finding(name, "is missing, but a checkpoint lists it")
             elif hashlib.sha256(path.read_bytes()).hexdigest() != digest:
-                yield Finding(name, "is not as it was written: its SHA-256 differs from the one in the checkpoint")
+                yield Finding(
+                    name, "was changed after it was written: its SHA-256 differs from the one in the checkpoint"
+                )
 
 
 def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
@@ -29,11 +31,11 @@ def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
     expected = [part_path(folder, table, index) for index in range(len(paths))]
     if paths != expected:
         missing = next(path for path in expected if path not in paths)
-        yield Finding(str(missing.relative_to(folder)), "is missing, and later parts are there")
+        yield Finding(str(missing.relative_to(folder)), "is missing, though later parts are there")
 
 
 def read_parts(folder: Path, table: Table) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
-    """Each part of a table, then the file of the living: its name, its rows unless damaged, what is wrong with it."""
+    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong."""
     paths = part_paths(folder, table.name)
     if table.name == "agents" and (folder / LIVING).exists():
         paths.append(folder / LIVING)
@@ -57,17 +59,21 @@ def _check_columns(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Find
     missing = [column for column in schema if column not in rows.columns]
     unknown = [column for column in rows.columns if column not in schema]
     other = [column for column in schema if column in rows.columns and rows.schema[column] != schema[column]]
-    for columns, what in ((missing, "lacks the columns"), (unknown, "has unknown columns"), (other, "has other types")):
+    for columns, what in (
+        (missing, "these columns are missing"),
+        (unknown, "has unknown columns"),
+        (other, "these columns have a wrong type"),
+    ):
         if columns:
             yield Finding(name, f"{what}: {', '.join(columns)}")
 
 
 def _check_numbers(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Finding]:
-    """Values that are missing where none may be, or that are no numbers."""
+    """Values that are missing but must not be, or that are not finite."""
     for column in table.columns:
         values = rows[column.name]
         wrong = 0 if column.nullable else values.null_count()
         if column.dtype in ("f32", "f64"):
             wrong += int((~values.is_finite()).sum())
         if wrong:
-            yield Finding(name, f"holds {wrong:,} values of {column.name} that are no numbers")
+            yield Finding(name, f"{wrong:,} values of {column.name} are missing or not finite")

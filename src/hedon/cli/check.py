@@ -1,4 +1,4 @@
-"""`hedon check`: whether runs hold what they say."""
+"""`hedon check`: checks whether the files of runs are complete and agree."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,12 +12,12 @@ def check(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of runs, finished or not; only read.")],
     replay: Annotated[
         bool,
-        typer.Option("--replay", help="Also compute the run again, from the oldest checkpoint that it keeps."),
+        typer.Option("--replay", help="Also compute the run again, from its oldest checkpoint, and compare."),
     ] = False,
 ) -> None:
-    """Check runs: that every file is there, whole, and agrees with all others.
+    """Check that every file of a run is there, is not damaged, and agrees with the others.
 
-    Says what is wrong and what can still be used. Exit code 0 where all is well, 1 where something is wrong, 2 where a
+    Prints what is wrong and what can still be used. Exit code 0 if nothing is wrong, 1 if something is wrong, 2 if a
     folder holds no run.
 
     \b
@@ -43,8 +43,10 @@ def check(
             findings += found
             notes.append(note)
         elif replay:
-            notes.append("not computed again, since something is wrong already")
-        typer.echo(f"{run}: " + (f"{len(findings)} wrong" if findings else "all well"))
+            notes.append("not computed again, because of the problems")
+        typer.echo(
+            f"{run}: " + (f"{len(findings)} problem{'s' if len(findings) > 1 else ''}" if findings else "no problems")
+        )
         for finding in findings:
             typer.echo(f"  wrong: {finding.where}: {finding.what}")
         for note in notes:

@@ -78,19 +78,19 @@ def population(folder: Path) -> Path:
 
 
 FILES = {
-    "a flipped byte in a part": Damage(lambda f: flip(agents(f)), r"agents/part-000000.parquet: is not as it was"),
+    "a flipped byte in a part": Damage(lambda f: flip(agents(f)), r"agents/part-000000.parquet: was changed after"),
     "a part cut short": Damage(lambda f: agents(f).write_bytes(agents(f).read_bytes()[:500]), "000000.*cannot be read"),
     "an empty part": Damage(lambda f: population(f).write_bytes(b""), r"population/part-\d+.parquet: cannot be read"),
     "a lost part": Damage(lambda f: agents(f).unlink(), "agents/part-000000.parquet: is missing"),
     "the last part lost": Damage(lambda f: part_paths(f, "frames")[-1].unlink(), "records|frames/part-.*missing"),
-    "the last intervals lost": Damage(lambda f: part_paths(f, "population")[-1].unlink(), "ends at step 448, and"),
+    "the last intervals lost": Damage(lambda f: part_paths(f, "population")[-1].unlink(), "ends at step 448, but"),
     "the living lost": Damage(lambda f: (f / LIVING).unlink(), "agents/living.parquet: is missing"),
     "a lost column": Damage(
-        lambda f: edit_parquet(agents(f), lambda rows: rows.drop("children")), "lacks the columns: children"
+        lambda f: edit_parquet(agents(f), lambda rows: rows.drop("children")), "these columns are missing: children"
     ),
     "a column of another type": Damage(
         lambda f: edit_parquet(agents(f), lambda rows: rows.with_columns(pl.col("energy").cast(pl.Float64))),
-        "has other types: energy",
+        "these columns have a wrong type: energy",
     ),
     "an unknown column": Damage(
         lambda f: edit_parquet(agents(f), lambda rows: rows.with_columns(x=1)), "has unknown columns: x"
@@ -110,24 +110,27 @@ FILES = {
         lambda f: edit_json(f / "manifest.json", steps_done=[500, 500, 500]), "steps_done has 3 entries"
     ),
     "steps that were not made": Damage(
-        lambda f: edit_json(f / "manifest.json", steps_done=[500, 450]), "ends at step 500, and the manifest says"
+        lambda f: edit_json(f / "manifest.json", steps_done=[500, 450]), "ends at step 500, but the manifest has"
     ),
     "more steps than asked for": Damage(
-        lambda f: edit_json(f / "manifest.json", steps_asked=300), "steps_done is 500, and 300 were asked for"
+        lambda f: edit_json(f / "manifest.json", steps_asked=300),
+        "steps_done is 500, but must be from 0 to steps_asked = 300",
     ),
     "another config digest": Damage(
         lambda f: edit_json(f / "manifest.json", config_digest="0" * 64), "config.toml: was changed"
     ),
     "another digest of records": Damage(
-        lambda f: edit_json(f / "manifest.json", records_digest="0" * 64), "records: their digest is not"
+        lambda f: edit_json(f / "manifest.json", records_digest="0" * 64), "records: rows were changed"
     ),
     "no digest of records": Damage(
-        lambda f: edit_json(f / "manifest.json", records_digest=None), "manifest.json: lacks the digest"
+        lambda f: edit_json(f / "manifest.json", records_digest=None), "manifest.json: has no digest"
     ),
     "another digest of a world": Damage(
         lambda f: edit_json(f / "manifest.json", world_digests=["0" * 16, "1" * 16]), "digests of the worlds"
     ),
-    "other seeds": Damage(lambda f: edit_json(f / "manifest.json", seeds=[1, 3]), "is of other seeds|another seed"),
+    "other seeds": Damage(
+        lambda f: edit_json(f / "manifest.json", seeds=[1, 3]), "its seeds are not those|the seed is not the one"
+    ),
     "a damaged checkpoint": Damage(lambda f: flip(checkpoint_paths(f)[-1]), r"checkpoints/step-0+500.npz: cannot be"),
     "a checkpoint of another run": Damage(
         lambda f: shutil.move(checkpoint_paths(f)[0], f / "checkpoints/step-0000000123.npz"), "0000000123.npz: cannot"
@@ -159,55 +162,64 @@ def change_child(**values: pl.Expr) -> Callable[[pl.DataFrame], pl.DataFrame]:
 
 
 AGENTS = {
-    "a removed row": (lambda rows: rows.tail(-1), "lacks 1 agents"),
-    "a row twice": (lambda rows: pl.concat([rows, rows.head(1)]), "more than one row of the same id"),
+    "a removed row": (lambda rows: rows.tail(-1), "1 agents are missing"),
+    "a row twice": (lambda rows: pl.concat([rows, rows.head(1)]), "more than one row has this id"),
     "an id twice": (
         lambda rows: change_first(agent_id=pl.lit(rows["agent_id"][1], pl.Int64))(rows),
-        "more than one row of the same id",
+        "more than one row has this id",
     ),
-    "its own parent": (change_child(parent_id=pl.col("agent_id")), "a cycle.*: (\\d+) → \\1"),
-    "a parent yet to be born": (change_child(parent_id=pl.lit(10**6)), "names itself, or one younger"),
-    "a parent that is not there": (change_child(parent_id=pl.lit(-5)), "has a parent that is not there"),
-    "another parent": (change_child(parent_id=(pl.col("parent_id") + 1) % 2), "another number of children"),
-    "another generation": (change_child(generation=pl.col("generation") + 1), "another generation than"),
-    "a founder with a past": (change_child(parent_id=pl.lit(None)), "no founder, and yet without a parent"),
-    "death before birth": (change_first(death_step=pl.col("birth_step") - 1), "died no later than it was born"),
+    "its own parent": (change_child(parent_id=pl.col("agent_id")), "is its own ancestor: (\\d+) → \\1"),
+    "a parent yet to be born": (change_child(parent_id=pl.lit(10**6)), "its parent is itself or a younger agent"),
+    "a parent that is not there": (change_child(parent_id=pl.lit(-5)), "its parent is missing"),
+    "another parent": (change_child(parent_id=(pl.col("parent_id") + 1) % 2), "its number of children is not"),
+    "another generation": (change_child(generation=pl.col("generation") + 1), "its generation is not one more"),
+    "a founder with a past": (change_child(parent_id=pl.lit(None)), "has no parent but is not a founder"),
+    "death before birth": (
+        change_first(death_step=pl.col("birth_step") - 1),
+        "died before its birth or in the same step",
+    ),
     "a life after the end": (change_first(death_step=pl.lit(10_000)), "born or died after the last step"),
     "another time of death": (
         change_first(death_step=pl.col("death_step") + 1),
-        "than the agents show|after its parent",
+        "does not agree with the table agents|after its parent",
     ),
-    "a birth before the parent's": (change_child(birth_step=pl.lit(0)), "born no later than its parent"),
-    "a child too many": (change_first(children=pl.col("children") + 1), "another number of children"),
-    "energy below zero": (change_first(energy=pl.lit(-1.0)), "holds less energy than none"),
-    "not a number": (change_first(distance=pl.lit(float("nan"))), "1 values of distance that are no numbers"),
-    "a value lost": (change_first(distance=pl.lit(None)), "1 values of distance that are no numbers"),
-    "a world too many": (change_first(world=pl.lit(7)), "of a world that the run does not have"),
-    "another seed": (change_first(seed=pl.lit(7)), "another seed than the world has"),
+    "a birth before the parent's": (
+        change_child(birth_step=pl.lit(0)),
+        "was born before its parent or in the same step",
+    ),
+    "a child too many": (change_first(children=pl.col("children") + 1), "its number of children is not"),
+    "energy below zero": (change_first(energy=pl.lit(-1.0)), "has negative energy"),
+    "not a number": (change_first(distance=pl.lit(float("nan"))), "1 values of distance are missing or not finite"),
+    "a value lost": (change_first(distance=pl.lit(None)), "1 values of distance are missing or not finite"),
+    "a world too many": (change_first(world=pl.lit(7)), "the run has no such world"),
+    "another seed": (change_first(seed=pl.lit(7)), "the seed is not the one in the manifest"),
     "a meal too many": (change_first(eaten_normal=pl.col("eaten_normal") + 1), "the agents ate"),
-    "another weight": (change_first(w_normal=pl.col("w_normal") + 1), "records: their digest"),
+    "another weight": (change_first(w_normal=pl.col("w_normal") + 1), "records: rows were changed"),
 }
 
 POPULATION = {
     "a removed row": (lambda rows: rows.tail(-2), "a gap before the interval"),
-    "a row twice": (lambda rows: pl.concat([rows, rows.tail(1)]), "a row that comes twice"),
-    "rows out of order": (lambda rows: rows.reverse(), "a row that comes twice, or out of order"),
+    "a row twice": (lambda rows: pl.concat([rows, rows.tail(1)]), "the row is repeated"),
+    "rows out of order": (lambda rows: rows.reverse(), "the row is repeated or out of order"),
     "another step": (change_first(step=pl.col("step") + 1), "a gap before the interval"),
-    "an empty interval": (change_first(steps=pl.lit(0)), "an interval without length"),
-    "a birth too many": (change_first(births=pl.col("births") + 1), "than births and deaths leave"),
+    "an empty interval": (change_first(steps=pl.lit(0)), "the interval has no length"),
+    "a birth too many": (change_first(births=pl.col("births") + 1), "alive does not agree with births and deaths"),
     "births and deaths alike": (
         change_first(births=pl.col("births") + 1, deaths=pl.col("deaths") + 1),
-        "another number of births than the agents show",
+        "births does not agree with the table agents",
     ),
-    "one alive too many": (change_first(alive=pl.col("alive") + 1), "another number of alive than the agents show"),
-    "steps of agents": (change_first(agent_steps=pl.col("agent_steps") + 1), "another number of agent_steps"),
+    "one alive too many": (change_first(alive=pl.col("alive") + 1), "alive does not agree with the table agents"),
+    "steps of agents": (
+        change_first(agent_steps=pl.col("agent_steps") + 1),
+        "agent_steps does not agree with the table agents",
+    ),
     "energy from nowhere": (
         change_first(energy_eaten=pl.col("energy_eaten") + 1e-3),
-        "ledger of energy does not close",
+        "energy ledger does not close",
     ),
-    "energy lost": (change_first(energy_total=pl.col("energy_total") - 1e-3), "ledger of energy does not close"),
+    "energy lost": (change_first(energy_total=pl.col("energy_total") - 1e-3), "energy ledger does not close"),
     "a meal too many": (change_first(eaten_normal=pl.col("eaten_normal") + 1), "the agents ate"),
-    "a count below zero": (change_first(deaths=pl.lit(-1)), "fewer than none"),
+    "a count below zero": (change_first(deaths=pl.lit(-1)), "alive, births or deaths is negative"),
 }
 
 CASES = [("agents", name, *case) for name, case in AGENTS.items()]
@@ -222,7 +234,9 @@ def test_damage_to_rows_is_named_also_without_checkpoints(
 ) -> None:
     path = agents(run) if table == "agents" else population(run)
     edit_parquet(path, change)
-    assert re.search(f"{path.parent.name}/{path.name}: is not as it was written|records: their digest", findings(run))
+    assert re.search(
+        f"{path.parent.name}/{path.name}: was changed after it was written|records: rows were changed", findings(run)
+    )
     shutil.rmtree(run / "checkpoints")
     assert re.search(said, findings(run)), findings(run)
 
@@ -236,15 +250,15 @@ def test_a_cycle_of_several_is_told(run: Path) -> None:
 
     for path in [*part_paths(run, "agents"), run / LIVING]:
         edit_parquet(path, close)
-    assert re.search(r"a cycle, in which an agent is its own ancestor: (\d+) → (\d+ → )+\1", findings(run))
+    assert re.search(r"an agent is its own ancestor: (\d+) → (\d+ → )+\1", findings(run))
 
 
 def test_what_is_usable_is_told(run: Path) -> None:
     flip(part_paths(run, "agents")[-1], at=4)
     usable = "\n".join(check_run(run).usable)
-    assert re.search(r"^agents: (\d+) of (?!\1)\d+ files are whole", usable)
-    assert re.search(r"population: (\d+) of \1 files are whole", usable)
-    assert "checkpoint of step 200: `hedon branch --at 200`" in usable or "`hedon resume` can go on" in usable
+    assert re.search(r"^agents: (\d+) of (?!\1)\d+ files are undamaged", usable)
+    assert re.search(r"population: (\d+) of \1 files are undamaged", usable)
+    assert "checkpoint of step 200: `hedon branch --at 200`" in usable or "`hedon resume` can continue" in usable
     assert check_run(run).notes == ()
 
 
@@ -258,7 +272,7 @@ def test_a_branch_and_a_killed_run_pass(run: Path, tmp_path: Path) -> None:
         path.unlink()
     verdict = check_run(run)
     assert verdict.findings == ()
-    assert any("goes on, or was killed" in note for note in verdict.notes)
+    assert any("is still running, or was killed" in note for note in verdict.notes)
 
 
 def test_a_replay_finds_what_was_not_computed(run: Path) -> None:
@@ -283,9 +297,9 @@ def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
 def test_exit_codes_of_the_command(whole: Path, run: Path, tmp_path: Path) -> None:
     flip(agents(run))
     answer = CliRunner().invoke(app, ["check", str(whole)])
-    assert (answer.exit_code, "all well" in answer.output) == (0, True)
+    assert (answer.exit_code, "no problems" in answer.output) == (0, True)
     answer = CliRunner().invoke(app, ["check", str(whole), str(run)])
-    assert (answer.exit_code, "is not as it was written" in answer.output) == (1, True)
+    assert (answer.exit_code, "was changed after it was written" in answer.output) == (1, True)
     answer = CliRunner().invoke(app, ["check", str(tmp_path), str(run)])
     assert (answer.exit_code, "is not a run folder" in answer.output) == (2, True)
     assert CliRunner().invoke(app, ["check", "--replay", str(whole)]).exit_code == 0
