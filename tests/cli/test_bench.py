@@ -81,7 +81,7 @@ def test_an_unknown_part_names_the_nearest_and_what_there_is():
     answer = call("word")
     assert answer.returncode == 2
     assert answer.stderr == (
-        "hedon: 'word' is not a part (there is rays, forward, update, physics, world, records, startup, growth); "
+        "hedon: 'word' is not a part (there are rays, forward, update, physics, world, records, startup, growth); "
         "did you mean world?\n"
     )
 
@@ -100,10 +100,7 @@ def test_a_failed_check_ends_in_exit_code_1_and_names_the_part(monkeypatch):
     monkeypatch.setitem(bench.PARTS, "rays", bench.Part("", measure, bench.PARTS["rays"].table))
     answer = CliRunner().invoke(app, ["bench", "--quick", "rays"])
     assert answer.exit_code == 1
-    assert (
-        "rays is not reported, because a check of it failed: the world of seed 1 at step 3 has died out"
-        in answer.output
-    )
+    assert "rays is not reported, because its check failed: the world of seed 1 at step 3 has died out" in answer.output
 
 
 def test_the_help_names_every_part():

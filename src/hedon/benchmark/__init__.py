@@ -1,4 +1,4 @@
-"""How fast hedon is: parts by themselves and whole worlds, beside what the machine could do in the same minute.
+"""How fast hedon is: single parts and whole worlds, compared with what the machine can do at that moment.
 
-`hedon bench` is its face. Every number is checked for sense before it is printed, and kept raw in a JSON file.
+The command is `hedon bench`. Every measurement is checked before it is printed; a JSON file gets the raw numbers.
 """

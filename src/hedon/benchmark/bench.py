@@ -1,4 +1,4 @@
-"""All parts: measures those that are asked for, between two calibrations."""
+"""Measures the chosen parts, between two calibrations."""
 
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -13,16 +13,16 @@ from hedon.benchmark.plan import Plan, PlanError
 from hedon.config.problem import nearest
 
 FORMAT_VERSION = 1
-"""Of the JSON files; raised when a reader of old ones would misread new ones."""
+"""Version of the JSON files; increased when a reader of old files would misread new ones."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Something that can be measured by itself.
+    """A part of the benchmark that can be measured separately.
 
     Attributes:
-        about: What it is, in a few words.
-        measure: Gives its rows of raw numbers, after it has checked what they are numbers of.
+        about: What it measures, in a few words.
+        measure: Returns its rows of raw numbers, after it has checked them.
         table: Makes a table of them.
     """
 
@@ -42,11 +42,11 @@ PARTS = {
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
 }
 DEFAULT_PARTS = tuple(name for name in PARTS if name != "growth")
-"""Growth takes minutes and gigabytes, so it has to be asked for."""
+"""Growth takes minutes and gigabytes, so it runs only if asked for."""
 
 
 def choose(names: Sequence[str]) -> tuple[str, ...]:
-    """The parts of these names, or the default ones where there is none.
+    """The parts with these names, or the default parts if there are no names.
 
     Raises:
         PlanError: There is no such part.
@@ -55,12 +55,12 @@ def choose(names: Sequence[str]) -> tuple[str, ...]:
         if name not in PARTS:
             near = nearest(name, PARTS)
             hint = f"; did you mean {near}?" if near else ""
-            raise PlanError(f"{name!r} is not a part (there is {', '.join(PARTS)}){hint}")
+            raise PlanError(f"{name!r} is not a part (there are {', '.join(PARTS)}){hint}")
     return tuple(dict.fromkeys(names)) or DEFAULT_PARTS
 
 
 def need_writable(path: Path) -> None:
-    """Finds out whether a file can be written before minutes are spent on what goes into it; keeps what it holds.
+    """Checks that a file can be written, before a measurement of minutes; does not change its content.
 
     Raises:
         PlanError: It cannot.
@@ -77,7 +77,7 @@ class Bench:
     Attributes:
         machine: What it runs on.
         before: Rates of the machine at the beginning.
-        after: The same at the end; those at the beginning until then.
+        after: The same at the end; until then, those at the beginning.
         rows: Raw numbers of each part that has been measured.
     """
 
@@ -88,10 +88,10 @@ class Bench:
         self.rows: dict[str, list[Row]] = {}
 
     def run(self, parts: Sequence[str]) -> Iterator[Table]:
-        """Measures one part after the other and gives the table of each as soon as it is there.
+        """Measures one part after another and yields the table of each as soon as it is ready.
 
         Raises:
-            CheckError: What was measured did not do what it should.
+            CheckError: A measured part gave a wrong result.
             PlanError: The preset does not fit a part.
         """
         for name in parts:

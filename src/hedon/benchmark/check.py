@@ -1,4 +1,4 @@
-"""Whether what was measured did what it should; a time of something else is not printed."""
+"""Checks that what was measured gave a correct result; otherwise its time is not printed."""
 
 from collections.abc import Iterable
 
@@ -9,34 +9,34 @@ from hedon.experiment.simulation import Simulation, World
 
 
 class CheckError(Exception):
-    """A measurement whose end state is wrong: a fault of hedon or of the machine, not of the user."""
+    """A measurement with a wrong result: a fault of hedon or of the machine, not of the user."""
 
 
 def require(holds: bool, what: str) -> None:
-    """Raises where a condition does not hold.
+    """Raises an error if a condition is false.
 
     Args:
         holds: The condition.
-        what: What is wrong where it does not, as a sentence without a point.
+        what: What is wrong if it is false, as a sentence without a period.
 
     Raises:
-        CheckError: It does not hold.
+        CheckError: The condition is false.
     """
     if not holds:
         raise CheckError(what)
 
 
 def require_finite(what: str, *arrays: ArrayLike) -> None:
-    """Raises where a number is infinite or none.
+    """Raises an error if a number is infinite or NaN.
 
     Raises:
-        CheckError: as said.
+        CheckError: A number is not finite.
     """
     require(all(np.isfinite(array).all() for array in arrays), f"{what}: not all numbers are finite")
 
 
 def check_world(world: World) -> None:
-    """Raises where a world is not what it should be: peopled, within its walls, of finite numbers.
+    """Raises an error unless agents are alive in a world, are inside its walls, and all numbers are finite.
 
     Raises:
         CheckError: It names the seed and what is wrong.
@@ -46,13 +46,13 @@ def check_world(world: World) -> None:
     agents, living, arena = world.agents(), world.living, world.config.arena
     require_finite(f"{name}, bodies", agents["x"], agents["y"], agents["angle"], agents["energy"])
     inside = (agents["x"] > 0) & (agents["x"] < arena.width) & (agents["y"] > 0) & (agents["y"] < arena.height)
-    require(bool(inside.all()), f"{name} has {np.sum(~inside)} agents outside of its walls")
+    require(bool(inside.all()), f"{name} has {np.sum(~inside)} agents outside its walls")
     for array in ("params", "first_moment", "second_moment"):
         require_finite(f"{name}, {array}", world.view(array)[living])
 
 
 def check_same_lives(simulations: Iterable[Simulation]) -> None:
-    """Raises where worlds of one seed and instruction set differ, whatever threads and company they had.
+    """Raises an error if worlds with the same seed and instruction set differ; threads must not change them.
 
     Raises:
         CheckError: It names the seed, the instruction set and the numbers of threads.

@@ -1,4 +1,4 @@
-"""How the time of a step grows with the world: the same density of everything in arenas of up to 500 times the size."""
+"""How the time of a step grows with the world: arenas up to 500 times as large, with the same densities."""
 
 from dataclasses import replace
 
@@ -22,32 +22,32 @@ QUICK_TILES = ((1, 1), (2, 1))
 PIECES = 5
 """Timed pieces."""
 TRIALS = 4
-"""Single steps before them, in which the engine tries how fast a team is and how fast one of it alone, in turn."""
+"""Single steps before them, in which the engine compares, in turn, the speed of the team and of one member alone."""
 MAX_PIECE_STEPS = 200
 ROLLOUT_ROWS = 2_400_000
-"""Slots times steps: 500 MB of rollouts at every size, and half a million agent-steps in each piece."""
+"""Slots times steps: 500 MB of rollouts at every size, and half a million agent-steps per piece."""
 PARTS = ("sense_and_act", "physics", "life")
 
 
 def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
-    """The preset at its own density in an arena `across` times as wide and `up` times as high.
+    """The preset, with the same densities, in an arena `across` times as wide and `up` times as high.
 
-    Founders are one, because the scene brings the agents; a window is a step longer than what is timed, so that none
-    ends.
+    There is one founder, because the scene brings the agents. A window is one step longer than the timed steps, so
+    that no window ends.
 
     Args:
-        plan: It names the preset.
+        plan: The plan with the preset.
         across: Factor of the width.
         up: Factor of the height.
         steps: Steps that will be run.
 
     Raises:
-        PlanError: The preset has walls inside, or food that does not grow everywhere: it has no one density.
+        PlanError: The preset has inner walls, or food that does not grow everywhere: its density is not uniform.
         ConfigError: The scaled numbers are out of range.
     """
     base = plan.config()
     if base.arena.inner_walls or any(food.placement.form != "uniform" for food in base.food.values()):
-        raise PlanError(f"growth: {plan.preset} has inner walls or food around centers, so it has no one density")
+        raise PlanError(f"growth: {plan.preset} has inner walls or food around centers, so its density is not uniform")
     factor = across * up
     overrides = [
         f"arena.width={base.arena.width * across}",
@@ -68,11 +68,11 @@ def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row per size and number of threads, smallest and largest; a size that finds no memory says so.
+    """One row per size and number of threads, smallest and largest; a size without enough memory gets a remark.
 
     Raises:
-        PlanError: The plan asks for a size that there is not, or its preset has no one density.
-        CheckError: A world did not end as it should.
+        PlanError: The plan asks for an unknown size, or the density of its preset is not uniform.
+        CheckError: The state of a world at the end is wrong.
     """
     base = plan.config()
     rows: list[Row] = []
@@ -89,25 +89,30 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
             "bytes_per_slot": bytes_needed(bare, threads[-1]) / slots,
             "bytes_per_slot_with_rollouts": bytes_needed(full, threads[-1]) / slots,
         }
-        # To check how a world ends, one array of all networks at a time is copied.
+        # The check at the end copies one array of all networks at a time.
         wanted = needed + slots * FLOAT_BYTES * _engine.learning.param_count(shape(config))
         if wanted > free:
-            rows.append({**head, "refused": f"needs {wanted / 1e9:.1f} GB of memory, and {free / 1e9:.1f} GB are free"})
+            rows.append(
+                {**head, "refused": f"needs {wanted / 1e9:.1f} GB of memory, but only {free / 1e9:.1f} GB are free"}
+            )
             continue
         measured = [_measure_one(plan, config, (across, up), count, piece) for count in threads]
-        require(len({row["digest"] for row in measured}) == 1, f"growth, {slots} slots: threads change the world")
+        require(
+            len({row["digest"] for row in measured}) == 1,
+            f"growth, {slots} slots: the world depends on the number of threads",
+        )
         rows += [{**head, **row} for row in measured]
     return rows
 
 
 def _sizes(plan: Plan) -> dict[int, tuple[int, int]]:
-    """Tiles by numbers of slots, those that the plan asks for."""
+    """The tiles that the plan asks for, by numbers of slots."""
     capacity = plan.config().population.capacity
     sizes = {capacity * across * up: (across, up) for across, up in (QUICK_TILES if plan.quick else TILES)}
     for slots in plan.slots or ():
         if slots not in sizes:
             known = ", ".join(str(size) for size in sizes)
-            raise PlanError(f"--slots: {slots} is none of the sizes that growth has with {plan.preset}: {known}")
+            raise PlanError(f"--slots: {slots} is not one of the sizes for {plan.preset}: {known}")
     return {slots: tiles for slots, tiles in sizes.items() if plan.slots is None or slots in plan.slots}
 
 
@@ -143,7 +148,7 @@ def _measure_one(plan: Plan, config: Config, tiles: tuple[int, int], threads: in
 
 
 def bytes_needed(config: Config, threads: int) -> int:
-    """What one world reserves [byte]."""
+    """Memory that one world reserves [byte]."""
     given = engine_input(config)
     return sum(_engine.memory_needed(given.settings, len(given.walls), 1, threads).values())
 
@@ -156,7 +161,7 @@ def table(rows: list[Row], _: Calibration) -> Table:
     for row in rows:
         slots = f"{row['slots']:,}"
         if "refused" in row:
-            notes.append(f"{slots} slots: left out, {row['refused']}.")
+            notes.append(f"{slots} slots: skipped, {row['refused']}.")
             continue
         lines.append(
             (
@@ -170,7 +175,7 @@ def table(rows: list[Row], _: Calibration) -> Table:
                 f"{row['bytes_per_slot_with_rollouts']:,.0f}",
             )
         )
-    notes.append("Parts in ns per agent-step, medians of pieces. Bytes are those reserved for each slot.")
+    notes.append("Parts in ns per agent-step, medians of pieces. Bytes are those reserved per slot.")
     return Table("growth: one world without learning, at equal density", headings, lines, tuple(notes))
 
 

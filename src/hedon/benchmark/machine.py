@@ -1,4 +1,4 @@
-"""The machine that measures: what it is, and the rates that it reaches where nothing else is in the way."""
+"""The machine: its description, and the best rates that it reaches."""
 
 import platform
 import threading
@@ -16,19 +16,19 @@ from hedon.benchmark.plan import Plan
 from hedon.record.provenance import collect_provenance
 
 MULTIPLY_ADD_ROUNDS = 4_000_000
-"""Some 5 ms with AVX-512."""
+"""About 5 ms with AVX-512."""
 READ_BYTES = 4 << 20
-"""More than the caches of one core hold, less than the last-level cache."""
+"""Larger than the caches of one core, smaller than the last-level cache."""
 READ_ROUNDS = 40
 COPY_BYTES = 1 << 28
 REPEATS = 7
 DRIFT = 0.2
-"""Change of a rate between the beginning and the end that is worth a warning."""
+"""Relative change of a rate between beginning and end that gives a warning."""
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Rates of the machine, each the best of several.
+    """Rates of the machine, each the best of several measurements.
 
     Attributes:
         multiply_add_gflops: Float32 multiply-adds in registers [1e9 operations/s], all threads together, by
@@ -43,7 +43,7 @@ class Calibration:
     copy_gbytes_per_s: float
 
     def named(self) -> dict[str, float]:
-        """All rates, each under a name that says what it is."""
+        """All rates, each with a name."""
         rates = {
             f"multiply-add, {kernel}, {threads} threads": rate
             for kernel, by_threads in self.multiply_add_gflops.items()
@@ -73,7 +73,7 @@ def calibrate(plan: Plan) -> Calibration:
     counts = sorted({1, *plan.threads})
     add = {kernel: dict.fromkeys(counts, 0.0) for kernel in plan.kernels}
     read, copy = dict.fromkeys(counts, 0.0), 0.0
-    for _ in range(2 if plan.quick else REPEATS):  # in turn, so that a busy moment falls on all of them
+    for _ in range(2 if plan.quick else REPEATS):  # in turn, so that a busy moment of the machine affects all of them
         for n in counts:
             for kernel, best in add.items():
                 rate = _together(n, lambda k=kernel: _engine.kernel.calibrate(k, add_rounds))
@@ -84,7 +84,7 @@ def calibrate(plan: Plan) -> Calibration:
 
 
 def drifts(before: Calibration, after: Calibration) -> list[str]:
-    """One line for each rate that changed by more than a fifth while other things were measured."""
+    """One line for each rate that changed by more than a fifth during the measurements."""
     ends = after.named()
     return [
         f"{name} went from {rate:.0f} to {ends[name]:.0f}"
@@ -94,7 +94,7 @@ def drifts(before: Calibration, after: Calibration) -> list[str]:
 
 
 def memory_bytes(field: str) -> int:
-    """A line of Linux's /proc/meminfo [byte]: MemTotal, or MemAvailable for what can still be had."""
+    """A line of Linux's /proc/meminfo [byte]: MemTotal, or MemAvailable for memory that is still available."""
     lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith(f"{field}:")) * 1024
 

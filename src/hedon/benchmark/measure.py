@@ -1,4 +1,4 @@
-"""Times: repeats, quartiles and how they are written."""
+"""Measures times: repeats, quartiles and their format."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -13,13 +13,13 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """What a part prints.
+    """The printed table of a part.
 
     Attributes:
         title: What was measured.
         headings: One per column, with the unit.
         lines: Texts, one per column.
-        notes: Sentences below.
+        notes: Sentences below the table.
     """
 
     title: str
@@ -36,7 +36,7 @@ def seconds_of(body: Callable[[], object]) -> float:
 
 
 def interleave(bodies: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, list[float]]:
-    """Times of several calls, taken in turn so that a busy minute of the machine falls on all of them [s]."""
+    """Times of several calls, measured in turn so that a busy minute of the machine affects all of them [s]."""
     times: dict[str, list[float]] = {name: [] for name in bodies}
     for _ in range(repeats):
         for name, body in bodies.items():

@@ -13,7 +13,7 @@ from hedon.config.config import Config
 from hedon.config.native import engine_config
 
 FORWARD_ROWS = 10_240
-"""Observations in one timed call, so that what the call costs beside does not count."""
+"""Observations in one timed call, so many that the cost of the call itself does not matter."""
 
 
 def shape(config: Config) -> tuple[int, int, int, int]:
@@ -24,7 +24,7 @@ def shape(config: Config) -> tuple[int, int, int, int]:
 
 
 def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
-    """One row per instruction set: the oldest agent's network over its own observations, from the caches of a core."""
+    """One row per instruction set: the oldest agent's network on its own observations, in the caches of a core."""
     config, world = plan.config(), peopled(plan)
     slot = world.living[0]
     params = world.view("params")[slot]

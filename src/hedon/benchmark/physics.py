@@ -1,4 +1,4 @@
-"""Rigid bodies alone: one physics step of a peopled arena, on one and more threads."""
+"""Rigid bodies alone: one physics step of a populated arena, on one and more threads."""
 
 import math
 from typing import Any
@@ -17,14 +17,14 @@ from hedon.config.config import Config
 from hedon.config.native import engine_config
 
 PIECE_STEPS = 20
-"""Motor forces change after so many steps."""
+"""Steps after which motor forces change."""
 PIECES = 100
 FIELDS = ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity")
 KINDS = ("body", "circle", "wall")
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row per number of threads: the bodies and foods of a peopled world under random motor forces."""
+    """One row per number of threads: the bodies and foods of a populated world under random motor forces."""
     config = plan.config()
     scenes = {threads: make_scene(plan) for threads in plan.threads}
     pieces = 3 if plan.quick else PIECES
@@ -52,7 +52,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 
 
 def make_scene(plan: Plan) -> Any:
-    """The bodies and foods of the peopled world, at rest."""
+    """The bodies and foods of the populated world, at rest."""
     config, start = plan.config(), scene_of(peopled(plan))
     arena, body = config.arena, config.body
     scene = _engine.physics.Scene(
@@ -87,8 +87,8 @@ def _check(config: Config, threads: int, state: NDArray, first: NDArray) -> None
     require_finite(f"physics, {threads} threads", state)
     x, y = state[:2]
     inside = (x > 0) & (x < config.arena.width) & (y > 0) & (y < config.arena.height)
-    require(bool(inside.all()), f"physics, {threads} threads: {np.sum(~inside)} bodies are outside of the walls")
-    require(np.array_equal(state, first), f"physics: {threads} threads end in another state than one")
+    require(bool(inside.all()), f"physics, {threads} threads: {np.sum(~inside)} bodies are outside the walls")
+    require(np.array_equal(state, first), f"physics: the state at the end differs between {threads} threads and one")
 
 
 def table(rows: list[Row], _: Calibration) -> Table:

@@ -1,4 +1,4 @@
-"""What is to be measured: read once from the arguments, then handed to every part."""
+"""The plan of a benchmark: made from the arguments, and used by every part."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ from hedon.error import HedonError
 from hedon.record.provenance import usable_cpus
 
 QUICK = ("learning.rollout_steps=64", "learning.minibatch_size=16", "learning.update_epochs=2")
-"""Windows of a moment, to see that every part works."""
+"""Very short windows, to see that every part works."""
 MAX_COUNT = 1024
 """Most threads or worlds of one measurement."""
 MAX_SLOTS = 100_000
-"""Of a world, as the config has it."""
+"""Most slots of a world, as the config allows."""
 
 
 class PlanError(HedonError):
@@ -28,12 +28,12 @@ class Plan:
     Attributes:
         preset: A preset or a config file.
         threads: Numbers of threads, ascending.
-        worlds: Numbers of worlds for each number of threads; None for one world on each, and one world per thread on
-            the largest.
-        slots: Sizes of worlds for `growth`, ascending; None for all that it has.
+        worlds: Numbers of worlds for each number of threads; None for one world with each number of threads, and one
+            world per thread with the largest.
+        slots: Sizes of worlds for `growth`, ascending; None for all sizes.
         kernels: Instruction sets, best first.
         windows: Timed windows of whole worlds.
-        quick: Whether sizes are tiny: the numbers then say nothing but that the part works.
+        quick: Whether sizes are tiny: this shows only that the part works; the numbers have no meaning.
     """
 
     preset: str
@@ -45,12 +45,12 @@ class Plan:
     quick: bool = False
 
     def config(self, *overrides: str) -> Config:
-        """The preset with overrides `path=value`, and with short windows where the plan is quick."""
+        """The preset with overrides `path=value`, and with short windows if the plan is quick."""
         return load_config(self.preset, overrides=(*(QUICK if self.quick else ()), *overrides))
 
     @property
     def repeats(self) -> int:
-        """Timed calls of a kernel by itself."""
+        """Number of timed calls of a single kernel."""
         return 2 if self.quick else 15
 
     @property
@@ -76,19 +76,19 @@ def make_plan(
     windows: int = 8,
     quick: bool = False,
 ) -> Plan:
-    """A plan from arguments as they were typed; empty ones stand for what this machine has.
+    """A plan from arguments of the command line; an empty one means the default for this machine.
 
     Args:
         preset: A preset or a config file.
         threads: Numbers such as "1,2"; by default 1, 2, 4 and so on to all processors.
         worlds: Numbers such as "1,4".
-        slots: Sizes of worlds of `growth`, such as "200,2000"; by default all that it has.
-        kernel: An instruction set; by default all of this processor.
+        slots: Sizes of worlds of `growth`, such as "200,2000"; by default all.
+        kernel: An instruction set; by default all that this processor has.
         windows: Timed windows.
         quick: Tiny sizes.
 
     Raises:
-        PlanError: A list is none, a number is out of range, or this processor lacks the instruction set.
+        PlanError: A list is not valid, a number is out of range, or this processor lacks the instruction set.
         ConfigError: There is no such preset or file, or it is wrong.
     """
     load_config(preset)

@@ -1,4 +1,4 @@
-"""What an agent's rays cost: the kernel that casts them, on the circles around real agents."""
+"""The cost of an agent's rays: the kernel that casts them, on the circles around agents of a world."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,13 @@ from hedon.experiment.simulation import World
 
 AGENTS = 8
 CASTS = 500
-"""For each agent, in one timed call."""
+"""Repeats for each agent in one timed call."""
 ALIKE = 0.98
-"""Share of readings that must be as the world has them; a ray that grazes a circle may round to either side."""
+"""Share of readings that must equal the world's own; a ray that touches a circle's edge may round to hit or miss."""
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row per instruction set: the rays of some agents of a world, among what they may see."""
+    """One row per instruction set: the rays of some agents of a world, among all that they can hit."""
     world = peopled(plan)
     chosen = np.linspace(0, world.alive - 1, AGENTS).astype(int)
     views = [_view_of(world, index) for index in chosen]
@@ -48,7 +48,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 
 
 def _view_of(world: World, index: int) -> tuple[NDArray, NDArray, NDArray, int, NDArray, float, float]:
-    """What `cast_rays` takes for one agent: circles that its fan may touch, walls, directions, and reach."""
+    """Arguments of `cast_rays` for one agent: circles that its rays may hit, walls, directions, and ray length."""
     config, agents, foods = world.config, world.agents(), world.foods()
     x, y, heading = (agents[name][index] for name in ("x", "y", "angle"))
     others = np.delete(np.arange(world.alive), index)
@@ -79,7 +79,7 @@ def _view_of(world: World, index: int) -> tuple[NDArray, NDArray, NDArray, int, 
 
 
 def _check(plan: Plan, world: World, chosen: NDArray, results: list[tuple], kernel: str) -> None:
-    """Raises where the rays hit nothing, or something else than the world's own senses say."""
+    """Raises an error if the rays hit nothing, or if their readings differ from the world's own."""
     sensed = world.rays()[chosen]
     cast = np.full_like(sensed, -1)
     for i, (reading, hit) in enumerate(results):
@@ -87,7 +87,7 @@ def _check(plan: Plan, world: World, chosen: NDArray, results: list[tuple], kern
         cast[i, rays, hit[rays]] = reading[rays] - 1
     require(bool((cast > -1).any()), f"rays, {kernel}: no ray of {len(chosen)} agents hits anything")
     alike = np.isclose(cast, sensed, atol=1e-3).mean()
-    require(alike >= ALIKE, f"rays, {kernel}: only {alike:.1%} of the readings are as the world has them")
+    require(alike >= ALIKE, f"rays, {kernel}: only {alike:.1%} of the readings are equal to the world's own")
 
 
 def table(rows: list[Row], _: Calibration) -> Table:

@@ -1,4 +1,4 @@
-"""What records cost: rows per second of the writer, bytes on disk, and their share of a run's time."""
+"""The cost of records: rows per second of the writer, bytes on disk, and their share of a run's time."""
 
 import time
 from collections.abc import Iterator
@@ -28,13 +28,13 @@ RUN_WINDOWS = 20
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row: a stream of many windows' rows through the writer, and a short run as users make it."""
+    """One row: a stream with the rows of many windows through the writer, and a normal short run."""
     with TemporaryDirectory(prefix="hedon-bench-") as folder:
         return [{**_stream(plan, Path(folder) / "stream"), **_run(plan, Path(folder) / "run")}]
 
 
 def _stream(plan: Plan, folder: Path) -> Row:
-    """Writes as many deaths per window as a peopled world has, made up from its living, and its population row."""
+    """Writes as many deaths per window as a populated world has, made from its living, and its population row."""
     config, world = plan.config(), peopled(plan)
     windows = 20 if plan.quick else STREAM_WINDOWS
     deaths = max(1, round(world.counters["deaths"] / (world.step / config.learning.rollout_steps)))
@@ -65,7 +65,7 @@ def _stream(plan: Plan, folder: Path) -> Row:
 
 
 def _made_up(lives: Rows, count: int, rng: np.random.Generator) -> Rows:
-    """Lives drawn from given ones, all numbers changed by up to a tenth, lest they compress better than real ones."""
+    """Random copies of given lives. All numbers are changed by up to a tenth: exact copies would compress too well."""
     drawn = rng.integers(0, len(lives["agent_id"]), count)
 
     def changed(column: np.ndarray) -> np.ndarray:
@@ -75,12 +75,12 @@ def _made_up(lives: Rows, count: int, rng: np.random.Generator) -> Rows:
 
 
 def _run(plan: Plan, folder: Path) -> Row:
-    """A run with its records; whatever its loop does outside of the engine is theirs, checkpoints included."""
+    """A run with its records. All time of its loop outside the engine counts as theirs, including checkpoints."""
     config = plan.config()
     steps = (2 if plan.quick else RUN_WINDOWS) * config.learning.rollout_steps
     with _engine_seconds() as engine:
         manifest = run(RunPlan(config, (1,), steps, folder, plan.threads[-1]))
-    require(manifest.status == "finished", f"records: the run is {manifest.status}")
+    require(manifest.status == "finished", f"records: the status of the run is {manifest.status}")
     return {
         "run_steps": steps,
         "run_threads": plan.threads[-1],
@@ -91,7 +91,7 @@ def _run(plan: Plan, folder: Path) -> Row:
 
 @contextmanager
 def _engine_seconds() -> Iterator[list[float]]:
-    """Notes how long each call of the engine takes, by whomever it is made [s]."""
+    """Measures the time of each call of the engine, from any caller [s]."""
     seconds: list[float] = []
     advance = Simulation.run
 
@@ -117,6 +117,6 @@ def table(rows: list[Row], _: Calibration) -> Table:
     headings = ("rows/s", "MB per 1e6 steps", "loop outside the engine", "writing threads")
     notes = (
         f"Stream: {row['stream_rows']:,} rows of {row['stream_steps']:,} steps. Shares: of the time of a run of"
-        f" {row['run_steps']:,} steps on {row['run_threads']} threads; the writing threads work beside it.",
+        f" {row['run_steps']:,} steps on {row['run_threads']} threads; the writing threads work in parallel.",
     )
     return Table("records: writing a run's tables", headings, [line], notes)

@@ -1,4 +1,4 @@
-"""A world as it is after a while, from which every part takes its agents, foods, networks and rollouts."""
+"""A world after some time; every part takes its agents, foods, networks and rollouts from it."""
 
 from dataclasses import dataclass, fields
 from functools import cache
@@ -11,12 +11,12 @@ from hedon.benchmark.plan import Plan
 from hedon.experiment.simulation import Simulation, World
 
 WARM_UP_WINDOWS = 20
-"""After that the baseline has grown from its 50 founders to some 150 agents."""
+"""After these, the baseline has grown from its 50 founders to about 150 agents."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Agents and foods of a world, without their past.
+    """Agents and foods of a world, without their history.
 
     Attributes:
         x, y: Places of the agents [u].
@@ -35,7 +35,7 @@ class Scene:
     food_kind: NDArray[np.int32]
 
     def put_into(self, simulation: Simulation) -> None:
-        """Empties every world and puts these agents and foods into it; networks are fresh, by the world's seed."""
+        """Empties every world and puts these agents and foods into it, with new networks from the world's seed."""
         for world in simulation.worlds:
             simulation.engine.set_scene(world.index, *(getattr(self, field.name) for field in fields(self)))
 
@@ -67,12 +67,12 @@ def scene_of(world: World) -> Scene:
 
 
 def peopled(plan: Plan) -> World:
-    """The world of the plan's config and seed 1 after the warm-up, at the end of a window; made once."""
+    """The populated world: the plan's config with seed 1 after the warm-up, at the end of a window; computed once."""
     return _source(plan).worlds[0]
 
 
 def go_on_from_peopled(plan: Plan, simulation: Simulation) -> None:
-    """Puts the peopled world, networks and all, in place of every world of a simulation of the plan's config."""
+    """Replaces every world of a simulation of the plan's config by the populated world, including networks."""
     saved = _source(plan).engine.save(0)
     for world in simulation.worlds:
         simulation.engine.restore(world.index, saved)

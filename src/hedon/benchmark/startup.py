@@ -1,4 +1,4 @@
-"""How long a user waits for the first step: a fresh process, from its start on."""
+"""How long a user waits for the first step, from the start of a new process."""
 
 import json
 import subprocess
@@ -27,7 +27,7 @@ simulation.run(1)
 seen.append(time.monotonic())
 print([*seen, simulation.worlds[0].step])
 """
-"""Loads what `hedon run` loads. The clock is one for all processes of a machine."""
+"""Loads what `hedon run` loads. All processes of a machine share the clock."""
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:

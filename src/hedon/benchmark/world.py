@@ -1,4 +1,4 @@
-"""Whole worlds, learning included: steps per second, the time of each part, and how far both are from the floor."""
+"""Whole worlds with learning: steps per second, the time of each part, and the ratio to the floor."""
 
 from dataclasses import asdict
 
@@ -16,9 +16,9 @@ PARTS = ("sense_and_act", "physics", "life", "learning")
 
 
 def measure(plan: Plan, calibration: Calibration) -> list[Row]:
-    """One row per number of threads and worlds, and one for each further instruction set on one world.
+    """One row per number of threads and worlds, and one with one world for each further instruction set.
 
-    All go on from the same peopled world, each by the seed of its own, and are timed in turn, window by window.
+    All continue from the same populated world, each with its own seed, and are timed in turn, window by window.
     """
     config = plan.config()
     cases = [(plan.kernel, *case) for case in plan.cases()]
@@ -74,7 +74,7 @@ def measure(plan: Plan, calibration: Calibration) -> list[Row]:
 
 
 def _counted(simulation: Simulation) -> dict[str, float]:
-    """Seconds of each part and learners so far, means over the worlds."""
+    """Seconds of each part, and learners, so far; means over the worlds."""
     seconds = {part: float(np.mean([world.seconds[part] for world in simulation.worlds])) for part in PARTS}
     return {**seconds, "learners": float(np.mean([world.counters["learners"] for world in simulation.worlds]))}
 
@@ -107,7 +107,7 @@ def table(rows: list[Row], _: Calibration) -> Table:
     notes = (
         "Parts in ms per step of one world, on its own threads; steps/s are steps of all worlds together.",
         f"floor [ms per step]: products of learning and reads of weights for acting, at the machine's rates (first line"
-        f" {learning:.3f} + {forward:.3f}); rays, physics and life have no floor counted.",
+        f" {learning:.3f} + {forward:.3f}); rays, physics and life are counted as 0.",
         "x floor: the time of a step as a multiple of its floor.",
     )
     return Table("world: whole worlds with learning", headings, lines, notes)

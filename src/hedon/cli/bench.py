@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 def bench(
     parts: Annotated[
-        list[str] | None, typer.Argument(metavar="[PART]...", help="What to measure; all but growth by default.")
+        list[str] | None, typer.Argument(metavar="[PART]...", help="What to measure; by default all except growth.")
     ] = None,
     json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Keep all raw numbers in this file.")
+        Path | None, typer.Option("--json", metavar="FILE", help="Write all raw numbers to this file.")
     ] = None,
     preset: Annotated[str, typer.Option(help="The condition: a preset or a config file.")] = "baseline",
     threads: Annotated[
@@ -30,15 +30,15 @@ def bench(
         typer.Option(metavar="N,...", help="Numbers of worlds; by default 1, and one per thread on all processors."),
     ] = "",
     slots: Annotated[
-        str, typer.Option(metavar="N,...", help="Sizes of growth, of 200,2000,20000,100000; by default all.")
+        str, typer.Option(metavar="N,...", help="Sizes for growth, from 200,2000,20000,100000; by default all.")
     ] = "",
     kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
     windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Tiny sizes: shows that all works; the numbers say nothing.")
+        bool, typer.Option("--quick", help="Tiny sizes, to see that everything works; the numbers have no meaning.")
     ] = False,
 ) -> None:
-    """Measure how fast hedon is on this machine, beside what the machine can do.
+    """Measure how fast hedon is on this machine, compared with what the machine can do.
 
     \b
     Parts:
@@ -49,10 +49,11 @@ def bench(
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step
-      growth    one world without learning, up to 500 times as large; minutes, and 21 GB
+      growth    one world without learning, up to 500 times as large; takes minutes and 21 GB
 
-    Repeats are taken in turn, and times are medians with quartiles, since machines are shared: compare
-    figures within one run. Every part checks what it measured; if that is wrong, the exit code is 1.
+    Other programs may use the machine too. So the cases are measured in turn, several times, and times are
+    medians with quartiles: compare only numbers from one run. Every part checks what it measured; if a check
+    fails, the exit code is 1.
 
     \b
     Examples:
@@ -78,10 +79,10 @@ def bench(
             _print_table(console, table, _rates(measured))
     except CheckError as error:
         part = next(name for name in chosen if name not in measured.rows)
-        typer.echo(f"hedon: {part} is not reported, because a check of it failed: {error}", err=True)
+        typer.echo(f"hedon: {part} is not reported, because its check failed: {error}", err=True)
         raise typer.Exit(1) from None
     for line in drifts(measured.before, measured.after):
-        console.print(f"warning: the machine was not the same at the end: {line}", style="yellow")
+        console.print(f"warning: the machine's speed changed during the run: {line}", style="yellow")
     if json_file is not None:
         measured.save(json_file)
         console.print(f"wrote {json_file}", soft_wrap=True)

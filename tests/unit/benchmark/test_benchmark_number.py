@@ -140,7 +140,7 @@ def test_an_agent_outside_of_the_walls_fails_its_check():
         food_kind=np.zeros(0, np.int32),
     )
     out.put_into(simulation)
-    with pytest.raises(CheckError, match="1 agents outside of its walls"):
+    with pytest.raises(CheckError, match="1 agents outside its walls"):
         check_world(simulation.worlds[0])
 
 
@@ -182,7 +182,7 @@ def test_arguments_that_cannot_be_used(arguments, message):
 
 
 def test_a_size_that_growth_does_not_have():
-    with pytest.raises(PlanError, match=r"--slots: 300 is none of the sizes .*: 200, 2000, 20000, 100000"):
+    with pytest.raises(PlanError, match=r"--slots: 300 is not one of the sizes .*: 200, 2000, 20000, 100000"):
         growth.measure(make_plan(slots="300"), NO_RATES)
 
 
