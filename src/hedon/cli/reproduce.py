@@ -21,34 +21,34 @@ LIST = "list"
 
 
 class ReproduceError(HedonError):
-    """Runs that could not be made; what could be made from the others is there."""
+    """Some runs failed; the items that do not need them have been made."""
 
 
 def reproduce(
     items: Annotated[
-        list[str] | None, typer.Argument(metavar="[ITEM]...", help="Items or groups; list ITEM... tells of them only.")
+        list[str] | None, typer.Argument(metavar="[ITEM]...", help="Items or groups; list ITEM... shows only these.")
     ] = None,
     seeds: Annotated[
         str | None,
-        typer.Option(help="One world per seed, as in 1-5; by default the item's own, as for pictures."),
+        typer.Option(help="One world per seed, as in 1-5; by default, and for pictures, the item's own."),
     ] = None,
     steps: Annotated[
         int | None,
-        typer.Option(help="Steps of each world; by default the item's own, as for pictures.", min=1, max=MAX_STEPS),
+        typer.Option(help="Steps of each world; by default, and for pictures, the item's own.", min=1, max=MAX_STEPS),
     ] = None,
     fidelity: Annotated[str, typer.Option(help="corrected, released or text.")] = "corrected",
     threads: Threads = 0,
-    runs: Annotated[Path, typer.Option(help="Folder of the runs: what is there is used, the rest is added.")] = Path(
-        "runs"
-    ),
+    runs: Annotated[
+        Path, typer.Option(help="Folder of the runs: existing runs are used, missing ones are added.")
+    ] = Path("runs"),
     out: Annotated[Path, typer.Option(help="Folder of the page, the figures and the tables.")] = Path("reproduction"),
 ) -> None:
-    """Make the paper's figures and tables, and the studies of what it leaves open.
+    """Make the paper's figures and tables, and our own studies.
 
-    `hedon reproduce list` names the items, with what each needs and how long it takes on this machine. Runs that are
-    there already are used, also longer ones and those of `hedon run`; those too short are gone on with. Worlds that die
-    out count and are never replaced. Ctrl-C ends all runs after their windows, a second one at once; the same command
-    goes on. Without an ITEM it makes all of the paper, at its own scale: see first how long that takes.
+    `hedon reproduce list` shows the items, with what each needs and how long it takes on this machine. Existing runs
+    are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds that die out
+    count and are never replaced. Ctrl-C ends all runs after their current windows, a second one immediately; the same
+    command continues. Without an ITEM it makes all of the paper, at the paper's scale: check first how long that takes.
 
     Groups: paper (all figures and tables of the paper), studies, all.
 
@@ -60,7 +60,7 @@ def reproduce(
       hedon reproduce list paper --seeds 1-2 --steps 1024000
       hedon reproduce faults
     """
-    # Imported here: it takes seconds, for which no other command should wait.
+    # Imported here because this takes seconds: other commands must not wait for it.
     from hedon.analysis.item.request import Request
     from hedon.config import FIDELITIES
     from hedon.config.problem import nearest
@@ -106,7 +106,7 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
         soft_wrap=True,
     )
     for job in jobs:
-        verb = "go on with" if job.begun else "begin"
+        verb = "continue" if job.begun else "begin"
         console.print(f"  {verb} {job.folder}: {count(len(job.seeds), 'world')} to {job.steps:,} steps", soft_wrap=True)
     _require_folders(out, *([runs] if jobs else []))
     with PlanDisplay(console, jobs) as display:
@@ -117,7 +117,7 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
     page, made = write_items(gathered, out)
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
-    console.print(f"wrote {page}, with all figures and tables beside it", soft_wrap=True)
+    console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
     _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
 
 
@@ -127,7 +127,7 @@ def count(number: int, noun: str) -> str:
 
 
 def _require_folders(*folders: Path) -> None:
-    """Makes folders that will be written to, so that what is wrong with them is known before the runs.
+    """Makes the folders that will be written to, so that a problem with them shows before the runs.
 
     Raises:
         ReproduceError: one cannot be made or written.
@@ -142,7 +142,7 @@ def _require_folders(*folders: Path) -> None:
 
 
 def _say_what_is_missing(jobs: "list[Job]", ends: dict[Path, str], console: "Console") -> None:
-    """Says what was not run to its end.
+    """Prints which runs are not finished.
 
     Raises:
         ReproduceError: a run failed.
@@ -151,9 +151,7 @@ def _say_what_is_missing(jobs: "list[Job]", ends: dict[Path, str], console: "Con
     open_jobs = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
     if open_jobs:
         console.print(
-            f"Interrupted: {len(open_jobs)} of {len(jobs)} runs are not at their end. The same command goes on."
+            f"Interrupted: {len(open_jobs)} of {len(jobs)} runs are not finished. The same command continues."
         )
     if failed:
-        raise ReproduceError(
-            f"{len(failed)} of {len(jobs)} runs failed (their reasons stand above): {', '.join(failed)}"
-        )
+        raise ReproduceError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {', '.join(failed)}")

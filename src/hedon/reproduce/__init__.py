@@ -1,1 +1,1 @@
-"""Makes the runs that items of the paper need: what is missing, one process per run, with progress over all."""
+"""Makes the missing runs that items of the paper need: one process per run, with one progress display for all."""

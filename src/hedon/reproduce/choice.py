@@ -1,4 +1,4 @@
-"""Which items are meant by the words of a command line."""
+"""Finds the items that the words of a command line name."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ GROUPS = {
     "studies": tuple(name for name, item in ITEMS.items() if item.kind == "study"),
     "all": tuple(ITEMS),
 }
-"""Names for several items at once."""
+"""Names that stand for several items."""
 DEFAULT_GROUP = "paper"
 
 
@@ -21,10 +21,12 @@ class ChoiceError(HedonError):
 
 
 def choose_items(names: Sequence[str]) -> tuple[Item, ...]:
-    """The items of some names, each of an item or a group, in the order of the catalogue; the paper's for none.
+    """The items with some names, in the order of the catalogue; each name is of an item or a group.
+
+    Without names, the items of the paper.
 
     Raises:
-        ChoiceError: one of them names nothing.
+        ChoiceError: there is no item or group of one of the names.
     """
     wanted: set[str] = set()
     for name in names or (DEFAULT_GROUP,):

@@ -1,4 +1,4 @@
-"""Makes the runs of a plan, as many at a time as fill the processors, and passes on what ends them."""
+"""Makes the runs of a plan, as many at a time as fill the processors, and passes Ctrl-C and SIGTERM on to them."""
 
 import os
 import signal
@@ -17,17 +17,17 @@ from hedon.reproduce.progress import PlanDisplay
 from hedon.reproduce.work import Outcome, work
 
 _LOOK_SECONDS = 0.2
-"""Longest time without a look at the keyboard [s]."""
+"""Longest time between two checks for Ctrl-C [s]."""
 
 
 @dataclass
 class _Worker:
-    """A process at work on a job.
+    """A process that works on a job.
 
     Attributes:
-        job: that it makes.
-        threads: that it was given.
-        process, pid, link: the process, its number, and the end of the pipe that it tells by.
+        job: its job.
+        threads: number of threads that it uses.
+        process, pid, link: the process, its number, and our end of the pipe from it.
         told: how many signals were passed on to it.
         ready: whether its run has begun, so that it counts signals.
     """
@@ -42,22 +42,22 @@ class _Worker:
 
 
 def conduct(jobs: Sequence[Job], threads: int, display: PlanDisplay) -> dict[Path, Outcome]:
-    """Makes the runs, each in a process of its own.
+    """Makes the runs, each in its own process.
 
-    Ctrl-C or SIGTERM ends every run after its window, a second one at once; jobs that have not begun stay undone. A run
-    that fails leaves the others alone.
+    Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
+    not run. A run that fails does not end the others.
 
     Args:
         jobs: in the order in which they begin.
-        threads: to use in all.
-        display: is told of every moment and end.
+        threads: to use in total.
+        display: shows every moment, and how each run ends.
 
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
     """
     waiting, workers = list(jobs), list[_Worker]()
     outcomes: dict[Path, Outcome] = {}
-    # Python starts this helper with the first process, and unblocks signals as it does.
+    # Python starts this helper with the first process, and unblocks signals then.
     resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
@@ -78,12 +78,12 @@ def conduct(jobs: Sequence[Job], threads: int, display: PlanDisplay) -> dict[Pat
 
 
 def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
-    """How many threads the next job begins with: one per world, all that are free for the last; 0 if it has to wait.
+    """How many threads the next job begins with: one per world; the last job gets all free ones; 0 if it must wait.
 
     Args:
         waiting: the jobs that have not begun, in order.
-        taken: threads of the runs that go on.
-        threads: to use in all.
+        taken: threads of the current runs.
+        threads: to use in total.
     """
     if not waiting:
         return 0
@@ -94,15 +94,15 @@ def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> in
 
 
 def _pass_on(worker: _Worker) -> None:
-    """Passes one signal on. The system merges equal signals that wait, so the second is of the other kind."""
+    """Passes one signal on. The system merges equal signals that wait, so the second is a different one."""
     number = SIGNALS[min(worker.told, len(SIGNALS) - 1)]
     worker.told += 1
-    with suppress(ProcessLookupError):  # it has just ended; what it said still waits in the pipe
+    with suppress(ProcessLookupError):  # it has just ended; its last message still waits in the pipe
         os.kill(worker.pid, number)
 
 
 def _start(job: Job, threads: int) -> _Worker:
-    context = get_context("spawn")  # a fork would copy the engine's threads half
+    context = get_context("spawn")  # a fork would copy the engine's memory without its threads
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(job, threads, theirs), name=job.folder.name)
     with _blocked_signals():
@@ -114,7 +114,7 @@ def _start(job: Job, threads: int) -> _Worker:
 
 @contextmanager
 def _blocked_signals() -> Iterator[None]:
-    """Holds signals back, so that a new process begins with them blocked; they reach this one afterwards."""
+    """Blocks signals, so that a new process begins with them blocked; this process gets them afterwards."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
@@ -123,16 +123,18 @@ def _blocked_signals() -> Iterator[None]:
 
 
 def _hear(worker: _Worker, display: PlanDisplay) -> Outcome | None:
-    """What a worker says: a moment, which is shown, or how it ended."""
+    """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
     try:
         said = worker.link.recv()
-    except (EOFError, OSError):  # gone without a word: killed, by the system for want of memory for example
+    except (EOFError, OSError):  # it ended without a message: for example, the system killed it because memory ran out
         worker.process.join()
         code = worker.process.exitcode or 0
         cause = (
-            f"was killed by signal {-code}, perhaps for want of memory" if code < 0 else f"ended with exit code {code}"
+            f"was killed by signal {-code}, perhaps because memory ran out"
+            if code < 0
+            else f"ended with exit code {code}"
         )
-        return Outcome("failed", f"its process {cause}; the same command goes on with it")
+        return Outcome("failed", f"its process {cause}; the same command continues it")
     if isinstance(said, Moment):
         worker.ready = True
         display.update(worker.job, said)

@@ -1,4 +1,4 @@
-"""How long will it take on this machine? Measured with worlds as they are in the middle of a run."""
+"""Estimates how long runs take on this machine, measured with worlds as they are in the middle of a run."""
 
 import time
 from dataclasses import dataclass, replace
@@ -7,19 +7,19 @@ from hedon.config import Config
 from hedon.experiment.simulation import Simulation
 
 TYPICAL_ALIVE = 150
-"""Agents of a typical world; a fresh one has too few to tell."""
+"""Agents of a typical world; a new one has too few for an estimate."""
 MOST_WORLDS = 16
-"""Worlds measured side by side at most: more threads are taken to be as fast each."""
+"""Most worlds that are measured at the same time; further threads are assumed to be as fast as these."""
 
 
 @dataclass(frozen=True)
 class Speed:
-    """What a machine makes.
+    """How fast a machine is.
 
     Attributes:
         rate: steps of all worlds together [world-steps/s].
-        threads: that it was counted for, a world on each.
-        agents: alive in a world, mean.
+        threads: number of threads that the rate is for, with one world on each.
+        agents: mean number alive in a world.
     """
 
     rate: float
@@ -28,13 +28,13 @@ class Speed:
 
 
 def measure_speed(config: Config, threads: int) -> Speed:
-    """Times one window of worlds of a setting, each on a thread of its own; takes seconds.
+    """Times one window of worlds of a setting, each on its own thread; takes seconds.
 
-    Everybody is there from the first step, learns at the end, and nobody is born meanwhile.
+    All agents are there from the first step and learn at the end; no agent is born in between.
 
     Args:
         config: the setting.
-        threads: to be used in the end.
+        threads: number of threads that the runs will use.
     """
     worlds = min(threads, MOST_WORLDS)
     count = min(TYPICAL_ALIVE, config.population.capacity)
@@ -42,7 +42,7 @@ def measure_speed(config: Config, threads: int) -> Speed:
     peopled = replace(config, population=population, birth=birth)
     simulation = Simulation(peopled, range(1, worlds + 1), worlds)
     window = config.learning.rollout_steps
-    simulation.run(1)  # the first touch of all memory
+    simulation.run(1)  # touches all memory for the first time
     begun = time.perf_counter()
     simulation.run(window)
     seconds = time.perf_counter() - begun

@@ -1,4 +1,4 @@
-"""What each item needs, what of it is there, and how long the rest takes on this machine."""
+"""What each item needs, which runs are still missing, and how long they take on this machine."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,12 +16,12 @@ from hedon.reproduce.plan import Job, plan_jobs
 
 
 def listing(request: Request, folder: Path, threads: int) -> Group:
-    """The items of a request as a table; measures how fast this machine is, which takes seconds.
+    """The items of a request as a table. First measures how fast this machine is, which takes seconds.
 
     Args:
-        request: the items, with the scale that is asked for.
+        request: the items, with their scale.
         folder: of the runs.
-        threads: to be used; 0 for all processors.
+        threads: to use; 0 for all processors.
     """
     threads = threads or usable_cpus()
     speeds: dict[int, Speed] = {}
@@ -41,20 +41,20 @@ def listing(request: Request, folder: Path, threads: int) -> Group:
         whole, left = map(seconds, _jobs(one, folder))
         rows.append((item.name, item.kind, item.title, _needs(one), _time(whole), _time(left)))
     whole, left = map(seconds, _jobs(request, folder))
-    rows.append(("together", "", "worlds that items share counted once", "", _time(whole), _time(left)))
-    headers = ("item", "kind", "what it is", "needs", "in all", "still to run")
+    rows.append(("together", "", "shared worlds are counted once", "", _time(whole), _time(left)))
+    headers = ("item", "kind", "what it is", "needs", "total", "still to run")
     table = PrintedTable(headers, rows, text=range(4), total=True)
     notes = [
         f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
         f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"
-        " fuller worlds take longer, thinner ones less."
+        " worlds with more agents take longer, worlds with fewer take less time."
         for kinds, speed in speeds.items()
     ]
     return Group(table, *(Text(note, style="dim") for note in notes))
 
 
 def _jobs(request: Request, folder: Path) -> tuple[list[Job], list[Job]]:
-    """All runs that a request takes, and those that are not there yet."""
+    """All runs that a request needs, and those that are still missing."""
     wanted = needs(request)
     found, _ = find_runs(folder, wanted)
     return plan_jobs(wanted, [], folder), plan_jobs(wanted, found, folder)
@@ -63,7 +63,7 @@ def _jobs(request: Request, folder: Path) -> tuple[list[Job], list[Job]]:
 def _needs(request: Request) -> str:
     (item,) = request.items
     if not item.arms:
-        return "settings alone"
+        return "only settings"
     scale = request.scale(item)
     settings, worlds = len(item.arms), len(scale.seeds)
     parts = [f"{settings} setting{'s' if settings > 1 else ''}", f"{worlds} world{'s' if worlds > 1 else ''}"]

@@ -1,4 +1,4 @@
-"""What is left to run for some items: runs that are there are used, those too short are gone on with, others begun."""
+"""Plans the runs for some items: existing runs are used, those that are too short are continued, others begin."""
 
 import math
 import re
@@ -13,20 +13,20 @@ from hedon.experiment.plan import free_folder, seed_span
 from hedon.record.reader import Run
 
 LONGEST_NAME = 150
-"""Characters of a setting in the name of a run's folder."""
+"""Most characters of a setting in the name of a run's folder."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A run to begin or to go on with.
+    """A run to begin or to continue.
 
     Attributes:
         folder: of the run.
         config: of its worlds.
         seeds: of all its worlds.
-        steps: that each world is to have in all [step].
-        world_steps: left to do, summed over its worlds [step].
-        begun: whether the folder holds the run's beginning.
+        steps: total for each world [step].
+        world_steps: steps still to run, summed over its worlds [step].
+        begun: whether the run is to be continued.
     """
 
     folder: Path
@@ -38,14 +38,14 @@ class Job:
 
 
 def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list[Job]:
-    """The runs that are missing, the longest first.
+    """The runs that are missing or too short, the longest first.
 
-    A world that died out has all the steps that it can have, and counts: nothing replaces it.
+    A world that died out has all the steps that it can have. It counts, and no other world replaces it.
 
     Args:
         wanted: the worlds that are needed.
-        runs: those that are there.
-        folder: where new runs begin.
+        runs: existing runs.
+        folder: where to make new runs.
     """
     jobs: list[Job] = []
     for need in wanted:
@@ -74,12 +74,12 @@ def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list
 def folder_name(config: Config) -> str:
     """A name for the run of a setting that tells it from the others: "baseline-corrected-learning.entropy_coef-0.0"."""
     name = re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
-    # Whoever changes much has more to say than a file system takes.
+    # A setting with many changes can make a name longer than file systems allow.
     return name if len(name) <= LONGEST_NAME else f"{config.preset}-{config.fidelity}-{digest(config)[:8]}"
 
 
 def _reach(run: Run) -> dict[int, float]:
-    """Steps that a run has of each seed's world; infinite where the world died out."""
+    """Steps that a run has of each seed's world; infinite if the world died out."""
     manifest = run.manifest
     if manifest.status in ("finished", "interrupted"):
         done = [
@@ -87,5 +87,5 @@ def _reach(run: Run) -> dict[int, float]:
             for steps, extinct in zip(manifest.steps_done, manifest.extinct_steps, strict=True)
         ]
         return dict(zip(manifest.seeds, done, strict=True))
-    # The manifest of a run that goes on, or was killed, does not say how far it came; its records do.
+    # The manifest of a run that is still running, or was killed, does not say how far it came; its records do.
     return {world.seed: float(world.recorded_step()) for world in read_worlds([run])}

@@ -1,4 +1,4 @@
-"""Shows how a plan of several runs goes: a live table on a terminal, plain lines elsewhere."""
+"""Shows the progress of several runs: a live table on a terminal, plain lines elsewhere."""
 
 import time
 from collections import deque
@@ -19,16 +19,16 @@ from hedon.reproduce.work import Outcome
 
 LINE_SECONDS = 30.0
 SPAN = 60.0
-"""Seconds over which the speed is taken, so that the forecast follows the populations."""
+"""Time over which the speed is measured, so that the forecast follows the sizes of the populations [s]."""
 SURE_SECONDS = 5.0
 """Time before which no forecast is made [s]."""
 
 
 class PlanDisplay:
-    """Progress over all runs of a plan, and of each that goes on. Use it as a context manager.
+    """Progress of all runs of a plan together, and of each current run. Use it as a context manager.
 
     Args:
-        console: to show it on.
+        console: to print on.
         jobs: the plan.
     """
 
@@ -54,10 +54,10 @@ class PlanDisplay:
             self._live.__exit__(*error)
 
     def update(self, job: Job, moment: Moment) -> None:
-        """Notes a moment of a run; shows all at most five times a second, or in a line each half minute."""
+        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
         self._moments[job.folder] = moment
         living = sum(extinct is None for extinct in moment.extinct)
-        # What is left in the worlds that live is left of the job; a world that died out leaves nothing.
+        # Only worlds with living agents have steps still to run.
         self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
         now = time.monotonic()
         if now < self._due:
@@ -72,7 +72,7 @@ class PlanDisplay:
             self._console.print(f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", soft_wrap=True)
 
     def end(self, job: Job, outcome: Outcome) -> None:
-        """Notes the end of a run and leaves a line that says how it ended."""
+        """Notes the end of a run and prints a line that says how it ended."""
         moment = self._moments.pop(job.folder, None)
         self._ended += 1
         if outcome.status == "finished":
@@ -106,7 +106,7 @@ class PlanDisplay:
             for folder, moment in self._moments.items()
         ]
         table = PrintedTable(("run", "step", "of", "alive"), rows, text=(0, 3))
-        hint = Text("Ctrl-C ends all runs after their windows; the same command goes on.", style="dim")
+        hint = Text("Ctrl-C ends all runs after their current windows; the same command continues.", style="dim")
         bar = ProgressBar(total=max(self._total, 1), completed=done, width=72)
         return Group(Text(self._head()), bar, table, hint)
 

@@ -1,4 +1,4 @@
-"""One run in a process of its own, which tells its parent how it goes."""
+"""One run in its own process, which reports its progress to the parent process."""
 
 import os
 import signal
@@ -29,7 +29,7 @@ class Outcome:
 
 
 class _Teller:
-    """Sends every moment to the parent; ends the run, with all results kept, where no parent is left to hear it."""
+    """Sends every moment to the parent; if there is no parent any more, ends the run with all results kept."""
 
     def __init__(self, link: Connection) -> None:
         self._link = link
@@ -46,10 +46,10 @@ class _Teller:
 
 
 def work(job: Job, threads: int, link: Connection) -> None:
-    """Makes a job's run, and sends its moments and at last its `Outcome`. To be called in a new process.
+    """Makes a job's run, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
 
-    The process leaves its parent's session: a terminal sends Ctrl-C to the parent alone, who passes it on once the
-    run can hear it. Signals come blocked from the parent and count from here on, so none ends the process by itself.
+    The process leaves its parent's session: a terminal sends Ctrl-C only to the parent, which passes it on as soon as
+    the run counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
     """
     os.setsid()
     for number in SIGNALS:
@@ -59,7 +59,7 @@ def work(job: Job, threads: int, link: Connection) -> None:
         outcome = Outcome(_make(job, threads, _Teller(link)).status)
     except HedonError as error:
         outcome = Outcome("failed", str(error))
-    with suppress(OSError):  # nobody may be left to hear it; the manifest says it too
+    with suppress(OSError):  # the parent may have ended; the manifest says it too
         link.send(outcome)
 
 
