@@ -75,7 +75,7 @@ def test_a_fault_of_the_memory_stops_the_run_and_does_not_recur(tmp_path, monkey
         small_run(tmp_path / "run", 1000)
     answer = CliRunner().invoke(app, ["replay-fault", str(tmp_path / "run")])
     assert answer.exit_code == 1
-    assert "does not recur" in answer.output
+    assert "did not happen again" in answer.output
     assert resume(tmp_path / "run").status == "finished"
     assert load_manifest(tmp_path / "run").fault is None
     assert not fault_paths(tmp_path / "run")

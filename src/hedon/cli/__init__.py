@@ -1,1 +1,1 @@
-"""The command line: each command parses, calls and prints; heavy libraries are imported within commands."""
+"""The command line: each command parses, calls and prints. Large libraries are imported inside the commands."""

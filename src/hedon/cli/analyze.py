@@ -14,7 +14,7 @@ def analyze(
         str | None, typer.Option(metavar="TOPIC,…", help="Only these topics, as in lifetime,selection.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder of the answers; by default RUN/analysis, or analysis for several runs.")
+        Path | None, typer.Option(help="Folder of the results; by default RUN/analysis, or analysis for several runs.")
     ] = None,
 ) -> None:
     """Answer statistical questions about runs, and write every number.
@@ -40,7 +40,7 @@ def analyze(
       hedon analyze runs/baseline
       hedon analyze runs/a runs/b --only lifetime,selection --out answers
     """
-    # Imported here: they take seconds, for which no other command should wait.
+    # Imported here because this takes seconds: other commands must not wait for it.
     from hedon.analysis.analysis_table import analysis_group
     from hedon.analysis.analyze import ANALYSIS, write_analysis
     from hedon.analysis.analyze import analyze as answer
@@ -53,4 +53,4 @@ def analyze(
     console = make_console()
     console.print(analysis_group(analysis.tables))
     files = write_analysis(analysis, folder)
-    console.print(f"wrote {files[0]} and {len(files) - 1} tables beside it", soft_wrap=True)
+    console.print(f"wrote {files[0]} and {len(files) - 1} tables next to it", soft_wrap=True)

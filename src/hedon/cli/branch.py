@@ -1,4 +1,4 @@
-"""`hedon branch`: goes on from a run's checkpoint under changed rules."""
+"""`hedon branch`: continues from a run's checkpoint with changed settings."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,30 +11,28 @@ from hedon.record.folder import CHECKPOINT_SECONDS
 
 
 def branch(
-    run: Annotated[Path, typer.Argument(help="Folder of the run to branch off from; it is only read.")],
+    run: Annotated[Path, typer.Argument(help="Folder of the run to branch from; it is only read.")],
     out: Annotated[
-        Path | None, typer.Option(help="Folder of the new run; by default one beside the old, named after the step.")
+        Path | None, typer.Option(help="Folder of the new run; by default next to the old one, named after the step.")
     ] = None,
-    at: Annotated[
-        int | None, typer.Option(help="Step of a checkpoint that the run keeps; by default the newest.")
-    ] = None,
+    at: Annotated[int | None, typer.Option(help="Step of one of the run's checkpoints; by default the newest.")] = None,
     steps: Annotated[
         int | None,
-        typer.Option(help="Steps of each world in all; by default those of the old run.", min=1, max=MAX_STEPS),
+        typer.Option(help="Total steps of each world; by default as the old run.", min=1, max=MAX_STEPS),
     ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
     threads: Threads = 0,
     frames: Annotated[
-        int | None, typer.Option(help="Keep positions each so many steps; by default as the old run.", min=0)
+        int | None, typer.Option(help="Save all positions every N steps; by default as the old run.", min=0)
     ] = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
-    """Go on from a checkpoint of a run under changed rules, as a new run.
+    """Continue from a checkpoint with changed settings, as a new run.
 
-    Without --set it is the same life in a new folder. Settings that the saved worlds are laid out by (arena, senses,
-    kinds of food, window) cannot be changed.
+    Without --set the worlds continue unchanged in a new folder. Settings that fix the layout of the saved worlds
+    (arena, numbers of rays and touch sectors, kinds of food, window) cannot be changed.
 
     \b
     Examples:

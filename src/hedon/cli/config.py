@@ -1,4 +1,4 @@
-"""Commands about configs: what presets there are, what a config holds, how two differ."""
+"""Commands about configs: list the presets, show a config, compare two, check one."""
 
 from typing import Annotated, Any
 
@@ -13,16 +13,16 @@ app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Show, compa
 Source = Annotated[str, typer.Argument(help="A preset, or a file that ends with .toml.", show_default=False)]
 Fidelity = Annotated[
     str | None,
-    typer.Option("--fidelity", "-f", help="corrected, released or text; wins over the file's."),
+    typer.Option("--fidelity", "-f", help="corrected, released or text; replaces the one in the file."),
 ]
 Overrides = Annotated[
     list[str] | None,
-    typer.Option("--set", "-s", help="section.name=value, as TOML; may be given many times.", metavar="SETTING"),
+    typer.Option("--set", "-s", help="section.name=value, as in TOML; can be repeated.", metavar="SETTING"),
 ]
 
 
 def presets() -> None:
-    """List the presets and the fidelities that can be laid on them."""
+    """List the presets, and the fidelities that can be combined with them."""
     from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
     from hedon.printed_table import PrintedTable
 
@@ -66,8 +66,8 @@ def show(
 def diff(
     a: Source,
     b: Source,
-    fidelity_a: Annotated[str | None, typer.Option(help="Fidelity of the first.")] = None,
-    fidelity_b: Annotated[str | None, typer.Option(help="Fidelity of the second.")] = None,
+    fidelity_a: Annotated[str | None, typer.Option(help="Fidelity of the first config.")] = None,
+    fidelity_b: Annotated[str | None, typer.Option(help="Fidelity of the second config.")] = None,
 ) -> None:
     """Print the settings in which two configs differ.
 

@@ -6,11 +6,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 FILE_WIDTH = 110
-"""Columns where the output goes to a file: wide enough for every table."""
+"""Columns if the output goes to a file: wide enough for every table."""
 
 
 def make_console() -> "Console":
-    """A console as wide as the terminal, or wide enough for every table where there is none."""
+    """A console as wide as the terminal, or wide enough for every table if there is no terminal."""
     from rich.console import Console
 
     console = Console(highlight=False)

@@ -5,10 +5,11 @@ from hedon.cli.console import make_console
 
 
 def demography(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
-    """Say before a run whether a setting can live, can die, and what will limit it.
+    """Predict, before a run, whether a population can grow, can die out, and what limits it.
 
-    Prints the length of life and the number of children at constant energy, the energy that is needed and that
-    grows, the chance that a newborn finds a place, and warnings. Computed from the settings in seconds.
+    Prints the length of life and the number of children at constant energy, the energy that agents need and that
+    food supplies, the probability that a newborn finds a free place, and warnings. Computed from the settings alone;
+    takes seconds.
 
     \b
     Examples:

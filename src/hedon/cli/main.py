@@ -23,11 +23,11 @@ from hedon.error import HedonError
 from hedon.text import printable
 
 NO_MEMORY = (
-    "the system gives no more memory: lower population.capacity, learning.rollout_steps or the number of seeds, "
-    "or look at `ulimit -v`"
+    "there is no more memory: lower population.capacity, learning.rollout_steps or the number of seeds, "
+    "or check the limit `ulimit -v`"
 )
 ADDRESSES = 2_000_000_000
-"""What the libraries of a command reserve at most, before any world [byte]. Some of them abort where they get none."""
+"""Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
 
 app = typer.Typer(
     name="hedon",
@@ -37,7 +37,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-# One file per command or group of commands; they stand in the help in this order.
+# One file per command or group of commands. The help lists them in this order.
 app.command()(run)
 app.command()(resume)
 app.command()(branch)
@@ -84,9 +84,9 @@ def _hedon(
 
 
 def main() -> None:
-    """Runs the command line; what the user can put right ends in one message and exit code 2."""
+    """Runs the command line; a problem that the user can fix ends in one message and exit code 2."""
     for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a terminal or file that cannot show a "±" gets a "?"
+        if isinstance(stream, io.TextIOWrapper):  # where a terminal or file cannot show "±", print "?"
             stream.reconfigure(errors="replace")
     _require_addresses()
     try:
@@ -98,23 +98,23 @@ def main() -> None:
             fail(NO_MEMORY)
         if error.filename is None:
             raise
-        # A path that the file system does not take, or may not be read: anywhere that a path is looked at.
+        # A path that the file system refuses or that cannot be read; any use of a path can raise this.
         fail(f"{error.filename}: {error.strerror}")
     except MemoryError:
         fail(NO_MEMORY)
 
 
 def _require_addresses() -> None:
-    """Ends the command where a limit on addresses leaves no room for its libraries."""
+    """Ends the command if a limit on addresses leaves no room for its libraries."""
     allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
     if allowed != resource.RLIM_INFINITY and allowed < ADDRESSES:
         fail(
             f"`ulimit -v` allows this process {allowed / 1e9:.1f} GB of addresses, and hedon needs "
-            f"{ADDRESSES / 1e9:.0f} GB and more: raise the limit"
+            f"at least {ADDRESSES / 1e9:.0f} GB: raise the limit"
         )
 
 
 def fail(message: str) -> NoReturn:
-    """Ends the command with a message and exit code 2. Names from outside may hold anything: it is made printable."""
+    """Ends the command with a message and exit code 2. Names in it may hold any character, so it is made printable."""
     typer.echo(f"hedon: {printable(message)}", err=True)
     sys.exit(2)

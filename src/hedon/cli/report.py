@@ -21,8 +21,9 @@ def report(
     """Summarize runs on one page, with figures, tables and the paper's claims.
 
     Writes report.html (one file that holds everything, for any browser), report.md, figures/*.png and analysis/
-    (every number, as JSON and CSV), and RUN/summary.json for each run, over those that are there. Prints our figures
-    beside the paper's. Works on runs that go on, were interrupted or have damaged files; the report then says so.
+    (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints our
+    numbers next to the paper's. Also works on runs that are still running, were interrupted or have damaged files;
+    the report then says so.
 
     \b
     Examples:
@@ -33,8 +34,8 @@ def report(
 
 
 def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None) -> None:
-    """Writes the report of one run, or of it and others, and prints their summaries and where the files are."""
-    # Imported here: they take seconds, for which neither another command nor the start of a run should wait.
+    """Writes a report on one or more runs, and prints their summaries and where the files are."""
+    # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
 
     from hedon.analysis.report import write_report

@@ -1,4 +1,4 @@
-"""`hedon resume`: goes on with a run."""
+"""`hedon resume`: continues a run."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,17 +14,15 @@ def resume(
     run: Annotated[Path, typer.Argument(help="Folder of a run that was interrupted, killed, or finished.")],
     steps: Annotated[
         int | None,
-        typer.Option(
-            help="Steps of each world in all, as for `hedon run`; by default those asked for.", min=1, max=MAX_STEPS
-        ),
+        typer.Option(help="Total steps of each world, as for `hedon run`; by default unchanged.", min=1, max=MAX_STEPS),
     ] = None,
     threads: Threads = 0,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
-    """Go on with a run, as if it had never stopped.
+    """Continue a run, as if it had never stopped.
 
-    Continues from the newest checkpoint. What was recorded after it is taken back and made again, with the same
-    bits. A finished run is taken further with --steps.
+    Starts from the newest checkpoint. What was recorded after it is removed and computed again, with the same
+    bits. A finished run can be made longer with --steps.
 
     \b
     Examples:

@@ -1,4 +1,4 @@
-"""`hedon run`: one command from a condition to a result."""
+"""`hedon run`: runs a condition and reports on it."""
 
 import shlex
 from collections.abc import Callable
@@ -22,7 +22,7 @@ DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
 
 MAX_DIGITS = 40
-"""Of a seed that is read at all: leading zeros are fine."""
+"""Most digits of a seed, leading zeros included."""
 
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
@@ -40,19 +40,17 @@ def run(
     steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = DEFAULT_STEPS,
     threads: Threads = 0,
     out: Annotated[Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")] = None,
-    frames: Annotated[
-        int, typer.Option(help="Keep positions of everything each so many steps; 0 for never.", min=0)
-    ] = 0,
+    frames: Annotated[int, typer.Option(help="Save all positions every N steps; 0 for never.", min=0)] = 0,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
     fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or text.")] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
 ) -> None:
-    """Run a condition, from worlds to a table and figures.
+    """Run a condition, then write its report.
 
-    Ctrl-C ends the run after the current window, a second one at once; all results so far are kept, and `hedon
-    resume` goes on from there, also after the machine stopped.
+    Ctrl-C ends the run after the current window, a second one immediately. All results so far are kept, and `hedon
+    resume` continues from there, even after a power cut.
 
     \b
     Examples:
@@ -76,14 +74,13 @@ def run(
 
 
 def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
-    """Says what will be run, shows it while `go` runs it, and shows its report; `begun` says where it goes on."""
+    """Prints what will be run, shows progress while `go` runs it, and reports; `begun` says where the run continues."""
     from hedon.experiment.progress import duration, make_display
 
     config, console = plan.config, make_console()
-    worlds = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}"
-    place = printable(str(plan.out))
+    worlds, out = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}", printable(str(plan.out))
     console.print(
-        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {place}",
+        f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {out}",
         soft_wrap=True,
     )
     with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:
@@ -95,17 +92,17 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
     if manifest.status == "interrupted":
         done = max(manifest.steps_done)
         console.print(f"Interrupted after step {done:,} of {plan.steps:,}; all results up to there are kept.")
-        console.print(f"Go on with: hedon resume {folder}", soft_wrap=True)
+        console.print(f"Continue with: hedon resume {folder}", soft_wrap=True)
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
     show_report(plan.out, console)
-    console.print(f"Make them again with: hedon report {folder}", soft_wrap=True)
+    console.print(f"Write the report again with: hedon report {folder}", soft_wrap=True)
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
     """Seeds from "7", "1-5" or "1,4,7-9".
 
     Raises:
-        RunError: The text is no such list, or a seed is out of range.
+        RunError: The text is not such a list, or a seed is out of range.
         ArgumentError: There are too many, or one appears twice.
     """
     seeds: list[int] = []
@@ -116,7 +113,7 @@ def parse_seeds(text: str) -> tuple[int, ...]:
         if not first.isdecimal() or (dash and not last.isdecimal()):
             raise RunError(f"--seeds: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
         if max(len(first), len(last)) > MAX_DIGITS:
-            raise RunError(f"--seeds: a seed of {max(len(first), len(last)):,} digits is beyond {MAX_SEED}")
+            raise RunError(f"--seeds: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
         low, high = int(first), int(last or first)
         if high < low or high > MAX_SEED or high - low >= MAX_WORLDS:
             raise RunError(

@@ -1,4 +1,4 @@
-"""The first lines of the command `hedon`: so light that Ctrl-C finds them ready while all else is being imported."""
+"""The first lines of the command `hedon`: they load almost nothing, so that Ctrl-C works during all later imports."""
 
 import sys
 
@@ -11,4 +11,4 @@ def main() -> None:
         run_command()
     except KeyboardInterrupt:
         sys.stderr.write("hedon: interrupted\n")
-        sys.exit(130)  # 128 and the number of SIGINT, as shells have it
+        sys.exit(130)  # 128 plus the number of SIGINT, as shells do
