@@ -1,4 +1,4 @@
-/// A view of a flat array: a pointer and its length. It owns nothing; the memory belongs to the simulation.
+/// A view of a flat array: a pointer and its length. The memory belongs to the simulation.
 #pragma once
 
 #include <cstdint>

@@ -9,16 +9,16 @@
 #define HEDON_FN inline
 #endif
 
-/// For what is called from units that are compiled for one instruction set: never emitted as a function of its own, of
-/// which the linker might keep the copy that other processors cannot run.
+/// For functions that are called from units compiled for one instruction set. They are always inlined: of several
+/// copies, the linker could keep one that other processors cannot run.
 #if defined(__CUDACC__)
 #define HEDON_INLINE __host__ __device__ __forceinline__
 #else
 #define HEDON_INLINE __attribute__((always_inline)) inline
 #endif
 
-/// For a function that takes much time outside of the kernels: GCC compiles it twice, with all that it calls, for any
-/// processor and for AVX2, with the same bits, and the loader chooses. Clang's one version is as fast.
+/// For a function that takes much time outside the kernels: GCC compiles it twice, with all functions that it calls,
+/// for any processor and for AVX2, with the same bits, and the loader chooses. Clang's single version is as fast.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define HEDON_CLONED __attribute__((flatten, target_clones("avx2", "default")))
@@ -28,7 +28,7 @@
 
 namespace hedon {
 
-/// Index of the lowest bit that is set, of at least one.
+/// Index of the lowest bit that is set; at least one must be.
 HEDON_INLINE int lowest_bit(uint64_t bits) {
 #if defined(__CUDA_ARCH__)
   return __ffsll(static_cast<long long>(bits)) - 1;
@@ -37,7 +37,7 @@ HEDON_INLINE int lowest_bit(uint64_t bits) {
 #endif
 }
 
-/// Asks the caches for `count` floats that will be read soon.
+/// Prefetches `count` floats that will be read soon.
 HEDON_INLINE void ask_for(const float* first, int count) {
 #if !defined(__CUDA_ARCH__)
   for (int i = 0; i < count; i += 16) __builtin_prefetch(first + i);

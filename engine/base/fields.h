@@ -1,7 +1,7 @@
-/// One list of fields per struct, from which configs are filled, states are allocated, saved and bound.
+/// One list of fields per struct. Programs use it to fill configs and to allocate, save and bind states.
 ///
-/// Write `HEDON_FIELDS(SolverConfig, dt, passes)` as the last line of a struct without padding. A field that is
-/// missing from the list makes the sizes differ and does not compile.
+/// Write `HEDON_FIELDS(SolverConfig, dt, passes)` as the last line of a struct without padding. If a field is missing
+/// from the list, the sizes differ and the code does not compile.
 #pragma once
 
 #include <cstddef>

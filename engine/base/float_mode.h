@@ -1,4 +1,4 @@
-/// How a thread computes with floats: set for the engine while it works, and given back to the caller afterwards.
+/// How a thread computes with floats: set while the engine works, and restored for the caller afterwards.
 #pragma once
 
 #if defined(__SSE__)
@@ -7,19 +7,19 @@
 
 namespace hedon {
 
-/// Rounds to nearest, masks all exceptions and flushes denormals to zero while it lives, then restores what the thread
-/// had: other libraries change these, and denormal numbers are slow on many processors. Each entry into the engine and
-/// each of its threads makes one, so that a seed's bits do not depend on the caller.
+/// While it exists: rounds to nearest, masks all exceptions and flushes denormals to zero. Then restores the thread's
+/// mode. Other libraries change these modes, and denormal numbers are slow on many processors. Each entry into the
+/// engine and each of its threads makes one, so that the bits of a seed do not depend on the caller.
 class FloatMode {
  public:
-  /// flush  false keeps denormals, as on processors that cannot flush them
+  /// flush  false: keep denormals, as on processors that cannot flush them
 #if defined(__SSE__)
   explicit FloatMode(bool flush = true) : saved_(_mm_getcsr()) { _mm_setcsr(MASKED | (flush ? FLUSH : 0u)); }
   ~FloatMode() { _mm_setcsr(saved_); }
 
  private:
   static constexpr unsigned MASKED = 0x1f80;  ///< all exceptions masked, to nearest
-  static constexpr unsigned FLUSH = 0x8040;   ///< flush results to zero, take denormals for zero
+  static constexpr unsigned FLUSH = 0x8040;   ///< flush results to zero, read denormals as zero
   unsigned saved_;
 #else
   explicit FloatMode(bool = true) {}

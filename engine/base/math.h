@@ -1,7 +1,8 @@
 /// Elementary functions with the same bits on every machine: only IEEE + - * / sqrt and bit operations.
 ///
-/// The C library's versions differ between systems, so a run could not be repeated elsewhere. All work in double and
-/// round once to float: relative error below 1e-7 over the stated ranges, tested against the C library.
+/// The C library's versions differ between systems, so a run could not be repeated on another one. All functions
+/// compute in double and round once to float: relative error below 1e-7 over the stated ranges, tested against the C
+/// library.
 #pragma once
 
 #include <cmath>
@@ -28,14 +29,14 @@ HEDON_FN uint64_t double_to_bits(double value) {
   return bits;
 }
 
-/// The integer nearest to x, |x| < 2^51: adding 1.5 · 2^52 leaves no room for a fraction.
+/// The integer nearest to x, |x| < 2^51: after 1.5 · 2^52 is added, no bits are left for a fraction.
 HEDON_FN double round_double(double x) {
   constexpr double SHIFT = 6755399441055744.0;
   return (x + SHIFT) - SHIFT;
 }
 
-/// e^x for any x; below -700 it is 0, above 700 it stays at e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2, its
-/// terms in pairs of pairs, so that they need not wait for one another.
+/// e^x for any x; below -700 it is 0, above 700 it is e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2, with its
+/// terms in pairs of pairs, so that they do not wait for one another.
 HEDON_FN double exp_double(double x) {
   if (x < -700.0) return 0.0;
   if (x > 700.0) x = 700.0;

@@ -19,7 +19,7 @@ int available_processors() {
   return count > 0 ? static_cast<int>(count) : 1;
 }
 
-/// What the threads meet at.
+/// What the threads wait on.
 struct Pool::Shared {
   std::vector<std::thread> threads;
   std::mutex mutex;
@@ -40,8 +40,7 @@ Pool::Pool(int size, bool flush) : size_(size), process_(getpid()), shared_(std:
 
 Pool::~Pool() {
   if (forked()) {
-    // Nobody may touch it: a condition variable with sleepers waits for them when it is destroyed, and here they will
-    // never wake.
+    // Do not destroy it: the destructor of a condition variable waits for sleeping threads, and here they never wake.
     static_cast<void>(shared_.release());
     return;
   }

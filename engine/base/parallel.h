@@ -10,7 +10,7 @@ namespace hedon {
 /// Number of processors that this process may use.
 int available_processors();
 
-/// Threads that sleep until `run`, in which the caller works too. Joined in the destructor.
+/// Threads that sleep until `run`; then the caller works too. The destructor joins them.
 class Pool {
  public:
   /// flush  see `FloatMode`
@@ -21,7 +21,7 @@ class Pool {
 
   int size() const { return size_; }
 
-  /// True in a process that was forked from the pool's own: its threads do not exist there.
+  /// True in a process that was forked from the one that made the pool: its threads do not exist there.
   bool forked() const;
 
   /// Calls job(rank) once for each rank in [0, size), rank 0 on the calling thread; returns when all are done.

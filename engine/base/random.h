@@ -1,6 +1,6 @@
-/// Counter-based random numbers: every draw is a function of (seed, purpose, id, step, index) and of nothing else.
+/// Counter-based random numbers: every draw is a function of (seed, purpose, id, step, index) only.
 ///
-/// So results depend neither on threads nor on the order of loops, and nothing has to be saved to go on exactly.
+/// So results do not depend on threads or on the order of loops, and a checkpoint needs no state of a generator.
 /// Source: Salmon et al. (2011), "Parallel random numbers: as easy as 1, 2, 3", Philox4x32-10.
 #pragma once
 
@@ -29,7 +29,7 @@ HEDON_FN Random4 philox(Random4 counter, uint32_t key0, uint32_t key1) {
   return counter;
 }
 
-/// What a draw is for. The numbers are part of what a seed means: append, never renumber.
+/// What a draw is for. Results depend on these numbers: append new ones, never renumber.
 enum class Purpose : uint32_t {
   action = 0,
   life_and_death = 1,
@@ -62,7 +62,7 @@ struct RandomStream {
 
 /// Uniform in [0, 1), a multiple of 2^-24.
 HEDON_FN float to_uniform(uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
-/// Uniform in [0, 1), a multiple of 2^-53: for chances per step, which may be far below 2^-24.
+/// Uniform in [0, 1), a multiple of 2^-53: for probabilities per step, which can be far below 2^-24.
 HEDON_FN double to_fine_uniform(uint32_t word0, uint32_t word1) {
   return static_cast<double>(((static_cast<uint64_t>(word0) << 32) | word1) >> 11) * 0x1p-53;
 }

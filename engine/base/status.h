@@ -1,5 +1,5 @@
-/// What can go wrong inside a step or be found at the end of a window, in one table. The state keeps the first; the
-/// binding raises it.
+/// All errors that can occur in a step or be found at the end of a window, in one table. The state keeps the first one;
+/// the binding raises it.
 #pragma once
 
 #include <cstdint>
@@ -31,34 +31,34 @@ struct StatusText {
   const char* remedy;
 };
 
-/// For what no setting explains.
+/// For errors that no setting explains.
 inline constexpr const char* REPEAT =
-    "Repeat it by `hedon replay-fault`: if it does not recur, suspect the memory of this machine.";
+    "Run `hedon replay-fault`. If the fault does not happen again, the likely cause is bad memory in this machine.";
 
 inline constexpr StatusText STATUS_TEXT[] = {
     {"ok", "No error.", ""},
-    {"neighbor_overflow", "More neighboring pairs than the list can hold.",
+    {"neighbor_overflow", "There are more neighboring pairs than the list can hold.",
      "Lower the number of agents, physics.neighbor_skin, physics.max_speed or the forces."},
-    {"contact_outside_skin", "A body moved further than the neighbor list allows for.",
+    {"contact_outside_skin", "A body moved further than the neighbor list allows.",
      "Raise physics.neighbor_skin or lower physics.max_speed."},
-    {"event_overflow", "More births or deaths between two reads than the event buffer holds.",
-     "Read them more often: `World.deaths` takes them."},
+    {"event_overflow", "There were more deaths between two reads than the event buffer holds.",
+     "Read them more often with `World.deaths`."},
     {"not_finite", "A number of the state is not finite.",
-     "Look at the named agent; lower learning.learning_rate or the forces."},
+     "Check the named agent; lower learning.learning_rate or the forces."},
     {"outside_arena", "A body left the arena.", "Lower physics.max_speed, physics.dt or the forces."},
-    {"initial_placement", "The initial agents or foods find no free place in the arena.",
+    {"initial_placement", "There is no free place in the arena for all initial agents or foods.",
      "Lower the initial counts or enlarge the arena."},
-    {"id_overflow", "A counter of agents or steps is exhausted.", "Start a new run."},
-    {"overlap_too_deep", "A body lies deeper in another, in a food or in a wall than contacts can mend.",
+    {"id_overflow", "A counter of agents or steps has reached its limit.", "Start a new run."},
+    {"overlap_too_deep", "A body overlaps another body, a food or a wall so far that contacts cannot separate them.",
      "Lower the forces, physics.max_speed or physics.dt, so that no body moves half its radius in a substep."},
-    {"slots_inconsistent", "A slot is held twice, or neither held nor free.", REPEAT},
-    {"ids_inconsistent", "The living do not stand in the order of their ids, or an id was never given.", REPEAT},
-    {"counts_inconsistent", "Births, deaths or foods do not add up to what is there.", REPEAT},
-    {"ledger_open", "What the agents hold differs from what the ledger says that they hold.", REPEAT},
+    {"slots_inconsistent", "A slot is used twice, or is neither used nor free.", REPEAT},
+    {"ids_inconsistent", "The living are not in the order of their ids, or an id was not given to any agent.", REPEAT},
+    {"counts_inconsistent", "Counts of births, deaths or foods do not agree with the world.", REPEAT},
+    {"ledger_open", "The energy of the agents differs from the sum in the ledger.", REPEAT},
 };
 static_assert(sizeof(STATUS_TEXT) / sizeof(StatusText) == static_cast<int>(Status::count));
 
-/// The first error of a world: what, when, who, and the offending value. An id is -1 where nobody is concerned.
+/// The first error of a world: what, when, which agents, and the wrong value. An id is -1 if there is no agent.
 struct Fault {
   Status status;
   int32_t agent_id;

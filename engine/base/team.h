@@ -1,7 +1,7 @@
 /// Threads that run the same code over the same world: the group that every step rule is written for.
 ///
-/// Each member calls the same functions. `for_each` and `once` end with a barrier, so what one phase wrote the next
-/// may read. A loop body writes only what belongs to its own index; hence results do not depend on the team's size.
+/// Each member calls the same functions. `for_each` and `once` end with a barrier, so a phase can read what the phase
+/// before it wrote. A loop body writes only data of its own index, so results do not depend on the size of the team.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace hedon {
 
-/// What the members of a team share.
+/// Data that the members of a team share.
 struct TeamState {
   std::atomic<int> waiting{0};
   std::atomic<uint32_t> phase{0};
@@ -24,16 +24,16 @@ class Team {
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  /// Waits until all members arrive. Spins first, since phases last microseconds, then sleeps: where other programs
-  /// want the processors too, a member that spins on keeps the one that it waits for from running.
+  /// Waits until all members arrive. First spins, since phases last microseconds; then sleeps: if other programs use
+  /// the processors too, a spinning member can keep the member that it waits for from running.
   void barrier() {
     if (size_ == 1) return;
     const uint32_t phase = state_->phase.load(std::memory_order_relaxed);
     if (state_->waiting.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
       state_->waiting.store(0, std::memory_order_relaxed);
       state_->next.store(0, std::memory_order_relaxed);
-      // Sequentially consistent, with a full fence: the notification looks whether anyone sleeps, and must not look
-      // before the new phase can be seen, or a member that falls asleep in between is never woken.
+      // Sequentially consistent, with a full fence: the notification checks whether any member sleeps. It must check
+      // after the new phase is visible; otherwise a member that falls asleep in between never wakes.
       state_->phase.store(phase + 1, std::memory_order_seq_cst);
       state_->phase.notify_all();
       return;
@@ -54,7 +54,7 @@ class Team {
     barrier();
   }
 
-  /// The same with each member's block from its end to its start.
+  /// The same, but each member runs through its block backward.
   template <class Body>
   void for_each_backward(int count, Body&& body) {
     const int first = static_cast<int>(static_cast<int64_t>(count) * rank_ / size_);
@@ -63,7 +63,7 @@ class Team {
     barrier();
   }
 
-  /// Calls body(i) for i in [0, count), each claimed when a member is free: for few large or unequal pieces.
+  /// Calls body(i) for i in [0, count); each free member takes the next i: for few large or unequal pieces.
   template <class Body>
   void for_each_claimed(int count, Body&& body) {
     if (size_ == 1) {
@@ -85,7 +85,7 @@ class Team {
   }
 
  private:
-  static constexpr int SPINS = 2000;  ///< some 25 µs, longer than the phases in which one member works alone
+  static constexpr int SPINS = 2000;  ///< about 25 µs, longer than the phases in which one member works alone
 
   static void relax() {
 #if defined(__x86_64__)

@@ -20,7 +20,7 @@ NumberKind kind_of(const nb::dlpack::dtype& type, const std::string& name) {
   for (int kind = 0; kind < 3; ++kind) {
     if (type.code == static_cast<uint8_t>(CODES[kind]) && type.lanes == 1) return static_cast<NumberKind>(kind);
   }
-  throw nb::value_error((name + " holds no plain numbers").c_str());
+  throw nb::value_error((name + " does not hold plain numbers").c_str());
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ Checkpoint from_arrays(const nb::dict& arrays) {
   for (const auto& [key, value] : arrays) {
     const std::string name = nb::str(key).c_str();
     AnyArray array;
-    if (!nb::try_cast(value, array)) throw nb::value_error((name + " is no array of numbers in C order").c_str());
+    if (!nb::try_cast(value, array)) throw nb::value_error((name + " is not an array of numbers in C order").c_str());
     SavedArray saved{name, kind_of(array.dtype(), name), array.dtype().bits / 8, {}, {}};
     for (size_t d = 0; d < array.ndim(); ++d) saved.shape.push_back(static_cast<int64_t>(array.shape(d)));
     saved.bytes.resize(array.nbytes());

@@ -9,7 +9,7 @@ namespace hedon {
 
 nanobind::dict to_arrays(Checkpoint checkpoint);
 
-/// Throws value_error where something is not an array of plain numbers.
+/// Throws value_error if something is not an array of plain numbers.
 Checkpoint from_arrays(const nanobind::dict& arrays);
 
 }  // namespace hedon

@@ -1,6 +1,6 @@
-/// Fills the engine's config structs from nested Python dicts and sequences: one generic way for all of them.
+/// Fills the engine's config structs from nested Python dicts and sequences, with the same code for all of them.
 ///
-/// A missing or an extra name is an error that gives the path, as is a value of the wrong type.
+/// A missing name, an extra name or a value of the wrong type is an error that gives the path.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -52,7 +52,7 @@ void fill(nanobind::handle value, T& out, const std::string& path) {
     throw nb::value_error((path + ": unknown name '" + name + "'").c_str());
   } else if constexpr (std::is_arithmetic_v<T>) {
     if (!nb::try_cast<T>(value, out)) {
-      // An int where a float is asked for is fine; anything else is not.
+      // An int is allowed for a float; other conversions are not.
       if constexpr (std::is_floating_point_v<T>) {
         out = static_cast<T>(nb::cast<double>(nb::float_(value)));
       } else {
@@ -83,7 +83,7 @@ void fill(nanobind::handle value, T& out, const std::string& path) {
   }
 }
 
-/// What `fill` would have read: for a test that every setting arrives.
+/// The inverse of `fill`: for a test that every setting arrives.
 template <class T>
 nanobind::object unfill(const T& value) {
   namespace nb = nanobind;

@@ -1,4 +1,4 @@
-/// What the engine tells its caller to put right: `hedon.error.EngineError` in Python.
+/// An error that the caller can fix: `hedon.error.EngineError` in Python.
 #pragma once
 
 #include <stdexcept>

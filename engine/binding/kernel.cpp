@@ -1,4 +1,4 @@
-/// Kernels that belong to no part of the model by themselves: rays, and the measure of the processor.
+/// Single kernels: rays, and measurements of the processor.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -21,7 +21,7 @@ namespace {
 using Columns = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Types = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Columns of a row-major array, each in its own aligned memory, readable to a multiple of 16.
+/// Columns of a row-major array, each in its own aligned memory, readable up to a multiple of 16.
 Aligned<float> column_of(const Columns& rows, size_t column) {
   const size_t count = rows.shape(0), width = rows.shape(1);
   Aligned<float> out((count + 15) / 16 * 16);
@@ -63,7 +63,7 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
                           by.get(),
                           static_cast<int32_t>(segments.shape(0)),
                           static_cast<float>(wall_type)};
-  // An eye at the origin that looks along x sees by the cosines and sines of its rays. Its arcs have no edges.
+  // For an eye at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
   const Aligned<float> next(HIDDEN * HIDDEN);
   const Eye eye = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(),        sine.get(), static_cast<int32_t>(rays),
                    start, length, -1,   {},   {next.get(), HIDDEN}};
@@ -104,7 +104,7 @@ double read_rate(const std::string& kernel_name, int64_t bytes, int64_t rounds) 
 }  // namespace
 
 void bind_kernel(nb::module_& module) {
-  nb::module_ kernel = module.def_submodule("kernel", "Kernels by themselves: one implementation per instruction set.");
+  nb::module_ kernel = module.def_submodule("kernel", "Single kernels: one implementation per instruction set.");
   kernel.def(
       "kernel_names",
       [] {
@@ -117,9 +117,9 @@ void bind_kernel(nb::module_& module) {
       "cast_rays", cast_rays, nb::arg("kernel"), nb::arg("circles"), nb::arg("circle_type"), nb::arg("segments"),
       nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
       "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
-      "done `repeats` times, to be timed.");
+      "computed `repeats` times, for timing.");
   kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"), nb::call_guard<nb::gil_scoped_release>(),
-             "Multiply-adds in registers on this thread [GF/s]: the ceiling for the other kernels. Releases the "
+             "Multiply-adds in registers on this thread [GF/s]: the limit for the other kernels. Releases the "
              "interpreter lock.");
   kernel.def("read_rate", read_rate, nb::arg("kernel"), nb::arg("bytes"), nb::arg("rounds"),
              nb::call_guard<nb::gil_scoped_release>(),

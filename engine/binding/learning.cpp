@@ -1,4 +1,4 @@
-/// Kernels and learning by themselves, so that tests and benchmarks drive them from NumPy.
+/// Single kernels and learning, so that tests and benchmarks can call them from NumPy.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -42,7 +42,7 @@ NetworkShape to_shape(const ObservationSizes& sizes) {
   return {{rays, types, touches, dense}};
 }
 
-/// A rollout's arrays, copied to aligned memory after their sizes and indices were checked.
+/// A rollout's arrays, copied to aligned memory after a check of their sizes and indices.
 struct BatchArrays {
   Aligned<PackedObservation> observation;
   PpoBatch batch;
@@ -80,7 +80,7 @@ void check_minibatch(const LearningConfig& config, int32_t count) {
   }
 }
 
-/// Copies of one learner's arrays, given back as a tuple (params, first_moment, second_moment, updates, losses).
+/// Copies of one learner's arrays, returned as a tuple (params, first_moment, second_moment, updates, losses).
 struct LearnerArrays {
   Aligned<float> params, first_moment, second_moment;
   int64_t updates;
@@ -228,7 +228,7 @@ nb::tuple learn_once(const std::string& kernel_name, ObservationSizes sizes, nb:
 }  // namespace
 
 void bind_learning(nb::module_& module) {
-  nb::module_ learning = module.def_submodule("learning", "Network, PPO and GAE by themselves, for each kernel.");
+  nb::module_ learning = module.def_submodule("learning", "Network, PPO and GAE as single functions, for each kernel.");
   learning.def(
       "param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
       "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
@@ -287,7 +287,7 @@ void bind_learning(nb::module_& module) {
         init_network(shape, {seed, Purpose::network, agent_id, step}, params.data());
         return to_numpy(params.data(), {params.size()});
       },
-      nb::arg("shape"), nb::arg("seed"), nb::arg("agent_id") = 0, nb::arg("step") = 0, "Fresh parameters.");
+      nb::arg("shape"), nb::arg("seed"), nb::arg("agent_id") = 0, nb::arg("step") = 0, "Initial parameters.");
 }
 
 }  // namespace hedon

@@ -14,7 +14,7 @@
 
 namespace hedon {
 
-/// Memory aligned to 64 bytes, zero at first.
+/// Zeroed memory, aligned to 64 bytes.
 template <class T>
 class Aligned {
  public:

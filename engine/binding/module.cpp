@@ -1,4 +1,4 @@
-/// The Python module `hedon._engine`. Each part of the engine adds its own functions, so that tests drive the parts.
+/// The Python module `hedon._engine`. Each part of the engine adds its own functions, so that tests can call the parts.
 #include <nanobind/nanobind.h>
 
 #include "binding/error.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-/// Turns `EngineError` into the one of the package.
+/// Turns `EngineError` into the package's error of that name.
 void translate(const std::exception_ptr& pointer, void*) {
   try {
     std::rethrow_exception(pointer);

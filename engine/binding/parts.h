@@ -1,4 +1,4 @@
-/// What each part of the binding adds to the module.
+/// The functions with which each part of the binding adds itself to the module.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-/// The physics by itself: a scene that Python fills, steps and reads, for tests against closed forms and other engines.
+/// Only the physics: a scene that Python fills, steps and reads, for tests against closed forms and other engines.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -24,13 +24,13 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-/// One contact that the visitor heard of.
+/// One contact that was reported to the visitor.
 struct ContactRow {
   int32_t kind, body, other;
   float direction_x, direction_y, angle;
 };
 
-/// Keeps the contacts of each body apart, since islands run on different threads.
+/// Collects the contacts of each body separately, since islands run on different threads.
 struct Recorder {
   std::vector<std::vector<ContactRow>> rows;
   bool record = true;
@@ -75,7 +75,7 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// All members of a team run all steps; one `Scene` serves one caller at a time.
+  /// All members of a team run all steps. Only one caller at a time may use a `Scene`.
   void step(int steps, int threads, bool record) {
     recorder_.record = record;
     TeamState shared;
@@ -209,8 +209,8 @@ class Scene {
 }  // namespace
 
 void bind_physics(nb::module_& module) {
-  nb::module_ physics = module.def_submodule("physics", "Rigid bodies by themselves.");
-  nb::class_<Scene>(physics, "Scene", "Discs, static circles and walls, with the memory that they live in.")
+  nb::module_ physics = module.def_submodule("physics", "Rigid bodies without the rest of the model.");
+  nb::class_<Scene>(physics, "Scene", "Discs, static circles and walls, with their memory.")
       .def(nb::init<nb::dict, float, float, float, float, float, int64_t, int64_t,
                     const std::vector<std::array<float, 4>>&, int64_t, int32_t>(),
            nb::arg("config"), nb::arg("width"), nb::arg("height"), nb::arg("radius"), nb::arg("density"),
@@ -225,11 +225,11 @@ void bind_physics(nb::module_& module) {
       .def("pairs", &Scene::pairs, nb::arg("kind"),
            nb::sig("def pairs(self, kind: str) -> list[tuple[int, int, float, float, int]]"),
            "Listed pairs with impulses and marks.")
-      .def("contacts", &Scene::contacts, "Contacts that the visitor heard of in the last step.")
+      .def("contacts", &Scene::contacts, "Contacts that were reported to the visitor in the last step.")
       .def("near", &Scene::near, nb::arg("kind"), nb::arg("x"), nb::arg("y"), nb::arg("reach"))
       .def("add_circle", &Scene::add_circle, nb::arg("slot"), nb::arg("x"), nb::arg("y"))
       .def("remove_circle", &Scene::remove_circle, nb::arg("slot"))
-      .def("set_stale", &Scene::set_stale, "Call after changing places, circles or the order.")
+      .def("set_stale", &Scene::set_stale, "Call after a change of positions, circles or the order.")
       .def("counters", &Scene::counters);
 }
 

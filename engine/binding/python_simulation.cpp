@@ -20,7 +20,7 @@ namespace hedon {
 namespace {
 
 constexpr double PIECE_SECONDS =
-    0.2;  ///< longest time without a look at the keyboard, but for the learning of a window
+    0.2;  ///< longest time between two checks for Ctrl-C, except for the learning of a window
 
 const Kernel* need_kernel(const std::string& name) {
   const Kernel* kernel = find_kernel(name.c_str());
@@ -31,7 +31,7 @@ const Kernel* need_kernel(const std::string& name) {
   throw EngineError("kernel '" + name + "' is unknown or not for this processor, which can run: " + known);
 }
 
-/// Refuses what this machine cannot hold, before anything is reserved.
+/// Refuses a simulation that does not fit into this machine's memory, before any memory is reserved.
 void need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
   const MemoryNeed need =
       Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
@@ -45,11 +45,11 @@ void need_memory(const WorldConfig& config, size_t walls, size_t worlds, int thr
              needed / 1e9, present / 1e9);
     throw EngineError(text);
   }
-  // A limit on addresses (ulimit -v) shows only when they are asked for.
+  // A limit on addresses (ulimit -v) shows only when memory is reserved.
   const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
   void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (probe == MAP_FAILED)
-    throw EngineError("the system gives the worlds no memory, though there is enough: look at `ulimit -v`");
+    throw EngineError("the system refuses memory for the worlds, though there is enough: check the limit `ulimit -v`");
   munmap(probe, bytes);
 }
 
@@ -60,7 +60,7 @@ std::vector<Segment> to_segments(const WallsIn& walls) {
   return segments;
 }
 
-/// Marks a simulation as free again, however the call ends.
+/// Marks a simulation as free again at the end of a call, also after an exception.
 struct Running {
   std::atomic<bool>& mark;
   ~Running() { mark.store(false); }
@@ -93,7 +93,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
                                                need_kernel(kernel), slot_order, flush_denormals);
   } catch (const std::system_error& error) {
     throw EngineError("the system gives no " + std::to_string(used) + " threads (" + error.what() +
-                      "): ask for fewer, or look at `ulimit -u` and `ulimit -v`");
+                      "): use fewer, or check the limits `ulimit -u` and `ulimit -v`");
   }
   raise_faults();
 }
@@ -109,7 +109,7 @@ Simulation& PythonSimulation::get() {
 
 World& PythonSimulation::world(int index) {
   Simulation& simulation = get();
-  if (index < 0 || index >= simulation.world_count()) throw nb::index_error("no world of that index");
+  if (index < 0 || index >= simulation.world_count()) throw nb::index_error("no world has this index");
   return simulation.world(index);
 }
 
@@ -136,13 +136,13 @@ void PythonSimulation::run(int64_t steps) {
     raise_faults();
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-    // Towards the full time, at most fourfold: a piece with the learning of a window says little of the next.
+    // Approach the full time by at most a factor of four: the time of a piece with learning says little about the next.
     const double next = static_cast<double>(count) * PIECE_SECONDS / std::max(seconds, 1e-9);
     if (count == piece_) piece_ = static_cast<int64_t>(std::clamp(next, 1.0, 4.0 * static_cast<double>(piece_)));
   }
 }
 
-/// The one place that turns a world's status into an exception: the earliest, however many steps were run at once.
+/// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.
 void PythonSimulation::raise_faults() {
   Simulation& simulation = *simulation_;
   int first = -1;

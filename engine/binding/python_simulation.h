@@ -1,4 +1,4 @@
-/// A simulation as Python holds it: one door for all calls, at which a caller that cannot be served is refused by name.
+/// A simulation for Python. All calls go through it; a call that is not possible is refused with a message.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -19,8 +19,8 @@ using WallsIn = nanobind::ndarray<const float, nanobind::shape<-1, 4>, nanobind:
 class PythonSimulation {
  public:
   /// Arguments as `Simulation` has them; 0 threads for all processors, "" for the best kernel.
-  /// EngineError: a number is out of bounds, the kernel is unknown, there is too little memory, or nothing finds a
-  /// place.
+  /// EngineError: a number is out of bounds, the kernel is unknown, there is too little memory, or there is no place
+  /// for the initial agents or foods.
   PythonSimulation(nanobind::dict config, WallsIn walls, int64_t outer_walls, const std::vector<uint64_t>& seeds,
                    int threads, const std::string& kernel, const std::vector<int32_t>& slot_order,
                    bool flush_denormals);
@@ -33,11 +33,11 @@ class PythonSimulation {
   /// The same, and IndexError: there is no such world.
   World& world(int index);
 
-  /// A world whose slots can be relied upon; one that stopped since they could not be is not read by them.
+  /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
-  /// Advances all worlds. Between pieces of a fraction of a second Python handles signals, so that Ctrl-C raises
-  /// KeyboardInterrupt; the worlds are whole then, after fewer steps.
+  /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises
+  /// KeyboardInterrupt. The worlds are then in a valid state, after fewer steps.
   /// EngineError: also what a world reports.
   void run(int64_t steps);
 
@@ -46,7 +46,7 @@ class PythonSimulation {
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
-  int64_t piece_ = 1;  ///< steps between two looks at the keyboard
+  int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
 };
 
 /// A world config from a nested dict. EngineError: a number is out of bounds.

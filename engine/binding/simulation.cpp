@@ -83,7 +83,7 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
 }
 
-/// Full observations of the living, in their order, from the state as it is now.
+/// Full observations of the living, in their order, from the present state.
 nb::object observations(PythonSimulation& self, int index) {
   World& from = self.slotted(index);
   const FloatMode mode(self.get().flush());
@@ -105,14 +105,15 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
   const size_t agents = x.shape(0), foods = food_x.shape(0);
   if (y.shape(0) != agents || angle.shape(0) != agents || energy.shape(0) != agents || food_y.shape(0) != foods ||
       food_kind.shape(0) != foods) {
-    throw nb::value_error("the arrays of agents, and those of foods, have one length each");
+    throw nb::value_error("all arrays of agents must have the same length, and all arrays of foods too");
   }
   const auto view = []<class T>(const T& array) {
     return Array<const typename T::Scalar>{array.data(), static_cast<int64_t>(array.shape(0))};
   };
   if (!self.get().set_scene(
           index, {view(x), view(y), view(angle), view(energy), view(food_x), view(food_y), view(food_kind)})) {
-    throw nb::value_error("more agents than slots, or more foods of a kind than its capacity, or an unknown kind");
+    throw nb::value_error(
+        "there are more agents than slots, more foods of a kind than its capacity, or an unknown kind");
   }
 }
 
@@ -133,7 +134,7 @@ void bind_simulation(nb::module_& module) {
   module.def(
       "read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
       nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
-      "What the engine understood of a config.");
+      "A config as the engine has read it.");
   module.def(
       "memory_needed",
       [](nb::dict config, int32_t walls, int64_t worlds, int threads) {
@@ -142,7 +143,7 @@ void bind_simulation(nb::module_& module) {
       nb::arg("config"), nb::arg("walls"), nb::arg("worlds"), nb::arg("threads"),
       nb::sig(
           "def memory_needed(config: dict[str, typing.Any], walls: int, worlds: int, threads: int) -> dict[str, int]"),
-      "Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.");
+      "Bytes that a simulation would reserve, by purpose; 0 threads for all processors.");
   nb::class_<PythonFloatMode>(module, "FloatMode",
                               "Context manager: this thread computes with floats as the engine does.")
       .def(nb::init<>())
@@ -174,10 +175,10 @@ void bind_simulation(nb::module_& module) {
             return to_arrays(s.get().save(world));
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
-          "All that decides a world's future, as arrays: copies.")
+          "Copies of everything that decides a world's future, as arrays.")
       .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
-           "Puts a saved world in place of one. ValueError: what is wrong; the world is then as it was.")
+           "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")
@@ -188,7 +189,7 @@ void bind_simulation(nb::module_& module) {
           "One array of a world's state, by slot.")
       .def("view_names", &state_names, "Paths that `view` knows.")
       .def("poke", &poke_state, nb::arg("world"), nb::arg("path"), nb::arg("index"), nb::arg("value"),
-           "For tests: writes one number of a world's state, as a fault of the memory would.")
+           "For tests: overwrites one number of a world's state, as a memory error would.")
       .def(
           "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
       .def(

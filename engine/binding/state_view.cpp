@@ -10,7 +10,7 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-/// Arrays that have one row per slot; all others are flat.
+/// Arrays that have one row per slot. All others are flat.
 bool is_by_slot(const std::string& name) {
   static const std::set<std::string> names = {
       "alive",          "living",       "free",          "eaten",   "genome", "touch",    "params", "folded_bias",
@@ -69,7 +69,7 @@ void poke_state(PythonSimulation& self, int index, const std::string& path, int6
       });
     }
   });
-  if (!known) throw nb::key_error(("no number '" + path + "' of that index in the state").c_str());
+  if (!known) throw nb::key_error(("no number '" + path + "' with this index in the state").c_str());
 }
 
 nb::list state_names(PythonSimulation& self) {

@@ -17,7 +17,7 @@ nanobind::object view_state(nanobind::handle self, int index, const std::string&
 /// The paths that `view_state` knows.
 nanobind::list state_names(PythonSimulation& self);
 
-/// Writes one number of the state, as a fault of the memory would: for tests of what finds it.
+/// Overwrites one number of the state, as a memory error would: for tests of the checks that find it.
 void poke_state(PythonSimulation& self, int index, const std::string& path, int64_t at, double value);
 
 }  // namespace hedon

@@ -16,7 +16,7 @@ class Block {
     barrier();
   }
 
-  /// Which way a thread goes changes nothing here.
+  /// Threads need not take the same branch here.
   template <class Body>
   __device__ void for_each_backward(int count, Body&& body) const {
     for_each(count, body);

@@ -1,8 +1,8 @@
 /// Whole windows of many worlds on a CUDA device, from the same sources as on the CPU: one block per world.
 ///
-/// This unit is compiled to be sure that the step path stays fit for a device; the engine does not load it yet. Each
-/// thread does for its agent what one member of a team does, lanes as loops; a learner's update is one thread's. What a
-/// fast version would change: lanes over the threads of a warp, and one block per learner.
+/// This unit is compiled as a test that the step path still compiles for a device; the engine does not load it yet. A
+/// thread does the work of one member of a team, with lanes as loops. One thread does the update of a learner. A fast
+/// version would put lanes on the threads of a warp, and use one block per learner.
 #include "lanes/cuda.h"
 
 #include "cuda/block.h"
@@ -11,7 +11,7 @@
 
 namespace hedon {
 
-/// How the products are cut up: small tiles, since each number of one is a register.
+/// Tiles of the matrix products: small, since each number of a tile is a register.
 struct CudaShape {
   static constexpr int rows = 2;
   static constexpr int lanes = 1;

@@ -1,4 +1,4 @@
-/// Settings of genome, mutation and reward. Meaning, unit, range and source stand in `src/hedon/config/evolution.py`.
+/// Settings of genome, mutation and reward. Meaning, unit, range and source are in `src/hedon/config/evolution.py`.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// What is inherited: one reward weight per food kind, one for action, then neutral markers that enter no reward.
+/// The genome: one reward weight per food kind, one for action, then neutral markers without effect on rewards.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hedon {
 
-/// Where each gene lies. The neutral markers are mutated like the others: they are the control for drift.
+/// The index of each gene. Neutral markers mutate like the others: they are the control for drift.
 struct GenomeShape {
   int32_t kinds;
   int32_t neutral;
@@ -35,8 +35,8 @@ HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, 
 }
 
 /// A child's genome: the parent's plus Cauchy noise of scale `mutation_scale`, clipped to the weight limit.
-/// With frozen noise (a fault of the released code, kept for study) the noise depends on the seed, the gene and the
-/// number `birth_in_window` of the successful birth within its window, so that every window repeats one small table.
+/// With frozen noise (a fault of the released code, kept for study) the noise depends on the seed, the gene and
+/// `birth_in_window`, the number of the birth within its window; so every window uses the same small table of noise.
 HEDON_FN void inherit(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t child_id,
                       uint32_t birth_in_window, const float* parent, float* child) {
   const bool frozen = config.mutation_noise == MutationNoise::frozen;

@@ -12,7 +12,7 @@ namespace hedon {
 /// r = sum over kinds of w_k n_k + c_act w_act |f| / |f|_max.
 /// eaten      foods of each kind eaten in this step (kinds)
 /// force      Euclidean norm of the two applied forces
-/// max_force  the norm of both motors at full thrust; unused where the action is not normalized
+/// max_force  the norm of both motors at full force; not used if the action is not normalized
 HEDON_FN float reward(const GenomeShape& shape, const RewardConfig& config, const float* genome, const int32_t* eaten,
                       float force, float max_force) {
   float sum = 0.0f;

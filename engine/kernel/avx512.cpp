@@ -6,15 +6,15 @@
 
 namespace hedon {
 
-/// How the products are cut up to fill this instruction set's 32 registers of 16 floats.
+/// Tiles of the matrix products, chosen to fill this instruction set's 32 registers of 16 floats.
 struct Avx512Shape {
-  static constexpr int rows = 4;           ///< of a product's tile
-  static constexpr int lanes = 4;          ///< of 16 columns in a tile
+  static constexpr int rows = 4;           ///< rows of a tile
+  static constexpr int lanes = 4;          ///< vectors of 16 columns in a tile
   static constexpr int forward_lanes = 4;  ///< the same for a single row; even, for weights in pairs
-  static constexpr int samples = 4;        ///< that go through the first layer together
-  static constexpr int row_samples = 4;    ///< that go back through it together
-  static constexpr int row_lanes = 4;      ///< of 16 columns in that
-  static constexpr int chains = 12;        ///< for the measure of the processor's ceiling
+  static constexpr int samples = 4;        ///< samples that go forward through the first layer together
+  static constexpr int row_samples = 4;    ///< samples that go backward through it together
+  static constexpr int row_lanes = 4;      ///< vectors of 16 columns there
+  static constexpr int chains = 12;        ///< for the measurement of the processor's peak rate
 };
 
 extern const Kernel AVX512_KERNEL;

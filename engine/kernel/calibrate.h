@@ -1,4 +1,4 @@
-/// Rates of multiply-adds in registers and of reads: the ceilings that the other kernels are measured against.
+/// Rates of multiply-adds in registers and of reads: the peak rates that other kernels are compared with.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 namespace hedon {
 namespace {
 
-/// See `Kernel::multiply_adds`. As many independent chains as fit the registers, so that latency does not count.
+/// See `Kernel::multiply_adds`. As many independent chains as fit the registers, so that latency does not matter.
 template <class Shape>
 HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   constexpr int chains = Shape::chains;
-  // All different: equal lanes would be computed once.
+  // All different: the compiler would compute equal lanes only once.
   alignas(64) float first[chains * 16];
   for (int i = 0; i < chains * 16; ++i) first[i] = static_cast<float>(i) * *result;
   Lanes total[chains];
@@ -26,7 +26,7 @@ HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   return rounds * chains * 16 * 2;
 }
 
-/// See `Kernel::sum_floats`. Four sums, so that additions do not wait for one another.
+/// See `Kernel::sum_floats`. Four partial sums, so that additions do not wait for one another.
 HEDON_FN float sum_floats(const float* values, int64_t count) {
   constexpr int sums = 4, stride = sums * 16;
   Lanes total[sums];

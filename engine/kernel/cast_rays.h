@@ -7,17 +7,17 @@
 namespace hedon {
 namespace {
 
-inline constexpr float NOTHING = 3.0e38f;  ///< the distance [u] of what was not hit
+inline constexpr float NOTHING = 3.0e38f;  ///< the distance if nothing is hit [u]
 inline constexpr int32_t ROWS_PER_ARC = HIDDEN / RAY_ARCS;
 
 /// Directions of the 16 rays of an arc, and what they have found so far.
 struct RayLanes {
   Lanes direction_x, direction_y;
-  Lanes distance;  ///< from the rays' start [u]; larger than any ray where nothing is hit
+  Lanes distance;  ///< from the rays' start [u]; larger than any ray if nothing is hit
   Lanes type;
 };
 
-/// Rays start on the body's surface, so what lies between there and the center is at distance 0.
+/// Rays start on the body's surface, so an object between there and the center is at distance 0.
 HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lanes start, Lanes length, Lanes type) {
   const Lanes distance = larger(broadcast(0.0f), from_center - start);
   const Lanes candidate = select(both(hit, distance <= length), distance, broadcast(NOTHING));
@@ -25,8 +25,8 @@ HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lane
   rays.distance = smaller(candidate, rays.distance);
 }
 
-/// A ray misses a circle whose far side lies before the ray's start. There is no branch, since which circle crosses any
-/// of 16 rays is hard to guess. Nor is there much to wait for, so each circle asks for a row of what is read `next`.
+/// A ray misses a circle whose far side is before the ray's start. There is no branch, because branch prediction for 16
+/// rays would often fail. Memory is idle here, so each circle prefetches a row of the data that is read `next`.
 HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const int32_t* circle, int32_t circles,
                                   const Rows& next, int32_t first_row, RayLanes& rays) {
   const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
@@ -46,8 +46,8 @@ HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const i
   }
 }
 
-/// Those of the 16 segments from `first` on, as bits, that an arc does not surely miss: it does where a segment lies
-/// behind an edge, or even its whole line is out of reach.
+/// As bits: which of the 16 segments from `first` on an arc may hit. It surely misses a segment that lies behind one of
+/// its edges, or whose whole line is out of reach.
 HEDON_INLINE uint32_t segments_ahead(const RayScene& scene, const Eye& eye, const Arc& arc, int32_t first) {
   const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y), zero = broadcast(0.0f);
   const Lanes reach = broadcast(eye.start + eye.length);
@@ -64,7 +64,7 @@ HEDON_INLINE uint32_t segments_ahead(const RayScene& scene, const Eye& eye, cons
   return asked & ~(to_bits(right_of_it) | to_bits(left_of_it) | to_bits(beyond));
 }
 
-/// Segments count as longer by a millionth, so that no ray slips through where two meet.
+/// Segments are made longer by a millionth, so that no ray passes between two that meet.
 HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const Arc& arc, RayLanes& rays) {
   const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
   const Lanes type = broadcast(scene.segment_type);

@@ -7,8 +7,8 @@
 namespace hedon {
 namespace {
 
-/// See `Kernel::cull_circles`. A circle is left out of an arc where it lies beyond the rays' reach or wholly behind one
-/// of the arc's edges; what is kept may still be missed by every ray.
+/// See `Kernel::cull_circles`. A circle is left out of an arc if it is out of reach or completely behind one of the
+/// arc's edges. Rays may still miss a circle that is kept.
 HEDON_FN void cull_circles(const RayScene& scene, const Eye& eye, int32_t first, int32_t last, Sighted& sighted) {
   const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y), reach = broadcast(eye.start + eye.length);
   const Lanes zero = broadcast(0.0f);

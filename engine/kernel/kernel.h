@@ -1,7 +1,7 @@
 /// The table of hot kernels. One table per instruction set; one is chosen when a simulation is made.
 ///
-/// The units that fill a table are compiled for their instruction set, so they define nothing that the linker could
-/// take for other code: everything in them is in an anonymous namespace, and they include no standard containers.
+/// The units that fill a table are compiled for their instruction set. So they define nothing that the linker could use
+/// in other code: everything in them is in an anonymous namespace, and they include no standard containers.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,7 @@ struct Rows {
 
 inline constexpr int RAY_ARCS = PACKED_RAYS / 16;
 
-/// The sector of the plane that 16 neighboring rays can reach: directions of its edges, 0 where it is not convex.
+/// The sector of the plane that 16 neighboring rays can reach: directions of its edges, 0 if it is not convex.
 struct Arc {
   float right_x, right_y, left_x, left_y;
 };
@@ -67,14 +67,14 @@ struct Arc {
 struct Eye {
   float x, y;                  ///< the agent's center [u]
   float forward_x, forward_y;  ///< its heading, a unit vector
-  const float* ray_cosine;     ///< of each ray's angle to the heading; (32), what lies past `rays` repeats the last
+  const float* ray_cosine;     ///< of each ray's angle to the heading; (32), entries past `rays` repeat the last
   const float* ray_sine;
   int32_t rays;
   float start;   ///< distance from the center at which rays start: the body's radius [u]
   float length;  ///< of a ray, from its start [u]
-  int32_t self;  ///< index of the agent's own circle, which hides nothing from it; -1 where it has none
+  int32_t self;  ///< index of the agent's own circle, which its rays ignore; -1 if it has none
   Arc arc[RAY_ARCS];
-  Rows next;  ///< what is read once the rays are cast: asked for meanwhile, a row per circle
+  Rows next;  ///< data that is read after the rays are cast: prefetched meanwhile, one row per circle
 
   HEDON_INLINE int32_t arcs() const { return (rays + 15) / 16; }
 };
@@ -88,7 +88,7 @@ struct Sighted {
 struct Kernel {
   const char* name;
 
-  /// Pairs the weights, unless `network.paired` is null, and folds the bias; to be done when parameters change.
+  /// Pairs the weights, unless `network.paired` is null, and folds the bias. Call it when parameters change.
   void (*derive)(const NetworkShape& shape, const ActingNetwork& network);
 
   /// Mean (2) and value (1) for one observation.
@@ -106,19 +106,19 @@ struct Kernel {
   PpoLoss (*update)(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
                     const Learner& learner);
 
-  /// Appends those of the circles [first, last) that each arc may touch, in order. What it leaves out no ray can hit.
+  /// Appends those of the circles [first, last) that each arc may touch, in order. No ray can hit those left out.
   void (*cull_circles)(const RayScene& scene, const Eye& eye, int32_t first, int32_t last, Sighted& sighted);
 
-  /// Nearest hit of each ray among the sighted circles and all segments: `reading` = 2 - d / length (that is reading +
-  /// 1), 0 where nothing is hit; `type` likewise. Both have PACKED_RAYS entries, 0 past the eye's rays; `reading` is
-  /// aligned to 64 bytes. Ties go to the first, circles before segments.
+  /// Nearest hit of each ray among the sighted circles and all segments: `reading` = 2 - d / length (that is, the
+  /// observed reading + 1) and `type`; both are 0 if nothing is hit. Both have PACKED_RAYS entries, 0 past the eye's
+  /// rays; `reading` is aligned to 64 bytes. Of equal distances the first counts, circles before segments.
   void (*cast_rays)(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type);
 
-  /// Multiply-adds in registers, to measure this processor's ceiling. Reads a factor (below 1) from `result` and
-  /// leaves there a number that depends on all of them. Returns how many floating-point operations that were.
+  /// Multiply-adds in registers, to measure this processor's peak rate. Reads a factor (below 1) from `result` and
+  /// writes there a number that depends on all of them. Returns the number of floating-point operations.
   int64_t (*multiply_adds)(int64_t rounds, float* result);
 
-  /// Sum of `count` floats, a multiple of 64, aligned to 64 bytes: reads them as fast as they come, to measure caches.
+  /// Sum of `count` floats, a multiple of 64, aligned to 64 bytes: reads as fast as possible, to measure caches.
   float (*sum_floats)(const float* values, int64_t count);
 };
 

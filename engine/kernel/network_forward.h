@@ -1,6 +1,6 @@
 /// The network of one agent over lanes: the sparse first layer, the square layer, the heads.
 ///
-/// Lanes are outputs and inner indices run in order, so each number is the same whatever the shape of a tile.
+/// Lanes are outputs and inner indices run in order, so results do not depend on the shape of a tile.
 #pragma once
 
 #include "kernel/kernel.h"
@@ -27,7 +27,7 @@ struct PlainRows {
   }
 };
 
-/// Rows of 64 weights in pairs: each one with that 16 columns further.
+/// Rows of 64 weights in pairs: each one with the one 16 columns further.
 struct PairedRows {
   const float* first;
 
@@ -44,8 +44,8 @@ struct PairedRows {
   }
 };
 
-/// Adds A·B to a tile of R rows and C lanes of columns. begin(r, c) gives what a sum starts from, end(r, c, sum) takes
-/// it. a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE
+/// Adds A·B to a tile of R rows and C lanes of columns. begin(r, c) gives the start of a sum, end(r, c, sum) takes the
+/// sum. a   element (row r, inner k) at r * ROW_STRIDE + k * INNER_STRIDE
 template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Matrix, class Begin, class End>
 HEDON_INLINE void multiply_tile(const float* a, const Matrix& b, int column, int inner, const Begin& begin,
                                 const End& end) {
@@ -63,7 +63,7 @@ HEDON_INLINE void multiply_tile(const float* a, const Matrix& b, int column, int
   unroll<R>([&](auto r) HEDON_INLINED { unroll<C>([&](auto c) HEDON_INLINED { end(r, c, total[r][c]); }); });
 }
 
-/// All of A·B: `rows` rows by 64 columns, in tiles of R rows and C lanes; what is left over in tiles of fewer rows.
+/// All of A·B: `rows` rows by 64 columns, in tiles of R rows and C lanes; the remaining rows in smaller tiles.
 /// begin(row, column) and end(row, column, sum) as above, with the column counted in floats.
 template <int R, int C, int ROW_STRIDE, int INNER_STRIDE, class Matrix, class Begin, class End>
 HEDON_INLINE void multiply(const float* a, const Matrix& b, int rows, int inner, const Begin& begin, const End& end,
@@ -88,7 +88,7 @@ HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Ma
   Lanes bias[WIDTH], row[WIDTH];
   PlainRows{b1}.read<WIDTH>(0, 0, bias);
   const ObservationShape& sizes = shape.observation;
-  // Ray by ray, not row by row: the sum rounds the same wherever the rows lie.
+  // Ray by ray, not row by row: the rounding of the sum does not depend on the order of rows in memory.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
       w1.template read<WIDTH>(sizes.ray_entry(r, type), 0, row);
@@ -112,7 +112,8 @@ HEDON_FN void derive(const NetworkShape& shape, const ActingNetwork& network) {
   fold_bias(shape, b1, PairedRows{network.paired}.after(shape.w1() / HIDDEN), network.folded);
 }
 
-/// Whether ray r hit the same type in all of S observations. Neighbors in time mostly agree, so the branch is cheap.
+/// Whether ray r hit the same type in all S observations. Observations of neighboring steps mostly agree, so the branch
+/// is cheap.
 template <int S>
 HEDON_INLINE bool same_type(const PackedObservation* const* observation, int32_t r) {
   const int type = observation[0]->ray_type[r];
@@ -121,8 +122,8 @@ HEDON_INLINE bool same_type(const PackedObservation* const* observation, int32_t
   return difference == 0;
 }
 
-/// The first hidden layer of S observations at once: one row-addition per ray, per touch and per dense entry. A row
-/// that all of them read is loaded once.
+/// The first hidden layer of S observations together: one row-addition per ray, per touch and per dense entry. A row
+/// that all of them read is loaded only once.
 /// hidden   (S, 64), after the tanh
 template <int S, class Matrix>
 HEDON_INLINE void first_layer(const NetworkShape& shape, const Matrix& w1, const float* folded,
@@ -175,7 +176,7 @@ HEDON_INLINE void second_layer(const NetworkShape& shape, const float* params, c
           HEDON_INLINED { store(hidden2 + row * HIDDEN + column, tanh_lanes(total)); });
 }
 
-/// Mean (2) and value of one sample. The second hidden layer comes in registers or memory by `hidden(c)`.
+/// Mean (2) and value of one sample. `hidden(c)` gives the second hidden layer, from registers or memory.
 HEDON_INLINE void heads(const NetworkShape& shape, const float* params, const float* hidden2, float* output) {
   Lanes total[OUTPUTS];
   unroll<OUTPUTS>([&](auto o) HEDON_INLINED {

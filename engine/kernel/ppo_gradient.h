@@ -9,8 +9,8 @@
 namespace hedon {
 namespace {
 
-/// The samples `order[0 .. count)` of a block: pointers to their observations, and what the loss needs, filled up to a
-/// multiple of 16 by repeating the last with no share.
+/// The samples `order[0 .. count)` of a block: pointers to their observations, and the data for the loss, filled up to
+/// a multiple of 16 by repeating the last one with share 0.
 HEDON_INLINE void gather(const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
                          const PackedObservation** observation) {
   const int padded = (count + LANES - 1) / LANES * LANES;
@@ -26,8 +26,8 @@ HEDON_INLINE void gather(const PpoBatch& batch, const int32_t* order, int count,
   }
 }
 
-/// Backward through the heads: adds to their weights' gradient and the second bias's, and replaces the second hidden
-/// layer by the derivative by that layer's sums.
+/// Backward through the heads: adds to the gradients of their weights and of the second bias, and replaces the second
+/// hidden layer by the derivative with respect to that layer's sums.
 HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params, const BlockSamples& block, int count,
                                  float* hidden2, float* gradient) {
   for (int column = 0; column < HIDDEN; column += LANES) {
@@ -57,8 +57,8 @@ HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params,
   }
 }
 
-/// Backward through C lanes of the first layer, for S samples: adds the derivative of each to the rows that it read. A
-/// row that all of them read is loaded and stored once; sums run in the order of the samples either way.
+/// Backward through C lanes of the first layer, for S samples: adds the derivative of each sample to the rows that it
+/// read. A row that all of them read is loaded and stored once; sums are always in the order of the samples.
 template <int S, int C>
 HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation* const* observation,
                               const float* by_sum, float* gradient) {
@@ -158,7 +158,7 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
       memory.hidden1, PlainRows{memory.hidden2}, HIDDEN, count,
       [&](int row, int column) HEDON_INLINED { return load(w2 + row * HIDDEN + column); },
       [&](int row, int column, Lanes total) HEDON_INLINED { store(w2 + row * HIDDEN + column, total); });
-  // Each tile reads and writes its own part of hidden1, which nothing else needs any more.
+  // Each tile reads and writes its own part of hidden1, which is not needed elsewhere after this.
   multiply<Shape::rows, Shape::lanes, HIDDEN, 1>(
       memory.hidden2, PlainRows{memory.w2_transposed}, count, HIDDEN,
       [&](int, int) HEDON_INLINED { return broadcast(0.0f); },
@@ -204,7 +204,8 @@ HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const Learning
     gradient_of_block<Shape>(shape, params, batch, order + first, count, share, constants, memory, gradient, sums);
   }
 
-  // The rays' -1: x = x' - 1, so each of their rows loses the sum of the derivatives, which is the bias's gradient.
+  // The -1 of the rays: x = x' - 1, so subtract the sum of the derivatives (the bias's gradient) from each of their
+  // rows.
   for (int32_t row = 0; row < shape.observation.ray_entries(); ++row) {
     unroll<WIDTH>([&](auto c) HEDON_INLINED {
       float* const at = gradient + row * HIDDEN + c * LANES;

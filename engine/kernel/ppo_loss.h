@@ -1,4 +1,4 @@
-/// The loss of PPO and its derivative by the network's outputs, 16 samples at a time.
+/// The loss of PPO and its derivative with respect to the network's outputs, 16 samples at a time.
 #pragma once
 
 #include "kernel/kernel.h"
@@ -8,14 +8,14 @@
 namespace hedon {
 namespace {
 
-/// Per block: what the loss needs of each sample, and the derivatives that come back.
+/// Per block: the inputs of the loss for each sample, and the derivatives.
 struct alignas(64) BlockSamples {
-  float output[OUTPUTS][BLOCK];  ///< mean (2) and value; replaced by the loss's derivatives
+  float output[OUTPUTS][BLOCK];  ///< mean (2) and value; replaced by the derivatives of the loss
   float action[ACTIONS][BLOCK];
   float log_prob[BLOCK];
   float advantage[BLOCK];
   float target[BLOCK];
-  float share[BLOCK];  ///< 1 / minibatch_size; 0 for what fills up the last lanes
+  float share[BLOCK];  ///< 1 / minibatch_size; 0 for samples that only fill the last lanes
 };
 
 /// Sums over a minibatch, lane by lane.
@@ -25,10 +25,10 @@ struct LossSums {
   Lanes log_sd[ACTIONS];
 };
 
-/// What is the same for all samples of a minibatch.
+/// Data that all samples of a minibatch share.
 struct LossConstants {
   Lanes sd_inverse[ACTIONS];
-  Lanes log_scale;  ///< sum of log-sd plus log(2π): what the log-probability loses besides the squares
+  Lanes log_scale;  ///< sum of log-sd plus log(2π): the log-probability subtracts it, besides the squares
   Lanes clip_low, clip_high;
   Lanes value_coef;
   Lanes target_mean;
@@ -70,7 +70,7 @@ HEDON_INLINE void loss_of_lanes(const LossConstants& constants, BlockSamples& bl
   const Lanes error = value - (constants.batch_mean ? constants.target_mean : target);
   sums.value = sums.value + half * (error * error);
   if (constants.batch_mean) {
-    // The mean over all pairs of ½(V_i - T_j)² is that of ½(V_i - mean T)² plus half the variance of T.
+    // The mean of ½(V_i - T_j)² over all pairs is the mean of ½(V_i - mean T)² plus half the variance of T.
     const Lanes spread = target - constants.target_mean;
     sums.value = sums.value + half * (spread * spread);
   }

@@ -12,8 +12,8 @@ inline constexpr int BLOCK = 64;  ///< samples that go through the network toget
 struct PpoScratch {
   float* folded;         ///< (64), the first bias with the -1 of the rays folded in
   float* w2_transposed;  ///< (64, 64)
-  float* hidden1;        ///< (BLOCK, 64); later the loss's derivative by the first layer's sums
-  float* hidden2;        ///< (BLOCK, 64); likewise of the second layer
+  float* hidden1;        ///< (BLOCK, 64); later the derivative of the loss with respect to the first layer's sums
+  float* hidden2;        ///< (BLOCK, 64); the same for the second layer
   float* gradient;       ///< (size)
 };
 

@@ -15,8 +15,8 @@ HEDON_INLINE double power(double base, int64_t exponent) {
   return result;
 }
 
-/// Below this a moment is 0: it moves nothing, and would fade through denormal numbers, which some processors flush to
-/// zero and others compute slowly. NaN stays NaN.
+/// Below this, a moment is set to 0. It has no effect any more, and would become a denormal number, which some
+/// processors flush to zero and others compute slowly. NaN stays NaN.
 constexpr float SMALLEST_MOMENT = 1e-30f;
 
 HEDON_INLINE Lanes without_tiny(Lanes moment) {

@@ -1,4 +1,4 @@
-/// Puts the kernels of one unit into its table. Include after the unit's lane type.
+/// Puts the kernels of one unit into its table. Include it after the unit's lane type.
 #pragma once
 
 #include "kernel/calibrate.h"

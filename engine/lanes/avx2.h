@@ -1,4 +1,4 @@
-/// 16 floats in two AVX2 registers. The operations are described in `avx512.h`, and give the same bits.
+/// 16 floats in two AVX2 registers. `avx512.h` describes the operations; they give the same bits.
 #pragma once
 
 #include <immintrin.h>

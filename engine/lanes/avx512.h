@@ -5,7 +5,7 @@
 /// `sum` adds in a fixed tree (halves of 8, 4, 2, 1); `to_bits` gives one bit per lane, the first the lowest.
 #pragma once
 
-// GCC before 13 takes the undefined operands inside its own AVX-512 header for mistakes (GCC bug 105593).
+// GCC before 13 warns about the undefined operands inside its own AVX-512 header (GCC bug 105593).
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ < 13
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"

@@ -1,4 +1,4 @@
-/// 16 floats in one thread of a CUDA device. The operations are described in `avx512.h`.
+/// 16 floats in one thread of a CUDA device. `avx512.h` describes the operations.
 #pragma once
 
 #include "lanes/unroll.h"

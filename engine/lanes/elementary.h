@@ -6,8 +6,8 @@
 namespace hedon {
 namespace {
 
-/// tanh, absolute error below 5e-7. A rational function x·P(x²)/Q(x²), fitted to least maximal error on [0, 7.8];
-/// beyond it stays at its last value, 1 - 3e-7. NaN stays NaN.
+/// tanh, absolute error below 5e-7. A rational function x·P(x²)/Q(x²), fitted for the smallest maximal error on
+/// [0, 7.8]; above that it keeps its last value, 1 - 3e-7. NaN stays NaN.
 HEDON_INLINE Lanes tanh_lanes(Lanes x) {
   x = larger(broadcast(-7.8f), smaller(broadcast(7.8f), x));
   const Lanes z = x * x;

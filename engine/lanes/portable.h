@@ -1,8 +1,7 @@
-/// 16 floats for any processor, as four vectors of four in the compilers' own notation (GCC, Clang).
+/// 16 floats for any processor, as four vectors of four, with the vector extensions of GCC and Clang.
 ///
-/// The operations are described in `avx512.h`. `multiply_add` rounds twice here: few processors without one of the
-/// other files have a fused one, and emulating it would cost a hundred times as much. So bits differ from the other
-/// kernels.
+/// `avx512.h` describes the operations. `multiply_add` rounds twice here: of the processors that need this file, few
+/// have a fused one, and an emulation would take a hundred times as long. So bits differ from the other kernels.
 #pragma once
 
 #include "lanes/unroll.h"

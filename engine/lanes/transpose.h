@@ -1,4 +1,4 @@
-/// Transposes small matrices by shuffles of four floats, the same on every processor.
+/// Transposes small matrices with shuffles of four floats, in the same way on every processor.
 #pragma once
 
 #include "base/device.h"
@@ -8,7 +8,7 @@ namespace {
 
 #if defined(__CUDACC__)
 
-/// A device has no such shuffles.
+/// CUDA devices have no such shuffles.
 HEDON_INLINE void transpose(const float* from, int size, float* to) {
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) to[column * size + row] = from[row * size + column];

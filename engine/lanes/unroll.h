@@ -5,7 +5,7 @@
 
 #include "base/device.h"
 
-/// The same for lambdas: written after their parameters.
+/// The same for lambdas; write it after their parameters.
 #define HEDON_INLINED __attribute__((always_inline))
 
 namespace hedon {

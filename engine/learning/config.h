@@ -1,4 +1,4 @@
-/// Settings of PPO. Meaning, unit, range and source of each stand in `src/hedon/config/learning.py`.
+/// Settings of PPO. Meaning, unit, range and source of each are in `src/hedon/config/learning.py`.
 #pragma once
 
 #include <cstdint>

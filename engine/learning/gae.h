@@ -7,7 +7,7 @@
 
 namespace hedon {
 
-/// Advantage and value target of each step of a rollout in which nothing ended.
+/// Advantage and value target of each step of a rollout without an end of an episode.
 /// reward, value       (count)
 /// bootstrap           value of the observation after the last step, under the policy that acted
 /// advantage, target   (count), written: the sum over l of (gamma·lambda)^l · delta_{t+l}, and that plus the value

@@ -1,4 +1,4 @@
-/// A fresh network.
+/// The initial parameters of a network.
 #pragma once
 
 #include <cmath>
@@ -9,9 +9,9 @@
 
 namespace hedon {
 
-inline constexpr float MEAN_HEAD_GAIN = 0.01f;  ///< small, so that a fresh policy hardly depends on what it sees
+inline constexpr float MEAN_HEAD_GAIN = 0.01f;  ///< small, so that a new policy hardly depends on observations
 
-/// Numbers of a stream one after the other, in place.
+/// Draws from a stream, one after another.
 struct DrawSequence {
   RandomStream stream;
   uint32_t next;
@@ -56,7 +56,7 @@ HEDON_FN void orthogonalize(float gain, float* rows) {
   }
 }
 
-/// Fresh parameters: weights and biases uniform within ±1/sqrt(inputs of the layer), the mean head's weights
+/// Initial parameters: weights and biases uniform within ±1/sqrt(inputs of the layer), the mean head's weights
 /// orthogonal, log-sd 0. `params` has `shape.size()` floats.
 HEDON_FN void init_network(const NetworkShape& shape, const RandomStream& stream, float* params) {
   DrawSequence draws{stream, 0};
@@ -65,7 +65,7 @@ HEDON_FN void init_network(const NetworkShape& shape, const RandomStream& stream
   const float first = 1.0f / sqrtf(static_cast<float>(inputs));
   const float later = 1.0f / sqrtf(static_cast<float>(HIDDEN));
   float* const w1 = params + shape.w1();
-  // Ray by ray, not row by row: what an entry draws does not depend on where its row lies.
+  // Ray by ray, not row by row: the draw of an entry does not depend on the place of its row in memory.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
       draws.uniform(first, HIDDEN, w1 + sizes.ray_entry(r, type) * HIDDEN);

@@ -12,8 +12,8 @@ inline constexpr int HIDDEN = 64;
 inline constexpr int ACTIONS = 2;
 inline constexpr int OUTPUTS = ACTIONS + 1;  ///< mean of each action, then the value
 
-/// Where each layer lies in the flat array of an agent's parameters. Weights are stored by input row: `w[in][out]`.
-/// The layout is a multiple of 16 floats; what pads it is 0 and stays 0.
+/// The place of each layer in the flat array of an agent's parameters. Weights are stored by input row: `w[in][out]`.
+/// The layout is a multiple of 16 floats; the padding is 0 and stays 0.
 struct NetworkShape {
   ObservationShape observation;
 
@@ -27,14 +27,14 @@ struct NetworkShape {
   HEDON_INLINE int32_t size() const { return b3() + 16; }
   HEDON_INLINE int32_t pairs() const {
     return b2() / 2;
-  }  ///< of all before b2: rows of 64 that stand where those of the parameters do, b1 unused
+  }  ///< of all before b2: rows of 64 at the same places as in the parameters; b1 is not used
 };
 
-/// What an agent acts with: its parameters, and what `Kernel::derive` makes of them.
+/// What an agent acts with: its parameters, and the data that `Kernel::derive` computes from them.
 struct ActingNetwork {
   const float* params;
   float* folded;  ///< (64) b1, less the -1 that all ray channels read: folded[j] = b1[j] - sum of w1[row, j] over rays
-  float* paired;  ///< (pairs) w1 and w2 rounded, see `weight_pair.h`; null where agents act with the parameters
+  float* paired;  ///< (pairs) w1 and w2 rounded, see `weight_pair.h`; null if agents act with the parameters
 };
 
 }  // namespace hedon

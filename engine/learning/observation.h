@@ -1,8 +1,8 @@
-/// The packed observation: what a network reads, without the many entries that are known beforehand.
+/// The packed observation: the input of a network, without the many entries that are always the same.
 ///
-/// A ray reads at most one channel other than -1, and touch is mostly 0. With x' = x + 1 for the rays the -1 folds into
-/// the bias of the first layer (exact algebra), and the layer becomes one row-addition per ray instead of one per
-/// channel. The full observation, in the order of docs/model.md, section 5, is recovered by `unpack`.
+/// A ray has at most one channel that is not -1, and touch is mostly 0. With x' = x + 1 for the rays, the -1 becomes a
+/// part of the bias of the first layer (exact algebra). The layer is then one row-addition per ray instead of one per
+/// channel. `unpack` gives the full observation, in the order of docs/model.md, section 5.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ inline constexpr int MAX_DENSE = 6;
 
 /// One observation: 192 bytes, three cache lines.
 struct alignas(64) PackedObservation {
-  float ray[PACKED_RAYS];         ///< reading + 1 of the channel that the ray hit, in [1, 2]; 0 where it hit nothing
-  uint8_t ray_type[PACKED_RAYS];  ///< that channel; 0 where the ray hit nothing
+  float ray[PACKED_RAYS];         ///< reading + 1 of the channel that the ray hit, in [1, 2]; 0 if it hit nothing
+  uint8_t ray_type[PACKED_RAYS];  ///< that channel; 0 if the ray hit nothing
   uint64_t touch;                 ///< bit type * sectors + sector
   float dense[MAX_DENSE];         ///< velocity (2), heading (1, or sine and cosine), angular velocity, energy
 };
@@ -34,7 +34,7 @@ struct ObservationShape {
   HEDON_INLINE int32_t ray_entries() const { return types * rays; }
   HEDON_INLINE int32_t size() const { return ray_entries() + touches + dense; }
 
-  /// Where a ray and a type are. Neighboring rays mostly hit one type, so what they read lies in a line.
+  /// The row of a ray and a type. Neighboring rays mostly hit the same type, so their rows are next to one another.
   HEDON_INLINE int32_t ray_entry(int32_t ray, int32_t type) const { return type * rays + ray; }
 };
 

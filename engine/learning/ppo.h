@@ -1,4 +1,4 @@
-/// What one learner does at the end of a window: advantages, the order of its minibatches, the update.
+/// One learner's work at the end of a window: advantages, the order of its minibatches, the update.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hedon {
 
-/// What one agent saw, did and got in a window of `count` steps.
+/// The observations, actions and rewards of one agent in a window of `count` steps.
 struct Rollout {
   const PackedObservation* observation;  ///< (count)
   const float* action;                   ///< (count, 2), before the sigmoid
@@ -21,7 +21,7 @@ struct Rollout {
   int32_t count;                         ///< a multiple of minibatch_size
 };
 
-/// Writes a uniformly random permutation of 0 … count - 1 (Fisher and Yates), and moves `index` on in the stream.
+/// Writes a uniformly random permutation of 0 … count - 1 (Fisher and Yates), and advances `index` in the stream.
 HEDON_FN void permute(const RandomStream& stream, int32_t count, uint32_t& index, int32_t* order) {
   for (int32_t i = 0; i < count; ++i) order[i] = i;
   Random4 draw{};
@@ -38,8 +38,8 @@ HEDON_FN void permute(const RandomStream& stream, int32_t count, uint32_t& index
   }
 }
 
-/// Puts the steps of each minibatch of a permutation in the order of time. What minibatch a step falls into stays
-/// random; but an agent sees nearly the same from one step to the next, which the kernels make use of.
+/// Sorts the steps of each minibatch of a permutation by time. The minibatch of a step stays random. But observations
+/// change little from one step to the next, which makes the kernels faster.
 /// owner, end   (count) scratch
 HEDON_FN void sort_minibatches(int32_t count, int32_t minibatch_size, int32_t* owner, int32_t* end, int32_t* order) {
   for (int32_t first = 0, batch = 0; first < count; first += minibatch_size, ++batch) {

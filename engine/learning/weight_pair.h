@@ -1,8 +1,8 @@
 /// Two weights in the bits of one float, so that agents read half as much memory when they act.
 ///
-/// The lower 16 bits are the second weight, rounded to bfloat16. The upper 16 are chosen so that the float as a whole
-/// lies next to the first, counted in floats: so the first needs no unpacking, the second a shift. Both are off by at
-/// most 2^-8 of themselves.
+/// The lower 16 bits are the second weight, rounded to bfloat16. The upper 16 are chosen so that the whole float is as
+/// near as possible to the first, counted in floats. So the first needs no unpacking, the second a shift. The relative
+/// error of both is at most 2^-8.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hedon {
 
-/// Where either is NaN both are, whatever its bits.
+/// If either weight is NaN, with any bits, both become NaN.
 HEDON_INLINE float pair_weights(float first, float second) {
   const bool known = first == first && second == second;
   uint32_t upper, lower;

@@ -1,4 +1,4 @@
-/// Movable bodies, static circles and walls: what the physics moves and what it moves among.
+/// Movable bodies, static circles and walls.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hedon {
 
-/// The one shape of all movable bodies, and that of all static circles.
+/// The shape of all movable bodies, and the shape of all static circles.
 struct BodyShape {
   float radius;         ///< of a movable body [u]
   float mass;           ///< of a movable body
@@ -20,13 +20,13 @@ struct BodyShape {
   HEDON_FIELDS(BodyShape, radius, mass, inertia, circle_radius)
 };
 
-/// A disc of uniform density (π·radius²·density; inertia ½·mass·radius²), and static circles of `circle_radius`.
+/// A disc of uniform density (mass π·radius²·density, inertia ½·mass·radius²), and static circles of `circle_radius`.
 HEDON_FN BodyShape make_disc(float radius, float density, float circle_radius) {
   const float mass = density * PI_F * radius * radius;
   return {radius, mass, 0.5f * mass * radius * radius, circle_radius};
 }
 
-/// Movable bodies by slot. Heading 0 looks along +y; positive is counter-clockwise.
+/// Movable bodies by slot. Heading 0 points along +y; positive is counter-clockwise.
 struct BodyState {
   Array<float> x;                 ///< center [u]
   Array<float> y;                 ///< center [u]
@@ -38,7 +38,7 @@ struct BodyState {
   HEDON_FIELDS(BodyState, x, y, angle, velocity_x, velocity_y, angular_velocity)
 };
 
-/// What pushes each body during the first substep of a step, by slot.
+/// Force and torque on each body during the first substep of a step, by slot.
 struct BodyForce {
   Array<float> x;       ///< [mass·u/s²]
   Array<float> y;       ///< [mass·u/s²]
@@ -56,7 +56,7 @@ struct StaticCircles {
   HEDON_FIELDS(StaticCircles, x, y, present)
 };
 
-/// A wall: a segment without thickness that is solid from both sides.
+/// A wall: a segment without thickness, solid on both sides.
 struct Segment {
   Vec2 a, b;  ///< [u]
 

@@ -1,4 +1,4 @@
-/// Settings of the rigid-body physics. Meaning, unit, range and source of each stand in `src/hedon/config/physics.py`.
+/// Settings of the rigid-body physics. Meaning, unit, range and source of each are in `src/hedon/config/physics.py`.
 #pragma once
 
 #include <cstdint>

@@ -1,18 +1,18 @@
-/// Contacts of one substep, with all that the solver reads about them in one place.
+/// Contacts of one substep, with all the data that the solver needs.
 ///
-/// All bodies are discs of one mass and one inertia, so impulses are kept per mass [u/s], and a normal impulse, which
-/// passes through the center, never turns a body. `arm` is the distance from the center to the contact point, which
-/// lies halfway between the two surfaces.
+/// All bodies are discs with the same mass and inertia, so impulses are stored per mass [u/s]. A normal impulse passes
+/// through the center, so it never rotates a body. `arm` is the distance from the center to the contact point, which is
+/// halfway between the two surfaces.
 #pragma once
 
 #include <cstdint>
 
 namespace hedon {
 
-/// Which two things a pair joins.
+/// The kinds of the two things in a pair.
 enum class PairKind : int32_t { body, circle, wall };
 
-/// Velocities of one body, side by side because contacts read and write them together.
+/// Velocities of one body, next to one another in memory, because contacts read and write them together.
 struct alignas(16) Motion {
   float x, y;     ///< velocity [u/s]
   float angular;  ///< angular velocity [rad/s]

@@ -1,7 +1,7 @@
-/// A uniform grid of cells, each with a chain of the items whose center lay in it when they were put there.
+/// A uniform grid of cells. Each cell has a linked list of the items whose center was in it when they were inserted.
 ///
-/// Filling costs time in proportion to the items and cells. Single items may be put in and taken out at any
-/// time, so that a query sees a newcomer at once. Items outside the area belong to the cells at its edge; queries reach
+/// Filling takes time in proportion to the items and cells. Single items can be inserted and removed at any time, so
+/// that a query finds a new item immediately. Items outside the area are in the cells at its edge, and queries find
 /// them there.
 #pragma once
 
@@ -14,8 +14,8 @@ namespace hedon {
 
 struct Grid {
   Array<int32_t> head;  ///< first item of each cell, -1 if none; (columns · rows)
-  Array<int32_t> next;  ///< the item that follows in the same cell, -1 at the end; (items)
-  Array<int32_t> cell;  ///< where each item is, -1 if it is not in the grid; (items)
+  Array<int32_t> next;  ///< the next item in the same cell, -1 at the end; (items)
+  Array<int32_t> cell;  ///< cell of each item, -1 if it is not in the grid; (items)
   float inverse_cell;   ///< cells per length [1/u]
   int32_t columns;
   int32_t rows;
@@ -24,7 +24,7 @@ struct Grid {
   HEDON_FIELDS(Grid, head, next, cell, inverse_cell, columns, rows, unused)
 };
 
-/// Index of the cell along one axis; what lies outside, or is not a number, falls into the first or last.
+/// Index of the cell along one axis; a value outside, or NaN, gives the first or last cell.
 HEDON_FN int32_t cell_along(float position, float inverse_cell, int32_t cells) {
   const float at = position * inverse_cell;
   if (!(at > 0.0f)) return 0;
@@ -36,7 +36,7 @@ HEDON_FN void clear_grid(const Grid& grid) {
   for (int64_t item = 0; item < grid.cell.count; ++item) grid.cell[item] = -1;
 }
 
-/// Takes an item out; nothing happens if it is not in.
+/// Removes an item; does nothing if it is not in the grid.
 HEDON_FN void remove(const Grid& grid, int32_t item) {
   if (grid.cell[item] < 0) return;
   int32_t* link = &grid.head[grid.cell[item]];
@@ -45,7 +45,7 @@ HEDON_FN void remove(const Grid& grid, int32_t item) {
   grid.cell[item] = -1;
 }
 
-/// Puts an item at a place, from wherever it was before.
+/// Inserts an item at a place; removes it from its old cell first.
 HEDON_FN void insert(const Grid& grid, int32_t item, float x, float y) {
   const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
   const int32_t row = cell_along(y, grid.inverse_cell, grid.rows);
@@ -71,8 +71,8 @@ HEDON_FN void for_each_in(const Grid& grid, float low_x, float low_y, float high
   }
 }
 
-/// Calls f(item) for a superset of the items that were put within `reach` [u] of a point. Their order is that of
-/// the chains: what is computed from them must not depend on it.
+/// Calls f(item) for a superset of the items that were inserted within `reach` [u] of a point. Their order is that of
+/// the linked lists; results must not depend on it.
 template <class F>
 HEDON_FN void for_each_near(const Grid& grid, float x, float y, float reach, F&& f) {
   for_each_in(grid, x - reach, y - reach, x + reach, y + reach, f);

@@ -1,4 +1,5 @@
-/// Islands: groups of bodies that may touch one another in this build, shared out into batches that need not meet.
+/// Islands: groups of bodies that may touch one another until the next build. Islands are divided into independent
+/// batches.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 
 namespace hedon {
 
-/// Root of the island of a rank, halving the path on the way.
+/// Root of the island of a rank; halves the path to it.
 HEDON_FN int32_t find_root(const Array<int32_t>& parent, int32_t rank) {
   while (parent[rank] != rank) {
     parent[rank] = parent[parent[rank]];
@@ -26,16 +27,16 @@ HEDON_FN void join(const Array<int32_t>& parent, int32_t a, int32_t b) {
     parent[a] = b;
 }
 
-/// Batches of a list of so many bodies: enough for some threads, large enough to keep each one busy.
+/// Number of batches for this number of bodies: enough for several threads, each large enough to keep one busy.
 HEDON_FN int32_t batch_count(int32_t bodies) {
   const int32_t wanted = bodies / 16;
   return wanted < 1 ? 1 : (wanted > MAX_BATCHES ? MAX_BATCHES : wanted);
 }
 
 /// Gives each rank its place: batch by batch, and by rank within a batch. Islands go to batches in the order of
-/// their lowest rank, so that the batches have nearly equal work where no single island exceeds its share.
+/// their lowest rank, so that the batches have nearly equal work if no single island is larger than its share.
 /// scratch.parent   joined islands
-/// scratch.work     pairs by first rank on entry; used up
+/// scratch.work     pairs by first rank on entry; overwritten
 HEDON_FN void assign_places(NeighborHead& head, const PhysicsScratch& scratch, int32_t bodies) {
   int64_t total = bodies;
   for (int32_t rank = 0; rank < bodies; ++rank) {

@@ -1,7 +1,7 @@
 /// The neighbor list (Verlet 1967): all pairs that may touch before any body has moved half the skin.
 ///
-/// Its order is canonical: bodies by their rank in the caller's order, circles by slot, walls by index. What the
-/// solver computes does not depend on the skin, since only overlapping pairs act and a longer list keeps their order.
+/// Its order is canonical: bodies by their rank in the caller's order, circles by slot, walls by index. Results of the
+/// solver do not depend on the skin, since only overlapping pairs act and a longer list keeps their order.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace hedon {
 
-/// Part of the skin that a body may use up before the list is built again: half, less what rounding may hide.
+/// Share of the skin that a body may move before the list is built again: half, minus a margin for rounding.
 inline constexpr float SKIN_SHARE = 0.49f;
 
-/// Calls f(slot) for a superset of the bodies whose centers lie within `reach` [u] of a point, wherever they moved
-/// since the last build. A body that has left the order since is still named unless it was taken out.
+/// Calls f(slot) for a superset of the bodies whose centers lie within `reach` [u] of a point, including bodies that
+/// moved since the last build. A body that has left the order since then is included too, unless it was removed.
 template <class F>
 HEDON_FN void for_each_body_near(const PhysicsState& state, float x, float y, float reach, F&& f) {
   for_each_near(state.body_grid, x, y, reach + 0.5f * state.neighbors.head[0].skin, f);
@@ -117,7 +117,7 @@ HEDON_FN void find_circle_pairs(const PhysicsState& state, const BodyShape& shap
   }
 }
 
-/// Walks along each wall, row of cells by row, and looks at the bodies on both sides of it.
+/// Follows each wall through the rows of cells, and lists the bodies on both sides of it.
 HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape, const PhysicsScratch& scratch,
                               float skin, PairBuilder& pairs) {
   const Grid& grid = state.body_grid;
@@ -129,7 +129,7 @@ HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape,
     const int32_t first_row = cell_along(low.y - margin, grid.inverse_cell, grid.rows);
     const int32_t last_row = cell_along(high.y + margin, grid.inverse_cell, grid.rows);
     for (int32_t row = first_row; row <= last_row; ++row) {
-      // The part of the wall that bodies of this row may touch; the outer rows hold all that lies beyond them.
+      // The part of the wall that bodies of this row may touch; the outer rows also hold all bodies beyond them.
       const float cell = 1.0f / grid.inverse_cell;
       const float bottom = row == 0 ? low.y : static_cast<float>(row) * cell - margin;
       const float top = row == grid.rows - 1 ? high.y : static_cast<float>(row + 1) * cell + margin;
@@ -148,8 +148,8 @@ HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape,
   }
 }
 
-/// Moves the candidates into the list, sorted by the place of the first body; equal ones keep their order.
-/// map(second)   what the list stores for a candidate's second
+/// Moves the candidates into the list, sorted by the place of the first body; the sort is stable.
+/// map(second)   the list's value for a candidate's second
 template <class Map>
 HEDON_FN void fill_list(const PairList& list, const PairBuilder& pairs, const Array<int32_t>& place, int32_t bodies,
                         Map&& map) {
@@ -174,7 +174,7 @@ HEDON_FN void fill_list(const PairList& list, const PairBuilder& pairs, const Ar
   list.start[0] = 0;
 }
 
-/// Puts all bodies of the order and all present circles into the grids, anew.
+/// Clears the grids and inserts all bodies of the order and all present circles.
 HEDON_FN void fill_grids(const PhysicsState& state, const int32_t* order, int32_t count) {
   clear_grid(state.body_grid);
   clear_grid(state.circle_grid);
@@ -189,8 +189,8 @@ HEDON_FN void fill_grids(const PhysicsState& state, const int32_t* order, int32_
   }
 }
 
-/// Lists all pairs with a separation below `skin` [u], in place of the old list, whose impulses go on.
-/// Fault: neighbor_overflow, with the number of pairs that the list can hold; the old list is then kept.
+/// Lists all pairs with a separation below `skin` [u]. Replaces the old list, but keeps its impulses.
+/// Fault: neighbor_overflow, with the number of pairs that the list can hold; then the old list stays.
 HEDON_FN void build_neighbors(const PhysicsState& state, const BodyShape& shape, const PhysicsScratch& scratch,
                               const int32_t* order, int32_t count, float skin, Fault& fault) {
   const NeighborList& list = state.neighbors;

@@ -39,8 +39,8 @@ struct PairImpulse {
   }
 };
 
-/// Takes who pushes whom, and how hard, sorted by the ranks of those who push. Pairs without impulse are as good as
-/// none. find(second, &other) gives the name of a pair's second, or false where it is gone.
+/// Saves the pairs with impulses, sorted by the rank of the first body. A pair without impulse has no effect and is
+/// left out. find(second, &other) gives the saved name of a pair's second, or false if it no longer exists.
 template <class Find, class Take>
 void save_pairs(const World& world, const std::vector<int32_t>& rank, const PairList& list, int kind, Find&& find,
                 Take&& take) {
@@ -51,7 +51,7 @@ void save_pairs(const World& world, const std::vector<int32_t>& rank, const Pair
     PairImpulse found{rank[static_cast<size_t>(neighbors.slot[list.first[pair]])], 0, list.normal_impulse[pair],
                       list.tangent_impulse[pair]};
     const float zero[2] = {};
-    // Bits are compared, since a negative zero is not the zero that a new pair begins with.
+    // Compare bits, since a negative zero differs from the zero of a new pair.
     if (found.first < 0 || memcmp(&found.normal, zero, sizeof zero) == 0 || !find(list.second[pair], &found.second))
       continue;
     pairs.push_back(found);
@@ -68,7 +68,7 @@ void save_pairs(const World& world, const std::vector<int32_t>& rank, const Pair
   take(save_list(IMPULSE_NAMES[kind], impulse, {rows, 2}));
 }
 
-/// The place of each slot in the living order; -1 for the dead, and for newborns, whom no list knows yet.
+/// The place of each slot in the living order; -1 for the dead, and for newborns, which are in no list yet.
 std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
   std::vector<int32_t> rank(static_cast<size_t>(world.shape->slots), -1);
   for (size_t i = 0; i < extent.slots.size(); ++i) {
@@ -79,7 +79,7 @@ std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
   return rank;
 }
 
-/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for one only.
+/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for only one.
 template <class Take>
 void save_each(const World& world, Take&& take) {
   const Extent extent = extent_of(world);
@@ -111,7 +111,7 @@ void save_each(const World& world, Take&& take) {
   save_pairs(world, rank, list.walls, 2, wall, take);
 }
 
-/// Multiply and shift, eight bytes at a time: it has to tell states apart, not to resist an attacker.
+/// Multiply and shift, eight bytes at a time: it only has to distinguish states, not to resist an attacker.
 class Hash {
  public:
   void add(const SavedArray& array) {

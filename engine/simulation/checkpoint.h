@@ -1,9 +1,9 @@
 /// A world as named arrays of plain numbers: everything that decides its future, and nothing else.
 ///
-/// Agents stand in the order of their ids, so that nothing in a checkpoint tells in which slots they lived. What can be
-/// worked out again is left out: grids, the neighbor list (its impulses go along), what is derived from networks,
-/// rollouts of agents that will not learn from them. Hence two worlds with equal checkpoints have equal futures, bit
-/// for bit, and a digest of the checkpoint is the digest of the world.
+/// Agents are in the order of their ids, so that a checkpoint does not depend on their slots. Data that can be computed
+/// again is left out: grids, the neighbor list (except its impulses), data derived from networks, and rollouts of
+/// agents that will not learn from them. So two worlds with equal checkpoints have equal futures, bit for bit, and the
+/// digest of the checkpoint is the digest of the world.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 namespace hedon {
 namespace {
 
-constexpr double LARGEST = 1e6;  ///< of any setting that is no count: squares of it, and their sums, are finite
+constexpr double LARGEST = 1e6;  ///< of any setting that is not a count: its square, and sums of squares, are finite
 constexpr int MAX_TOUCH_BITS = 64;
 constexpr int64_t MAX_WALLS = 1024;
 constexpr int64_t MAX_WORLDS = 1'000'000;
@@ -18,7 +18,7 @@ struct Limit {
   int32_t low, high;
 };
 
-/// Every integer of a config. One that is missing here is refused, so that none is forgotten.
+/// Every integer of a config. An integer that is missing here is refused, so that none is forgotten.
 constexpr Limit INTEGERS[] = {
     {"physics.substeps", 1, 100},
     {"physics.velocity_passes", 1, 100},
@@ -38,7 +38,7 @@ constexpr Limit INTEGERS[] = {
     {"learning.update_epochs", 0, 1000},
 };
 
-/// Lengths and times that something is divided by, or that a loop goes on with.
+/// Settings that are divisors or steps of loops, so they must be above 0.
 constexpr const char* POSITIVE[] = {"arena.width",
                                     "arena.height",
                                     "physics.dt",
@@ -56,7 +56,7 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "learning.adam_epsilon",
                                     "learning.clip_coef"};
 
-/// Keeps the first complaint.
+/// Keeps the first problem.
 class Complaint {
  public:
   std::string text;
@@ -80,7 +80,7 @@ void check_number(Complaint& complaint, const std::string& path, const std::stri
                    "from " + std::to_string(limit.low) + " to " + std::to_string(limit.high));
     return;
   }
-  complaint.add(path, value, "known to the engine's own check");
+  complaint.add(path, value, "in the engine's own list of settings");
 }
 
 void check_number(Complaint& complaint, const std::string& path, const std::string& name, float value) {
@@ -88,11 +88,11 @@ void check_number(Complaint& complaint, const std::string& path, const std::stri
   for (const char* positive : POSITIVE) complaint.need(name != positive || value > 0.0f, path, value, "above 0");
 }
 
-/// Visits every number below a part of a config. `path` is what a message calls it, `name` the same without indices.
+/// Visits every number in a part of a config. `path` is its name in messages, `name` the same without indices.
 template <class T>
 void visit(Complaint& complaint, const std::string& path, const std::string& name, const T& value) {
   if constexpr (std::is_enum_v<T>) {
-    // Filled by name, so it is one of them.
+    // Filled by name, so it is valid.
   } else if constexpr (std::is_arithmetic_v<T>) {
     check_number(complaint, path, name, value);
   } else if constexpr (std::is_same_v<T, Vec2>) {
@@ -120,7 +120,7 @@ void check_food(Complaint& complaint, const WorldConfig& config) {
     if (place.form == PlacementForm::uniform) continue;
     const int32_t fewest = place.form == PlacementForm::switching ? 2 : 1;
     complaint.need(place.centers.count >= fewest, path + ".placement.centers", place.centers.count,
-                   "at least " + std::to_string(fewest) + " of this form");
+                   "at least " + std::to_string(fewest) + " for this form");
     complaint.need(place.sd.x > 0.0f && place.sd.y > 0.0f, path + ".placement.sd", place.sd.x, "two numbers above 0");
   }
 }

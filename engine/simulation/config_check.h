@@ -1,4 +1,4 @@
-/// The engine's own door: what its memory and its loops rest upon holds of a config, whoever hands it over.
+/// The engine's own check of its input: its memory and its loops rely on these rules, whoever calls it.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace hedon {
 
-/// What is wrong with a config, by the path of the setting; "" where it can be run. Ranges are those of
-/// `src/hedon/config/`, or wider: people read their messages, this one keeps the engine whole.
+/// What is wrong with a config, with the path of the setting; "" if it can be run. Ranges are those of
+/// `src/hedon/config/`, or wider: users see the messages from there; this check protects the engine.
 std::string check_config(const WorldConfig& config);
 
-/// The same for what comes beside the config.
+/// The same for the arguments besides the config.
 /// walls        the first `outer_walls` of them make up the closed outer polygon
 /// slot_order   each slot once, or nothing
 std::string check_company(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,

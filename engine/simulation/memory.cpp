@@ -13,7 +13,7 @@ Memory::Memory(int64_t bytes) : size_(bytes) {
   const auto address = reinterpret_cast<uintptr_t>(block_);
   first_ = reinterpret_cast<char*>((address + PAGE - 1) / PAGE * PAGE);
 #if defined(MADV_HUGEPAGE)
-  madvise(first_, static_cast<size_t>(bytes), MADV_HUGEPAGE);  // advice: without it all works, only slower
+  madvise(first_, static_cast<size_t>(bytes), MADV_HUGEPAGE);  // a hint: without it, everything works, but slower
 #endif
 }
 

@@ -1,4 +1,4 @@
-/// One block of memory per world, laid out from the lists of fields.
+/// One block of memory per world; the lists of fields give its layout.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
   });
 }
 
-/// Zeroed memory. Pages that nobody touches cost nothing. Large pages are asked for: a step reads weights from all over
-/// a world's block, and with small pages spends more time on finding them than on reading them.
+/// Zeroed memory. Pages that are never touched use no memory. It asks for large pages: a step reads weights from the
+/// whole block of a world, and with small pages it would spend more time on address translation than on reading.
 class Memory {
  public:
   static constexpr int64_t ALIGNMENT = 64;           ///< of each array: a cache line, and 16 floats
@@ -67,7 +67,7 @@ class Memory {
 /// Bytes that an array takes, in whole cache lines.
 template <class T>
 int64_t laid_out_bytes(const Array<T>& array) {
-  // One spare line: vector loads may read, never use, up to 15 floats past the end.
+  // One spare line: vector loads may read, but never use, up to 15 floats past the end.
   const int64_t bytes = array.count * static_cast<int64_t>(sizeof(T)) + Memory::ALIGNMENT;
   return (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
 }
@@ -83,10 +83,10 @@ int64_t lay_out(Struct& fields, char* at) {
   return offset;
 }
 
-/// How many bodies, circles, walls and pairs the physics of a world must hold.
+/// Numbers of bodies, circles, walls and pairs that the physics of a world must hold.
 PhysicsCapacity world_physics_capacity(const World& world);
 
-/// Sets how many items each array of a world holds, for teams of up to `members`.
+/// Sets the sizes of all arrays of a world, for teams of up to `members`.
 void set_counts(World& world, int members);
 
 }  // namespace hedon

@@ -1,8 +1,9 @@
-/// Decides, stretch by stretch, whether a team steps a world together or lets one member step it alone.
+/// Decides, for each stretch of steps, whether a team steps a world together or one member steps it alone.
 ///
-/// The members of a team meet several times per step. Where other programs want the processors, one that waits its turn
-/// holds up the whole team, and one member alone is faster. Both ways give the same bits, so the choice may follow the
-/// clock: the faster way is taken, and the other is tried now and then.
+/// The members of a team wait for one another several times per step. If other programs use the processors too, a
+/// member that has to wait for a processor delays the whole team, and one member alone is faster. Both ways give the
+/// same bits, so the choice may depend on measured times: the faster way is used, and the other is tried from time to
+/// time.
 #pragma once
 
 #include <chrono>
@@ -14,22 +15,22 @@ namespace hedon {
 
 class Pace {
  public:
-  /// Steps until the next decision: a few milliseconds, in a large world a single step.
+  /// Steps until the next decision: a few milliseconds long; in a large world a single step.
   int64_t stretch() const {
     const double seconds = together_ > alone_ ? together_ : alone_;
     const double steps = seconds > 0.0 ? SECONDS / seconds : 1.0;
     return steps < 1.0 ? 1 : (steps > LONGEST ? LONGEST : static_cast<int64_t>(steps));
   }
 
-  /// Which way the next stretch goes.
+  /// Whether the next stretch is stepped together.
   bool together() const {
     if (count_ < START) return count_ % 2 == 0;
     const bool faster = together_ <= alone_;
     return count_ % TRIAL == TRIAL - 1 ? !faster : faster;
   }
 
-  /// Notes how long a stretch took [s per step]. A disturbance makes a stretch longer, never shorter, so a shorter one
-  /// is believed at once, and a longer one little by little.
+  /// Notes how long a stretch took [s per step]. A disturbance makes a stretch longer, never shorter. So a shorter time
+  /// is accepted immediately, and a longer one gradually.
   void note(bool together, double seconds) {
     double& known = together ? together_ : alone_;
     known = known == 0.0 || seconds < known ? seconds : known + WEIGHT * (seconds - known);
@@ -39,17 +40,17 @@ class Pace {
  private:
   static constexpr double SECONDS = 0.008;  ///< of a stretch
   static constexpr int64_t LONGEST = 32;    ///< steps of a stretch
-  static constexpr int64_t START = 4;       ///< stretches at first that go both ways in turn
-  static constexpr int64_t TRIAL = 64;      ///< of those after, one in so many goes the other way: costs about 1 %
-  static constexpr double WEIGHT = 0.25;    ///< of a longer stretch in what is known
+  static constexpr int64_t START = 4;       ///< first stretches, which try both ways in turn
+  static constexpr int64_t TRIAL = 64;      ///< after those, every 64th stretch tries the other way: costs about 1 %
+  static constexpr double WEIGHT = 0.25;    ///< weight of a longer time in the estimate
 
   double together_ = 0.0;  ///< 0 while unknown
   double alone_ = 0.0;
   int64_t count_ = 0;
 };
 
-/// Steps a world for up to `count` steps, or until `step_once(members)` says that it is over; returns how many were
-/// asked for, at most a stretch. All members of the team call it.
+/// Steps a world for up to `count` steps, but at most a stretch, or until `step_once(members)` says that the world is
+/// over. Returns `count` or the length of the stretch, if that is shorter. All members of the team call it.
 template <class StepOnce>
 int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once) {
   const auto go = [&](Team& members) {
@@ -61,7 +62,7 @@ int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once
   }
   const int64_t stretch = pace.stretch();
   if (count > stretch) count = stretch;
-  // What each member has decided by changes when the stretch is noted: the barriers below keep that until all have.
+  // `note` changes the data that members decide by: the barriers below delay it until all members have decided.
   const auto begun = std::chrono::steady_clock::now();
   const bool together = pace.together();
   if (together)

@@ -1,5 +1,5 @@
-/// From a checkpoint back to a world. A checkpoint may come from anywhere: all that a step relies upon is checked
-/// before the world is touched.
+/// Restores a world from a checkpoint. A checkpoint may come from anyone: everything that a step relies on is checked
+/// before the world is changed.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,7 +13,7 @@
 namespace hedon {
 namespace {
 
-/// What a checkpoint's numbers may be. Reads arrays by name; keeps the first complaint.
+/// Checks the numbers of a checkpoint. Reads arrays by name; keeps the first problem.
 class Inspector {
  public:
   Inspector(const World& world, const Checkpoint& checkpoint) : world_(world), checkpoint_(checkpoint) {}
@@ -41,7 +41,7 @@ class Inspector {
     return false;
   }
 
-  /// Whether an array is there, of the type and, unless -1, of the lengths that this config gives it.
+  /// Whether an array is there, with the right type and, unless -1, the lengths for this config.
   template <class T>
   bool has(const std::string& name, const std::vector<int64_t>& shape) {
     const SavedArray* array = find(name);
@@ -54,7 +54,7 @@ class Inspector {
     return true;
   }
 
-  /// Whether all numbers of an array lie within bounds; what is not a number does not.
+  /// Whether all numbers of an array are within bounds; NaN is not.
   template <class T>
   bool within(const std::string& name, double low, double high) {
     for (const T value : numbers<T>(name)) {
@@ -88,7 +88,7 @@ bool rises(const std::vector<T>& values, bool strictly) {
   return true;
 }
 
-/// Reads how many rows the arrays have. Slots are those that the world will give to the living.
+/// Reads how many rows the arrays have. The slots are those that the world will give to the living.
 bool read_extent(Inspector& in, Extent& extent) {
   const WorldShape& shape = *in.world_.shape;
   if (!in.has<int64_t>("clock.step", {1}) || !in.has<int32_t>("clock.living_count", {1}) ||
@@ -110,7 +110,7 @@ bool read_extent(Inspector& in, Extent& extent) {
   return true;
 }
 
-/// Every array there, none besides, all numbers finite.
+/// Checks that every array is there, that there are no others, and that all numbers are finite.
 bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpoint) {
   size_t known = 1;
   bool good = true;
@@ -126,7 +126,7 @@ bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpo
     good = good && in.has<int32_t>(PAIR_NAMES[kind], {-1, 2});
     good = good && in.has<float>(IMPULSE_NAMES[kind], {in.find(PAIR_NAMES[kind])->shape[0], 2});
   }
-  if (good && checkpoint.size() != known) return in.refuse("an array is there that no world has, or one twice");
+  if (good && checkpoint.size() != known) return in.refuse("there is an unknown array, or an array appears twice");
   return good;
 }
 
@@ -146,7 +146,7 @@ bool check_life(Inspector& in) {
   const std::vector<int32_t> parents = in.numbers<int32_t>("life.parent_id");
   const std::vector<int32_t> generations = in.numbers<int32_t>("life.generation");
   for (size_t i = 0; i < ids.size(); ++i) {
-    if (parents[i] >= ids[i]) return in.refuse("life.parent_id names an agent that is younger than its child");
+    if (parents[i] >= ids[i]) return in.refuse("life.parent_id has an agent that is younger than its child");
     if (generations[i] > ids[i]) return in.refuse("life.generation counts more ancestors than there were agents");
   }
   return in.within<int64_t>("clock.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
@@ -173,15 +173,15 @@ bool check_food(Inspector& in, const Extent& extent) {
     const FoodConfig& config = world.config->food[k];
     const int32_t centers = config.placement.centers.count > 0 ? config.placement.centers.count : 1;
     if (present[at] != count) return in.refuse("food_stock.present differs from the foods that are there");
-    if (fabs(number[at]) > config.capacity) return in.refuse("food_stock.number is beyond the capacity");
-    if (center[at] < 0 || center[at] >= centers) return in.refuse("food_stock.center names a center that is not there");
+    if (fabs(number[at]) > config.capacity) return in.refuse("food_stock.number is above the capacity");
+    if (center[at] < 0 || center[at] >= centers) return in.refuse("food_stock.center is not the index of a center");
   }
   return in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
          in.within<float>("food.x", 0, world.config->arena.width) &&
          in.within<float>("food.y", 0, world.config->arena.height);
 }
 
-/// What networks look rows up by: channels of rays, and bits of touch.
+/// Checks the indices by which networks read rows: channels of rays, and bits of touch.
 bool check_observations(Inspector& in, const Extent& extent) {
   if (extent.filled == 0) return true;
   const WorldShape& shape = *in.world_.shape;
@@ -194,7 +194,7 @@ bool check_observations(Inspector& in, const Extent& extent) {
     bool good = (one.touch & beyond) == 0;
     for (int r = 0; r < PACKED_RAYS; ++r) good = good && one.ray_type[r] < sizes.types && std::isfinite(one.ray[r]);
     for (const float value : one.dense) good = good && std::isfinite(value);
-    if (!good) return in.refuse("observation holds what no agent can see");
+    if (!good) return in.refuse("observation has values that are not possible");
   }
   return true;
 }
@@ -214,11 +214,11 @@ bool check_pairs(Inspector& in, const Extent& extent) {
       const bool good = first >= 0 && first < living && second >= 0 && second < others[kind] &&
                         (kind > 0 || first < second) && key > before && impulse[i] >= 0.0f &&
                         std::isfinite(impulse[i]) && std::isfinite(impulse[i + 1]);
-      if (!good) return in.refuse(std::string(PAIR_NAMES[kind]) + " holds a pair that cannot be");
+      if (!good) return in.refuse(std::string(PAIR_NAMES[kind]) + " has a pair that is not possible");
       before = key;
     }
     if (static_cast<int64_t>(who.size() / 2) > lists[kind]->first.count)
-      return in.refuse(std::string(PAIR_NAMES[kind]) + " holds more pairs than the neighbor list");
+      return in.refuse(std::string(PAIR_NAMES[kind]) + " has more pairs than the neighbor list can hold");
   }
   return true;
 }

@@ -1,4 +1,4 @@
-/// Which arrays of a world a checkpoint holds, and where their rows lie: the one list for saving and restoring.
+/// The arrays of a world that a checkpoint holds, and the places of their rows: one list for saving and restoring.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace hedon {
 
-/// How many rows the arrays of a checkpoint have, and which slots they belong to.
+/// Numbers of rows in the arrays of a checkpoint, and their slots.
 struct Extent {
   std::vector<int32_t> slots;  ///< of the living, in the order of their ids
-  std::vector<int32_t> foods;  ///< slots of the foods present, rising
-  int64_t learners;            ///< the first so many of the living were there when the window began
+  std::vector<int32_t> foods;  ///< slots of the foods present, ascending
+  int64_t learners;            ///< number of the living that were there when the window began; they come first
   int64_t filled;              ///< steps done in the window
 };
 
-/// Rows of one array as they lie in a world: row i begins `stride` bytes times index[i] (or i) after `first`.
+/// Rows of one array in the memory of a world: row i begins `stride` bytes times index[i] (or i) after `first`.
 template <class T>
 struct SavedRows {
   T* first;
   int64_t stride;
-  const int32_t* index;  ///< null where the rows lie one after another
+  const int32_t* index;  ///< null if the rows are consecutive
   int64_t count;
   int64_t width;  ///< numbers in a row; 0 for an array of one dimension
 
@@ -38,13 +38,13 @@ struct SavedRows {
   }
 };
 
-/// Fields of `Clock` that follow from others, or tell what a reader has taken.
+/// Fields of `Clock` that follow from others, or that count what a reader has taken.
 inline bool is_derived(const char* clock_field) {
   return strcmp(clock_field, "free_count") == 0 || strcmp(clock_field, "event_count") == 0 ||
          strcmp(clock_field, "reserved") == 0;
 }
 
-/// Calls visit(name, SavedRows) for each array of a checkpoint but `food.slot` and the impulses. Between two windows
+/// Calls visit(name, SavedRows) for each array of a checkpoint except `food.slot` and the impulses. Between two windows
 /// there are no rollouts.
 template <class Visit>
 void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
@@ -64,7 +64,7 @@ void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
     visit(name, SavedRows<T>{array.data, (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T)),
                              extent.slots.data(), living, width});
   };
-  // The rows of the window so far, of those that will learn from it.
+  // The rows of the window so far, for the agents that will learn from it.
   const auto rollout = [&]<class T>(const std::string& name, T* first, int64_t rows, int64_t row_width) {
     visit(name, SavedRows<T>{first, rows * row_width * static_cast<int64_t>(sizeof(T)), extent.slots.data(),
                              extent.learners, extent.filled * row_width});
@@ -97,7 +97,7 @@ void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
   rollout("reward", state.reward.data, steps, 1);
 }
 
-/// An array of a checkpoint without numbers yet.
+/// An array of a checkpoint, without values.
 template <class T>
 SavedArray make_saved(const std::string& name, std::vector<int64_t> shape) {
   const NumberKind kind = std::is_floating_point_v<T>
@@ -109,7 +109,7 @@ SavedArray make_saved(const std::string& name, std::vector<int64_t> shape) {
   return {name, kind, static_cast<int32_t>(sizeof(T)), std::move(shape), std::vector<char>(bytes)};
 }
 
-/// Names of the impulses of the three kinds of pairs: who with whom, and how hard.
+/// Names of the pairs of the three kinds, and of their impulses.
 inline constexpr const char* PAIR_NAMES[] = {"pair.body", "pair.circle", "pair.wall"};
 inline constexpr const char* IMPULSE_NAMES[] = {"impulse.body", "impulse.circle", "impulse.wall"};
 

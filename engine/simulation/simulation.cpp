@@ -11,7 +11,7 @@
 namespace hedon {
 namespace {
 
-/// Adds the time since the last lap to a part. Reads the clock only; nothing in a world depends on it.
+/// Adds the time since the last lap to a part. It only reads the clock; nothing in a world depends on it.
 class Stopwatch {
  public:
   explicit Stopwatch(PartSeconds* seconds) : seconds_(seconds), last_(std::chrono::steady_clock::now()) {}
@@ -28,7 +28,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Lays out all that a world needs, from `at` on unless null; returns the bytes that it takes.
+/// Places all arrays of a world from `at` on, unless `at` is null; returns the number of bytes.
 int64_t lay_out_world(World& world, char* at) {
   int64_t bytes = 0;
   const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
@@ -117,7 +117,7 @@ void Simulation::begin(World& world) {
   }
 }
 
-/// Takes everything out of a world.
+/// Removes everything from a world.
 void Simulation::empty(World& world) {
   for_each_array(world.state, "", []<class T>(const std::string&, Array<T>& array) {
     memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
@@ -150,7 +150,7 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
 }
 
 void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
-  // A team's members use scratch next to one another, from its first member's place on.
+  // Members of a team use consecutive scratch, beginning at the first member's place.
   float* scratch = reinterpret_cast<float*>(learn_scratch_.data()) + (thread - team.rank()) * learn_stride_;
   Stopwatch lap(team.rank() == 0 ? &seconds_[static_cast<size_t>(world)] : nullptr);
   Pace& pace = paces_[static_cast<size_t>(world)];
@@ -168,7 +168,8 @@ void Simulation::run(int64_t steps) {
   const int threads = pool_->size();
   const int count = static_cast<int>(going.size());
   if (count == 0) return;
-  // As many worlds as fill all threads evenly run on one thread each; the rest are shared by teams of threads.
+  // The largest number of worlds that divides evenly over all threads runs with one thread per world; teams of threads
+  // step the remaining worlds.
   const int alone = count / threads * threads;
   const int shared = count - alone;
   std::atomic<int> next{0};

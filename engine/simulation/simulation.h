@@ -26,7 +26,7 @@ struct SceneInput {
   Array<const int32_t> food_kind;
 };
 
-/// Bytes that a simulation reserves, by what they are for. What nobody touches costs nothing.
+/// Bytes that a simulation reserves, by purpose. Memory that is never touched costs nothing.
 struct MemoryNeed {
   int64_t networks;  ///< and the moments of their optimizers
   int64_t rollouts;
@@ -36,35 +36,35 @@ struct MemoryNeed {
   HEDON_FIELDS(MemoryNeed, networks, rollouts, physics, rest)
 };
 
-/// Each call sets the floating-point mode that it needs and gives the caller's back.
+/// Each call sets the floating-point mode that it needs and restores the caller's.
 class Simulation {
  public:
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   /// flush   whether denormals are flushed to zero; it changes no result
-  /// What is given must have passed `check_config` and `check_company`.
+  /// The arguments must have passed `check_config` and `check_company`.
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
              const std::vector<int32_t>& slot_order, bool flush = true);
 
-  /// Bytes that a simulation reserves: to be compared with what the machine has, before it is made.
+  /// Bytes that a simulation reserves: compare them with the machine's memory before you make it.
   static MemoryNeed bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
 
-  /// Empties a world and puts these agents and foods into it, wherever they are: for looking at chosen scenes.
-  /// False where they are more than the world can hold.
+  /// Empties a world and puts these agents and foods into it, at any places: for tests of chosen scenes.
+  /// False if there are more than the world can hold.
   bool set_scene(int index, const SceneInput& scene);
 
-  /// All that decides a world's future, as arrays. Deaths that the reader has not yet taken are no part of it.
+  /// Everything that decides a world's future, as arrays. Deaths that the reader has not yet taken are not included.
   Checkpoint save(int index) const;
 
-  /// Puts a saved world in place of one; it goes on with the same bits as the saved one. Returns "", or what is wrong
-  /// with the checkpoint: the world is then as it was.
+  /// Replaces a world by a saved one, which continues with the same bits. Returns "", or what is wrong with the
+  /// checkpoint; then the world is unchanged.
   std::string restore(int index, const Checkpoint& checkpoint);
 
-  /// A hash of all that decides a world's future: equal for equal bits.
+  /// A hash of everything that decides a world's future: equal for equal bits.
   uint64_t digest(int index) const;
 
-  /// Advances every world that is not over by `steps` steps. Which threads do what changes no bit.
+  /// Advances every world that is not over by `steps` steps. The results do not depend on threads.
   void run(int64_t steps);
 
   int world_count() const { return static_cast<int>(worlds_.size()); }

@@ -1,4 +1,4 @@
-/// A window: N steps, then learning, then a look whether all is well. All agents share this clock.
+/// A window: N steps, then learning, then an audit. All agents have the same windows.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hedon {
 
-/// Every agent that lived through the whole window learns from its rollout; all others wait for the next.
+/// Every agent that lived through the whole window learns from its rollout; all others wait for the next window.
 /// `scratch` holds `stride` floats for each member of the group.
 template <class Group>
 HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
@@ -22,7 +22,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   for (int32_t i = 0; i < clock.living_count; ++i) {
     if (state.life[state.living[i]].birth_step <= window_start) ++learners;
   }
-  // The living stand in the order of birth, so those that lived through the window come first.
+  // The living are in the order of birth, so those that lived through the window come first.
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
     note_start(world, slot);
@@ -53,8 +53,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   });
 }
 
-/// Advances a world by `steps` steps, learning at the end of each window; stops early where the world is over.
-/// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with all of the group or a part of
+/// Advances a world by `steps` steps, with learning at the end of each window; stops early if the world is over.
+/// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with the whole group or a part of
 /// it.
 template <class Group, class Pacer, class Lap>
 HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,

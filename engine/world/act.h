@@ -33,7 +33,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
   state.value[row] = output[ACTIONS];
 }
 
-/// Turns the action into the forces of the two motors and what they do to the body.
+/// Turns the action into the forces of the two motors, and the force and torque on the body.
 HEDON_FN void drive(World& world, int32_t slot, int64_t t) {
   const MotorConfig& motor = world.config->motor;
   StepScratch& scratch = world.scratch;

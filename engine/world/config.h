@@ -1,4 +1,4 @@
-/// Settings of a world. Meaning, unit, range and source of each stand in `src/hedon/config/`.
+/// Settings of a world. Meaning, unit, range and source of each are in `src/hedon/config/`.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct BodyConfig {
 struct MotorConfig {
   float min_force;
   float max_force;
-  float angle;  ///< of the motors' places, either side of the heading [degree]
+  float angle;  ///< between each motor and the heading [degree]
 
   HEDON_FIELDS(MotorConfig, min_force, max_force, angle)
 };
@@ -45,10 +45,10 @@ inline constexpr const char* OBSERVATION_SCALING_NAMES[] = {"raw", "unit"};
 
 struct SensorConfig {
   int32_t ray_count;
-  float ray_spread;  ///< of the outermost rays, either side of the heading [degree]
+  float ray_spread;  ///< between the heading and the outermost ray on each side [degree]
   float ray_length;
   int32_t touch_sectors;
-  float mouth_spread;  ///< either side of the heading [degree]
+  float mouth_spread;  ///< between the heading and each end of the mouth [degree]
   ObservationScaling scaling;
 
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling)

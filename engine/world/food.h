@@ -1,4 +1,4 @@
-/// How food grows, where it appears, and who eats it.
+/// How food grows, where it appears, and which agent eats it.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
   mark_stale(state.physics);
 }
 
-/// Tries up to `candidates` places until the foods present of kind `k` reach the floor of its internal number.
+/// Tries up to `candidates` places, until the number of foods present of kind `k` is the floor of its internal number.
 HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& random, int32_t candidates) {
   FoodStock& stock = world.state.food_stock[k];
   for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
@@ -45,7 +45,7 @@ HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& ra
   }
 }
 
-/// Each food goes to the nearest of the agents whose mouths touched it in this step, and is then gone.
+/// The nearest of the agents whose mouths touched a food in this step eats it.
 HEDON_FN void eat(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
@@ -85,7 +85,7 @@ HEDON_FN void eat(World& world) {
   }
 }
 
-/// n <- min(n + g - eaten, n_max), then new food where the floor of n asks for it. The eaten were taken off in `eat`.
+/// n <- min(n + g - eaten, n_max), then new food up to the floor of n. `eat` has already subtracted the eaten food.
 HEDON_FN void grow(World& world) {
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
     const FoodConfig& config = world.config->food[k];

@@ -1,4 +1,4 @@
-/// Energy and age, and what follows from them: births and deaths.
+/// Energy and age, and the births and deaths that depend on them.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace hedon {
 /// Probability of dying in a step at age `age` [step] and energy `energy`.
 HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
   const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * energy);
-  // 1 - 1/(1 + x), written so that nothing cancels when x is small.
+  // 1 - 1/(1 + x), in a form without cancellation for small x.
   const double by_energy = config.kappa * (x / (1.0 + x));
   return by_energy + config.alpha_age * exp_double(config.beta_age * age);
 }
@@ -25,7 +25,7 @@ HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
   return config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy));
 }
 
-/// Decides whether an agent dies at the end of this step, by its draw and its age and energy then.
+/// Decides whether an agent dies at the end of this step, from its draw and its age and energy then.
 HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
   const double age = static_cast<double>(world.clock().step + 1 - life.birth_step);
@@ -33,7 +33,7 @@ HEDON_FN void decide_death(const World& world, int32_t slot) {
                              world.scratch.death_draw[slot] < hazard(world.config->hazard, age, life.energy);
 }
 
-/// One agent's step as its body feels it: meals and costs, then its reward, and whether it breeds and dies.
+/// One agent's step: meals and costs, then its reward, and whether it breeds and dies.
 HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const WorldConfig& config = *world.config;
   const WorldState& state = world.state;
@@ -82,7 +82,7 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   decide_death(world, slot);
 }
 
-/// Adds what the living gained and spent in this step to the ledger, in their order.
+/// Adds the energy that the living gained and spent in this step to the ledger, in their order.
 HEDON_FN void keep_ledger(World& world) {
   Counters& counters = world.counters();
   const StepScratch& scratch = world.scratch;
@@ -114,7 +114,7 @@ HEDON_FN bool find_child_place(const World& world, int32_t parent, Vec2* place) 
   return false;
 }
 
-/// The agents whose draw made them parents have a child each, in random order, where there is a slot and a place.
+/// Each agent whose draw made it a parent has a child, in random order, if there is a free slot and a free place.
 HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
@@ -144,12 +144,12 @@ HEDON_FN void breed(World& world) {
       counters.births_failed_space += 1;
     } else {
       bear(world, parent, place);
-      decide_death(world, parent);  // anew, since she gave of her energy
+      decide_death(world, parent);  // again, since the parent gave energy to the child
     }
   }
 }
 
-/// Takes those who die from the living. Newborns do not face death in the step of their birth.
+/// Removes the agents that die from the living. Newborns cannot die in the step of their birth.
 HEDON_FN void reap(World& world) {
   const WorldState& state = world.state;
   Clock& clock = world.clock();

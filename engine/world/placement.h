@@ -1,4 +1,4 @@
-/// Where something new may stand: inside the arena, overlapping nothing.
+/// Where something new may be placed: inside the arena, without overlap.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hedon {
 
-/// True where a disc lies wholly inside the outer polygon (clockwise, convex) and clear of the inner walls.
+/// Whether a disc is completely inside the outer polygon (clockwise, convex) and touches no inner wall.
 HEDON_FN bool inside_arena(const World& world, Vec2 place, float radius) {
   const Array<Segment>& walls = world.state.physics.walls;
   for (int32_t w = 0; w < world.shape->outer_walls; ++w) {
@@ -25,7 +25,7 @@ HEDON_FN bool inside_arena(const World& world, Vec2 place, float radius) {
   return true;
 }
 
-/// True where a disc overlaps no agent alive and no food present.
+/// Whether a disc overlaps no living agent and no food present.
 HEDON_FN bool free_of_bodies(const World& world, Vec2 place, float radius) {
   const WorldState& state = world.state;
   const PhysicsState& physics = state.physics;

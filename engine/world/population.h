@@ -1,4 +1,4 @@
-/// The slot table: who is born into which slot, and who leaves it.
+/// The slot table: births take a slot, deaths free one.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,9 @@
 
 namespace hedon {
 
-/// Lists the living by rising slot, the order in which a team shares them out: each member's part of every array is
-/// then one piece. By ids, slots of two members share most cache lines, which then go to and fro between the cores.
+/// Lists the living by ascending slot. A team divides them in this order, so that each member's part of every array is
+/// contiguous. In the order of ids, slots of two members would share most cache lines, which would then move back and
+/// forth between the cores.
 HEDON_FN void list_by_slot(World& world) {
   int32_t count = 0;
   for (int32_t slot = 0; slot < world.shape->slots; ++slot) {
@@ -22,7 +23,7 @@ HEDON_FN void list_by_slot(World& world) {
   }
 }
 
-/// A body at rest with a fresh network, no past and the next id, last in the living order. Its genome is the caller's.
+/// A body at rest with a new network, no history and the next id, last in the living order. The caller sets its genome.
 HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int64_t birth_step) {
   WorldState& state = world.state;
   Clock& clock = world.clock();
@@ -60,16 +61,16 @@ HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int
 HEDON_FN void bear(World& world, int32_t parent, Vec2 place) {
   const WorldState& state = world.state;
   Clock& clock = world.clock();
-  Life& mother = state.life[parent];
-  const double share = static_cast<double>(world.config->energy.birth_share) * mother.energy;
-  mother.energy -= share;
-  mother.children += 1;
+  Life& parent_life = state.life[parent];
+  const double share = static_cast<double>(world.config->energy.birth_share) * parent_life.energy;
+  parent_life.energy -= share;
+  parent_life.children += 1;
   const uint32_t id = static_cast<uint32_t>(clock.next_agent_id);
   const Random4 bits = RandomStream{world.seed, Purpose::child_heading, id, 0}.draw(0);
   const int32_t slot = spawn(world, place, wrap_angle(TWO_PI_F * to_uniform(bits.word[0])), share, clock.step + 1);
   Life& child = state.life[slot];
-  child.parent_id = mother.agent_id;
-  child.generation = mother.generation + 1;
+  child.parent_id = parent_life.agent_id;
+  child.generation = parent_life.generation + 1;
   inherit(world.shape->genome, world.config->genome, world.seed, id, static_cast<uint32_t>(clock.births_in_window),
           world.genome(parent), world.genome(slot));
   clock.births_in_window += 1;
@@ -77,7 +78,7 @@ HEDON_FN void bear(World& world, int32_t parent, Vec2 place) {
   world.counters().energy_shared += share;
 }
 
-/// Takes the agent in `slot` from the living and keeps its life for the records. The caller mends the living order.
+/// Removes the agent in `slot` and keeps its life for the records. The caller updates the living order.
 HEDON_FN void bury(World& world, int32_t slot) {
   const WorldState& state = world.state;
   Clock& clock = world.clock();
@@ -102,7 +103,7 @@ HEDON_FN void bury(World& world, int32_t slot) {
 
 /// Puts the founders and the first foods into an empty world.
 HEDON_FN void found(World& world) {
-  constexpr int32_t TRIES = 20000;  ///< per founder or food; a half-full arena needs a handful
+  constexpr int32_t TRIES = 20000;  ///< per founder or food; a half-full arena needs a few
   const WorldConfig& config = *world.config;
   for (int32_t i = 0; i < config.population.initial_count; ++i) {
     const RandomStream random{world.seed, Purpose::initial_place, static_cast<uint32_t>(i), 0};

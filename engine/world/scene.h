@@ -1,4 +1,4 @@
-/// The scene: what rays may hit, sorted so that an agent looks only at what lies around it.
+/// The scene: circles and walls that rays may hit, sorted so that an agent checks only those near it.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace hedon {
 
-/// Gathers the circles that rays may hit and sorts them by cell; within a cell the living come in their order, then the
-/// foods. (A counting sort: its time is in proportion to the circles and cells.)
+/// Collects the circles that rays may hit and sorts them by cell; within a cell, the living come in their order, then
+/// the foods. (A counting sort: its time is in proportion to the circles and cells.)
 HEDON_FN void gather_scene(World& world) {
   Scene& scene = world.scene;
   const WorldState& state = world.state;
@@ -34,7 +34,7 @@ HEDON_FN void gather_scene(World& world) {
   int32_t sum = 0;
   for (int32_t cell = 0; cell < cells; ++cell) {
     sum += scene.start[cell];
-    scene.start[cell] = sum;  // its end, which putting its circles in, last first, makes its start
+    scene.start[cell] = sum;  // the end of the cell; inserting its circles, last one first, makes it the start
   }
   scene.start[cells] = sum;
   const auto put = [&](int32_t circle, float x, float y, float radius, int32_t type) {
@@ -56,7 +56,7 @@ HEDON_FN void gather_scene(World& world) {
   }
 }
 
-/// The scene as the kernels see it.
+/// The scene in the form for the kernels.
 HEDON_FN RayScene ray_scene(const World& world) {
   const Scene& scene = world.scene;
   return {scene.x.data,       scene.y.data,
@@ -79,8 +79,8 @@ struct Box {
   float low_x, low_y, high_x, high_y;
 };
 
-/// The rectangle that holds the fan between two directions, less than half a turn apart, up to `reach`; or the whole
-/// circle where the fan is not convex.
+/// The rectangle around the fan between two directions, less than half a turn apart, up to `reach`; or around the whole
+/// circle if the fan is not convex.
 HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
   if (!convex) return {-reach, -reach, reach, reach};
   const auto least = [](float a, float b) { return a < b ? a : b; };

@@ -1,4 +1,4 @@
-/// Senses: rays, touch and the body's own state, packed into what the network reads.
+/// Senses: rays, touch and the body's own state, packed into the input of the network.
 ///
 /// The observation is a pure function of the world's state at the start of a step.
 #pragma once
@@ -19,7 +19,7 @@ HEDON_FN Rows square_layer(const World& world, int32_t slot) {
   return {network.paired + at / 2, HIDDEN / 2};
 }
 
-/// The eye of the agent in `slot`, which looks along `forward`.
+/// The eye of the agent in `slot`, whose heading is `forward`.
 HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
   const SensorConfig& sensor = world.config->sensor;
   const WorldConstants& constants = *world.constants;
@@ -54,7 +54,7 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, in
   world.kernel->cast_rays(scene, eye, sighted, out.ray, out.ray_type);
 }
 
-/// Keeps where an agent stands when a step begins.
+/// Keeps the position of an agent at the start of a step.
 HEDON_FN void note_start(World& world, int32_t slot) {
   const BodyState& body = world.state.physics.bodies;
   StepScratch& scratch = world.scratch;
@@ -84,7 +84,7 @@ HEDON_FN PackedObservation observe(const World& world, int32_t slot, int rank) {
   return out;
 }
 
-/// Sine and cosine of an angle from those of a near one, by rotation with a short series; far ones are computed anew.
+/// Sine and cosine of an angle from those of a near angle, by rotation with a short series; of a far one, directly.
 HEDON_FN void turn(float sine, float cosine, float start_angle, float angle, float* out_sine, float* out_cosine) {
   const float delta = angle - start_angle;
   if (!(fabsf(delta) < 0.125f)) {
@@ -98,11 +98,11 @@ HEDON_FN void turn(float sine, float cosine, float start_angle, float angle, flo
   *out_cosine = cosine * c - sine * s;
 }
 
-/// What physics tells of contacts: which sectors are touched, and whether a mouth met food.
+/// The visitor of the physics: notes which sectors are touched, and which food a mouth touches.
 struct TouchVisitor {
   World* world;
 
-  /// Sector of a contact in `direction` (unit, world frame) for a body at `angle`; tells also if it is in the mouth.
+  /// Sector of a contact in `direction` (unit, world frame) for a body at `angle`, and whether it is in the mouth.
   HEDON_FN int32_t sector(int32_t slot, Vec2 direction, float angle, bool* mouth) const {
     const StepScratch& scratch = world->scratch;
     const WorldConstants& constants = *world->constants;
@@ -135,7 +135,7 @@ struct TouchVisitor {
     world->state.touch[slot] |= uint64_t{1} << (type * world->config->sensor.touch_sectors + at);
   }
 
-  /// Forgets what was told of a body, before each try of a step.
+  /// Deletes the notes about a body, before each try of a step.
   HEDON_FN void on_start(int32_t slot) { world->state.touch[slot] = 0; }
 };
 

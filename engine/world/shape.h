@@ -14,18 +14,18 @@
 
 namespace hedon {
 
-/// Types that senses tell apart: agents, each food kind, walls.
+/// Types that senses distinguish: agents, each food kind, walls.
 inline constexpr int AGENT_TYPE = 0;
 
-/// The grid by whose cells the circles are sorted that rays may hit.
+/// The grid for sorting the circles that rays may hit.
 struct SceneGrid {
   float inverse_cell;  ///< cells per length [1/u]
   int32_t columns;
   int32_t rows;
 };
 
-/// Cells a third as wide as rays reach, so that the cells around a fan are few and hold little else; wider where an
-/// arena is so empty that there would be more cells than circles.
+/// Cells are a third as wide as a ray is long, so that the cells around a fan are few and hold few other circles. They
+/// are wider if an arena is so empty that there would be more cells than circles.
 HEDON_FN SceneGrid make_scene_grid(const WorldConfig& config, int32_t circles) {
   const float width = config.arena.width, height = config.arena.height;
   const float reach = (config.body.radius + config.sensor.ray_length) / 3.0f;
@@ -52,8 +52,8 @@ struct WorldShape {
   HEDON_FN int32_t types() const { return kinds + 2; }
 };
 
-/// Deaths per slot that can wait for the reader. The host loop reads a few times per second; of a thousand steps, in
-/// which about one in ten dies.
+/// Deaths per slot that can wait for the reader. The host loop reads a few times per second, about every thousand
+/// steps, in which about one agent in ten dies.
 inline constexpr int EVENTS_PER_SLOT = 16;
 
 HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t outer_walls) {
@@ -73,7 +73,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   return shape;
 }
 
-/// Numbers that every step needs, worked out once.
+/// Constants of all steps, computed once.
 struct WorldConstants {
   BodyShape body;
   float motor_arm;                       ///< lever of each motor about the center [u]
@@ -96,7 +96,7 @@ HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
   c.motor_arm = static_cast<float>(config.body.radius * sine);
   c.max_force = config.motor.max_force * sqrtf(2.0f);
   sincos_double(config.sensor.mouth_spread * degree, &sine, &cosine);
-  // A mouth all around: rounding must not leave a gap straight behind.
+  // A mouth on all sides: rounding must not leave a gap directly behind.
   c.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;
   const int32_t rays = config.sensor.ray_count;
   const double spread = config.sensor.ray_spread * degree;
@@ -117,14 +117,14 @@ HEDON_FN WorldConstants make_constants(const WorldConfig& config) {
   return c;
 }
 
-/// Heading 0 looks along +y; positive is counter-clockwise.
+/// Heading 0 points along +y; positive is counter-clockwise.
 HEDON_FN Vec2 heading(float angle) {
   float sine, cosine;
   sincos_float(angle, &sine, &cosine);
   return {-sine, cosine};
 }
 
-/// Direction of ray `r` of an agent that looks along `forward`; past the last ray the last repeats.
+/// Direction of ray `r` of an agent with heading `forward`; past the last ray, the last one repeats.
 HEDON_FN Vec2 ray_direction(const WorldConstants& constants, int32_t r, Vec2 forward) {
   return constants.ray_cosine[r] * forward + constants.ray_sine[r] * Vec2{-forward.y, forward.x};
 }

@@ -1,8 +1,9 @@
-/// All that a world is at one moment: read this first.
+/// The whole state of a world at one moment: read this first.
 ///
-/// Agents live in *slots*, which are reused; an `agent_id` never is. `living` lists the slots of the living in the
-/// order of their ids. Every sum and every loop whose order matters follows it, so that which slot an agent got changes
-/// nothing; where agents do not meet, loops follow the slots, that is memory (`list_by_slot`).
+/// Agents live in *slots*, which are used again after a death; an `agent_id` never is. `living` lists the slots of the
+/// living in the order of their ids. Every sum and every loop whose order matters uses this order, so that results do
+/// not depend on slots. Loops in which agents do not affect one another use the order of slots, that is, of memory
+/// (`list_by_slot`).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace hedon {
 
-/// One life: what the records say of an agent. Kept up to date while it lives.
+/// One life: the data of an agent for the records. Updated while it lives.
 struct Life {
   int64_t birth_step;
   int64_t death_step;  ///< -1 while alive
@@ -27,8 +28,8 @@ struct Life {
   int32_t children;
   double energy;         ///< held now, or at death
   double birth_energy;   ///< held at birth
-  double energy_gained;  ///< by eating; what was destroyed at the cap included
-  double energy_spent;   ///< on living and moving; what was forgiven at zero included
+  double energy_gained;  ///< by eating, including energy lost at the capacity
+  double energy_spent;   ///< on living and moving, including energy forgiven at zero
   double distance;       ///< moved [u]
   double force_left;     ///< summed over the steps lived
   double force_right;
@@ -38,7 +39,7 @@ struct Life {
                energy_gained, energy_spent, distance, force_left, force_right, reward)
 };
 
-/// Sums since the world began. The ledger (double) accounts for every unit of energy that came or went.
+/// Sums since the world began. The ledger (double) counts all energy that agents gained or lost.
 struct Counters {
   int64_t births;
   int64_t deaths;
@@ -51,8 +52,8 @@ struct Counters {
   double energy_basic;
   double energy_action;
   double energy_forgiven;  ///< spending that an agent at zero could not pay
-  double energy_capped;    ///< eaten but destroyed at the capacity
-  double energy_shared;    ///< given by parents to children: moved, neither made nor lost
+  double energy_capped;    ///< eaten but lost at the capacity
+  double energy_shared;    ///< given by parents to children: neither gained nor lost
   double energy_lost;      ///< held by agents when they died
 
   HEDON_FIELDS(Counters, births, deaths, births_failed_full, births_failed_space, agent_steps, learners, energy_initial,
@@ -61,7 +62,7 @@ struct Counters {
 
 /// Growth of one food kind.
 struct FoodStock {
-  double number;    ///< the internal number n_t; its floor is how many foods there should be
+  double number;    ///< the internal number n_t; its floor is the intended number of foods
   int64_t eaten;    ///< since the world began
   int32_t present;  ///< foods in the arena
   int32_t center;   ///< the Gaussian in use, for switching placement
@@ -72,7 +73,7 @@ struct FoodStock {
 /// Single numbers of a world.
 struct Clock {
   int64_t step;          ///< steps completed
-  int64_t extinct_step;  ///< -1 while anyone lives
+  int64_t extinct_step;  ///< -1 while any agent lives
   int32_t next_agent_id;
   int32_t living_count;
   int32_t free_count;
@@ -109,7 +110,7 @@ struct WorldState {
   Array<float> second_moment;   // (slots, params)
   Array<int64_t> updates;       // (slots) Adam steps done in this life
 
-  // Rollouts of the current window, by slot, then by step. One more observation serves as bootstrap.
+  // Rollouts of the current window, by slot, then by step. The one extra observation is for the bootstrap.
   Array<PackedObservation> observation;  // (slots, rollout_steps + 1)
   Array<float> action;                   // (slots, rollout_steps, 2) before the sigmoid
   Array<float> log_prob;                 // (slots, rollout_steps)

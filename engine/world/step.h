@@ -1,4 +1,4 @@
-/// One step of a world: the order that docs/model.md gives under "The order of a step", as a table of contents.
+/// One step of a world, in the order of "The order of a step" in docs/model.md.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace hedon {
 enum class Part : int32_t { sense_and_act, physics, life, learning, count };
 inline constexpr const char* PART_NAMES[] = {"sense_and_act", "physics", "life", "learning"};
 
-/// Says when a fault of the physics was, and of whom: the first agent whose forces were not finite.
+/// Adds to a fault of the physics its step and agent: the first agent whose forces were not finite.
 HEDON_FN void name_fault(World& world) {
   Fault& fault = world.fault();
   fault.step = world.clock().step;
@@ -32,7 +32,7 @@ HEDON_FN void name_fault(World& world) {
   }
 }
 
-/// Finds bodies that were so fast that they slipped through the outer walls.
+/// Finds bodies that were so fast that they passed through the outer walls.
 HEDON_FN void check_inside(World& world) {
   const BodyState& body = world.state.physics.bodies;
   const ArenaConfig& arena = world.config->arena;
@@ -44,14 +44,14 @@ HEDON_FN void check_inside(World& world) {
   }
 }
 
-/// Derives from the state what a step starts from.
+/// Computes the data for the start of a step from the state.
 HEDON_FN void prepare_step(World& world) {
   list_by_slot(world);
   gather_scene(world);
 }
 
-/// Advances a world by one step, which has been prepared. All members of the group call it; `t` is the step
-/// within the window. `lap(part)` is told when each part ends.
+/// Advances a world by one step, which must be prepared. All members of the group call it; `t` is the step
+/// within the window. `lap(part)` is called at the end of each part.
 template <class Group, class Lap>
 HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   Clock& clock = world.clock();

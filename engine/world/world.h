@@ -12,8 +12,8 @@
 
 namespace hedon {
 
-/// What rays may hit: the circles of the living and of the foods present, sorted by the cells of a grid, and the walls.
-/// Derived from the state, by `gather_scene`.
+/// The circles of the living and of the foods present, sorted by the cells of a grid, and the walls: all that rays may
+/// hit. `gather_scene` computes it from the state.
 struct Scene {
   Array<float> x, y, radius, type;  ///< (slots + foods) of the circles: cell by cell, row by row of cells
   Array<int32_t> start;             ///< (cells + 1) first circle of each cell
@@ -25,16 +25,16 @@ struct Scene {
   HEDON_FIELDS(Scene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, sighted)
 };
 
-/// What an audit found of one agent: `status` is ok where nothing is wrong.
+/// The result of an audit of one agent: `status` is ok if nothing is wrong.
 struct Finding {
   Status status;
   int32_t other_id;
   double value;
 };
 
-/// What an agent does and meets within one step, by slot. Means nothing between steps.
+/// Scratch memory of one step, by slot. Not valid between steps.
 struct StepScratch {
-  Array<int32_t> by_slot;                     ///< (slots) slots of the living, rising: see `list_by_slot`
+  Array<int32_t> by_slot;                     ///< (slots) slots of the living, ascending: see `list_by_slot`
   Array<float> force_left, force_right;       ///< applied by the motors
   Array<float> force_x, force_y, torque;      ///< the same, on the body
   Array<float> heading_sine, heading_cosine;  ///< at the start of the step

@@ -16,11 +16,11 @@ from hedon._engine import (
 
 
 def read_config(config: dict[str, Any]) -> dict[str, Any]:
-    """What the engine understood of a config."""
+    """A config as the engine has read it."""
 
 def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int) -> dict[str, int]:
     """
-    Bytes that a simulation would reserve, by what they are for; 0 threads for all processors.
+    Bytes that a simulation would reserve, by purpose; 0 threads for all processors.
     """
 
 class FloatMode:
@@ -54,11 +54,11 @@ class Simulation:
         """Full observations of the living: (living, size)."""
 
     def save(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
-        """All that decides a world's future, as arrays: copies."""
+        """Copies of everything that decides a world's future, as arrays."""
 
     def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[Any]]) -> None:
         """
-        Puts a saved world in place of one. ValueError: what is wrong; the world is then as it was.
+        Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
@@ -72,7 +72,7 @@ class Simulation:
 
     def poke(self, world: int, path: str, index: int, value: float) -> None:
         """
-        For tests: writes one number of a world's state, as a fault of the memory would.
+        For tests: overwrites one number of a world's state, as a memory error would.
         """
 
     def counters(self, world: int) -> dict: ...

@@ -1,4 +1,4 @@
-"""Network, PPO and GAE by themselves, for each kernel."""
+"""Network, PPO and GAE as single functions, for each kernel."""
 
 from typing import Annotated
 
@@ -50,4 +50,4 @@ def permutation(seed: int, agent_id: int, step: int, count: int, epochs: int) ->
     """The order (epochs, count) that `learn` uses."""
 
 def init_network(shape: tuple[int, int, int, int], seed: int, agent_id: int = 0, step: int = 0) -> NDArray[numpy.float32]:
-    """Fresh parameters."""
+    """Initial parameters."""

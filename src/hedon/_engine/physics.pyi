@@ -1,4 +1,4 @@
-"""Rigid bodies by themselves."""
+"""Rigid bodies without the rest of the model."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,7 +7,7 @@ import numpy.typing
 
 
 class Scene:
-    """Discs, static circles and walls, with the memory that they live in."""
+    """Discs, static circles and walls, with their memory."""
 
     def __init__(self, config: dict, width: float, height: float, radius: float, density: float, circle_radius: float, bodies: int, circles: int, walls: Sequence[Sequence[float]], pair_limit: int = 0, outer_walls: int = 0) -> None: ...
 
@@ -24,7 +24,7 @@ class Scene:
         """Listed pairs with impulses and marks."""
 
     def contacts(self) -> list:
-        """Contacts that the visitor heard of in the last step."""
+        """Contacts that were reported to the visitor in the last step."""
 
     def near(self, kind: str, x: float, y: float, reach: float) -> list[int]: ...
 
@@ -33,6 +33,6 @@ class Scene:
     def remove_circle(self, slot: int) -> None: ...
 
     def set_stale(self) -> None:
-        """Call after changing places, circles or the order."""
+        """Call after a change of positions, circles or the order."""
 
     def counters(self) -> dict: ...
