@@ -199,8 +199,8 @@ def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_
     handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds]
     if with_rays:
         rays = {"ray that sees an agent": _AGENT_RAY}
-        rays |= {f"{kind} food": colors[kind] for kind in snapshot.food_kinds}
-        rays |= {"a wall": MUTED, "nothing": PALE}
+        rays |= {f"sees {kind} food": colors[kind] for kind in snapshot.food_kinds}
+        rays |= {"sees a wall": MUTED, "sees nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
     columns = len(handles) if len(handles) <= _LEGEND_COLUMNS else -(-len(handles) // 2)
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.4)

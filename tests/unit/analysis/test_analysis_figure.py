@@ -154,7 +154,9 @@ def test_the_legend_tells_what_rays_see() -> None:
     kinds = ("normal", "poison")
     figure = draw_world(synthetic_snapshot(kinds), food_colors(kinds), [0])
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["normal food", "poison food", "ray that sees an agent", *labels[:2], "a wall", "nothing"]
+    foods = ["normal food", "poison food"]
+    seen = ["sees normal food", "sees poison food", "sees a wall", "sees nothing"]
+    assert labels == [*foods, "ray that sees an agent", *seen]
 
 
 def test_rays_end_on_the_walls() -> None:
