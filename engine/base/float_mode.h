@@ -1,10 +1,6 @@
 /// How a thread computes with floats: set while the engine works, and restored for the caller afterwards.
 #pragma once
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 namespace hedon {
 
 /// While it exists: rounds to nearest, masks all exceptions and flushes denormals to zero. Then restores the thread's
@@ -14,8 +10,10 @@ class FloatMode {
  public:
   /// flush  false: keep denormals, as on processors that cannot flush them
 #if defined(__SSE__)
-  explicit FloatMode(bool flush = true) : saved_(_mm_getcsr()) { _mm_setcsr(MASKED | (flush ? FLUSH : 0u)); }
-  ~FloatMode() { _mm_setcsr(saved_); }
+  explicit FloatMode(bool flush = true) : saved_(__builtin_ia32_stmxcsr()) {
+    __builtin_ia32_ldmxcsr(MASKED | (flush ? FLUSH : 0u));
+  }
+  ~FloatMode() { __builtin_ia32_ldmxcsr(saved_); }
 
  private:
   static constexpr unsigned MASKED = 0x1f80;  ///< all exceptions masked, to nearest

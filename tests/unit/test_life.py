@@ -260,7 +260,7 @@ def test_event_overflow_is_named():
         "energy.initial=0",
     )
     simulation = make_simulation(*brief, "food.normal.initial_count=0", "food.normal.growth_rate=0")
-    with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read the events"):
+    with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read them more often"):
         simulation.run(20_000)
 
 
