@@ -1,4 +1,4 @@
-/// A batch of a step, and how its contacts are found, told to the visitor and filled in for the solver.
+/// A batch of a step. Finds its contacts, reports them to the visitor and fills them in for the solver.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ HEDON_FN BatchRange batch_range(const NeighborList& list, int32_t batch) {
           list.walls.start[last]};
 }
 
-/// What a solver works on: one batch in one step.
+/// The input of a solver: one batch in one step.
 struct Batch {
   const PhysicsConfig& config;
   const BodyShape& shape;
@@ -43,7 +43,7 @@ struct Batch {
   HEDON_FN float circle_touch() const { return shape.radius + shape.circle_radius; }
   HEDON_FN float wall_touch() const { return shape.radius; }
 
-  /// Where the contacts of the batch lie: those with circles, and then those with walls, share an array.
+  /// The contacts of the batch. Those with circles and then those with walls share an array.
   HEDON_FN BodyContact* body_contacts() const { return scratch.body_contacts.data + range.first_body_pair; }
   HEDON_FN StaticContact* static_contacts() const {
     return scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
@@ -55,7 +55,7 @@ struct Reach {
   float touch, solid;
 };
 
-/// Unit vector and distance of two points; points that coincide are one above the other, by convention.
+/// Unit vector and distance from one point to another; for equal points, by convention, the vector points along y.
 struct Direction {
   float x, y, distance;
 };
@@ -68,13 +68,13 @@ HEDON_FN Direction direction_of(Vec2 between) {
   return {between.x * inverse, between.y * inverse, distance};
 }
 
-/// Counts, and whether a contact approaches so fast that it may bounce.
+/// Counts, and whether any contact approaches so fast that it may bounce.
 struct FoundContacts {
   int32_t count;
   bool fast;
 };
 
-/// Tells the visitor of two bodies that touch: once for each.
+/// Reports two bodies that touch to the visitor, once for each.
 template <class Visitor>
 HEDON_FN void tell_bodies(const Batch& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
   const NeighborList& list = batch.state.neighbors;
@@ -84,7 +84,7 @@ HEDON_FN void tell_bodies(const Batch& batch, int32_t pair, Vec2 normal, Visitor
   visitor.on_contact(PairKind::body, b, a, -normal, batch.scratch.angle[second], list.bodies.mark[pair]);
 }
 
-/// Fills in the contact of a pair of bodies, with the impulses that the pair has kept.
+/// Fills in the contact of a pair of bodies, with the stored impulses of the pair.
 HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& normal, BodyContact& contact) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
@@ -101,7 +101,7 @@ HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& no
   contact.pair = pair;
 }
 
-/// Fills in the contact of a pair with what never moves, whose nearest point is `point`. The centers, or center and
+/// Fills in the contact of a body with a static object, whose nearest point is `point`. The centers, or center and
 /// wall, just touch at a distance of `touch` [u].
 HEDON_FN void fill_contact(const Batch& batch, const PairList& pairs, const PairScratch& work, int32_t pair, Vec2 point,
                            const Direction& normal, float touch, StaticContact& contact) {
@@ -120,7 +120,7 @@ HEDON_FN void fill_contact(const Batch& batch, const PairList& pairs, const Pair
 }
 
 /// Finds the contacts of a batch with circles or walls. A pair that the solver does not act on loses its impulses.
-/// nearest(other, center)   the other's point that counts
+/// nearest(other, center)   the relevant point of the circle or wall
 /// touch                    distance at which they just touch [u]
 /// reach                    squared distances below which they touch, and below which the solver acts on them [u²]
 template <class Visitor, class Nearest>
@@ -164,7 +164,7 @@ HEDON_FN FoundContacts find_circle_contacts(const Batch& batch, Reach reach, Sta
                               contacts, visitor, center);
 }
 
-/// Finds the contacts of a batch with walls. `nearest(wall, center)` is the wall's point that counts.
+/// Finds the contacts of a batch with walls. `nearest(wall, center)` gives the relevant point of the wall.
 template <class Visitor, class Nearest>
 HEDON_FN FoundContacts find_wall_contacts(const Batch& batch, Reach reach, StaticContact* contacts, Visitor& visitor,
                                           Nearest&& nearest) {

@@ -1,9 +1,10 @@
-/// The contact solver of the paper's released code: biased impulses by Jacobi passes, with all that is odd about it.
+/// The contact solver of the paper's released code: biased impulses in Jacobi passes, including its faults.
 ///
-/// In a pass every contact reads the velocities of the pass's beginning, and the bodies then receive the sum of what
-/// their contacts changed: in the order of contacts, so that the sum depends on nothing but the bodies of the island.
-/// Jams come apart more slowly than by sequential impulses and bodies overlap by several units, which decides who eats.
-/// Impulses between bodies are equal and opposite, so pairs of bodies keep their total momentum, to float rounding.
+/// In a pass, every contact reads the velocities from the beginning of the pass. Then each body gets the sum of the
+/// changes by its contacts, in the order of contacts, so that the sum depends only on the bodies of the island. Crowds
+/// separate more slowly than with sequential impulses and bodies overlap by several units, which decides which agent
+/// eats. Impulses between bodies are equal and opposite, so pairs of bodies keep their total momentum, up to float
+/// rounding.
 #pragma once
 
 #include <cfloat>
@@ -16,18 +17,19 @@
 
 namespace hedon {
 
-/// Overlap from which the solver acts [u]. Released code: a distance ahead of contact was meant, its sign is wrong.
+/// Overlap from which the solver acts [u]. In the released code, a distance before contact was intended, but its sign
+/// is wrong.
 inline constexpr float LEAST_DEPTH = 0.02f;
 
-/// The squared distances that go with centers that just touch at `touch` [u]; just touching is touching.
+/// The squared distances for centers that just touch at `touch` [u]; just touching counts as touching.
 HEDON_FN Reach jacobi_reach(float touch) {
   const float solid = touch - LEAST_DEPTH;
   return {touch * touch * (1.0f + FLT_EPSILON), solid * solid * (1.0f + FLT_EPSILON)};
 }
 
-/// The point of an outer wall that counts for a body, infinitely far away where none does: behind the wall, and beyond
-/// its ends by a rule in which the released code takes one end's neighbor for the other's. Inner walls have no
-/// neighbors and are solid from both sides.
+/// The relevant point of an outer wall for a body; infinitely far away if there is none: behind the wall, and beyond
+/// its ends by a rule in which the released code confuses the neighbors of the two ends. Inner walls have no neighbors
+/// and are solid on both sides.
 HEDON_FN Vec2 ring_point(const PhysicsState& state, int32_t wall, Vec2 center) {
   const Array<Segment>& walls = state.walls;
   const Vec2 a = walls[wall].a, b = walls[wall].b;
@@ -87,8 +89,8 @@ struct JacobiContacts {
   int32_t body_count, static_count;
 };
 
-/// One Jacobi pass. `impulse(contact, velocity)` gives what is added to the impulses of a contact whose relative
-/// velocity is that at the beginning of the pass.
+/// One Jacobi pass. `impulse(contact, velocity)` gives the change of the impulses of a contact whose relative
+/// velocity is the one at the beginning of the pass.
 template <class Impulse>
 HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impulse&& impulse) {
   Motion* motion = batch.scratch.motion.data;
@@ -112,11 +114,10 @@ HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impul
   }
 }
 
-/// Solves a contact by itself and returns by how much its impulses changed. Overlap is turned into a velocity (a bias)
-/// at which the two are to part; friction is bounded by the normal impulse of the pass before.
-/// kept   share of its impulse that a contact starts from: 1; but 0 in the first pass, in which it sees its bodies as
-/// if
-///        its stored impulse were applied to them, which it never is: that cancels it
+/// Solves one contact separately and returns the change of its impulses. Overlap gives a velocity (a bias) at which
+/// the two are to separate; the normal impulse of the pass before limits friction.
+/// kept   share of its impulse that a contact starts from: 1, but 0 in the first pass. There it uses velocities as if
+///        its stored impulse were applied to the bodies. It never is, so this cancels it.
 template <class Contact>
 HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch& batch, ContactVelocity velocity, float kept) {
   const SolverConstants& c = batch.c;
@@ -132,8 +133,8 @@ HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch& batch, Cont
   return change;
 }
 
-/// The impulse by which a contact that approached fast leaves at `restitution` times that speed: neither bounded by
-/// what it pushed before nor kept.
+/// The impulse after which a contact that approached fast separates at `restitution` times that speed. Earlier impulses
+/// do not limit it, and it is not stored.
 template <class Contact>
 HEDON_FN ContactVelocity bounce_once(const Contact& contact, const SolverConstants& c, ContactVelocity velocity) {
   if (!(contact.approach <= -c.restitution_threshold)) return {0.0f, 0.0f};
@@ -167,7 +168,7 @@ HEDON_FN void correct_positions_at_once(const Batch& batch, const JacobiContacts
 
 /// The solver by name `jacobi`, for `try_batch`.
 struct JacobiSolver {
-  /// Damps and caps, finds contacts, solves, bounces, pushes overlaps apart, and moves.
+  /// Damps and limits velocities, finds contacts, solves, bounces, corrects overlaps, and moves.
   template <class Visitor>
   HEDON_FN static void substep(const Batch& batch, Visitor& visitor) {
     damp(batch);
@@ -199,7 +200,7 @@ struct JacobiSolver {
   }
 
  private:
-  /// Damps the velocities, and then caps them: what contacts add in this substep is not capped.
+  /// Damps the velocities, then limits them: changes by contacts in this substep are not limited.
   HEDON_FN static void damp(const Batch& batch) {
     const SolverConstants& c = batch.c;
     for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {

@@ -1,9 +1,8 @@
 /// Sequential impulses and position correction for the contacts of one batch and one substep.
 ///
 /// Source: Catto (2005), "Iterative dynamics with temporal coherence"; the order of the parts is Box2D's. Since a
-/// disc's friction does not change its normal velocity, both are found from the same velocities; friction is bounded
-/// by the normal impulse of the pass before. Invariant of all of it: pairs of bodies keep their total momentum, to
-/// float rounding.
+/// disc's friction does not change its normal velocity, both are computed from the same velocities. The normal impulse
+/// of the pass before limits friction. Invariant: every pair of bodies keeps its total momentum, up to float rounding.
 #pragma once
 
 #include <bit>
@@ -18,10 +17,10 @@ namespace hedon {
 inline constexpr int COLORS = 32;
 
 /// Finds the contacts of a batch between bodies, in the order of colors: no two of one color share a body, so that
-/// consecutive contacts do not wait for one another. Only overlapping pairs take a color, in canonical order; the order
-/// of two contacts that share a body thus depends on nothing but the contacts of their own cluster. A pair that is
-/// apart loses its impulses. Contacts are written from `first_body_pair` on. The visitor hears of each contact twice,
-/// once for each body.
+/// consecutive contacts do not wait for one another. Only overlapping pairs get a color, in canonical order. So the
+/// order of two contacts that share a body depends only on the contacts of their own cluster. A pair that does not
+/// overlap loses its impulses. Contacts are written from `first_body_pair` on. Each contact is reported to the visitor
+/// twice, once for each body.
 template <class Visitor>
 HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
   const PairList& pairs = batch.state.neighbors.bodies;
@@ -51,7 +50,7 @@ HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
   for (int32_t i = 0; i < count; ++i) {
     uint32_t& a = colors[first[active[i]]];
     uint32_t& b = colors[second[active[i]]];
-    // The last color takes all that is left over; its contacts may share bodies, which costs time only.
+    // The last color takes all remaining contacts; they may share bodies, which only costs time.
     const int taken = std::countr_zero(~(a | b) | 0x80000000u);
     a |= 1u << taken;
     b |= 1u << taken;
@@ -96,7 +95,7 @@ HEDON_FN void solve_velocity(BodyContact* contacts, int32_t count, const SolverC
   }
 }
 
-/// One pass of projected Gauss-Seidel over contacts with what never moves.
+/// One pass of projected Gauss-Seidel over contacts with static objects.
 HEDON_FN void solve_velocity(StaticContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
     StaticContact& contact = contacts[i];
@@ -121,8 +120,8 @@ HEDON_FN void warm_start(const StaticContact* contacts, int32_t count, Motion* m
   }
 }
 
-/// Normal impulse per mass that makes a contact leave at `restitution` times its approach speed; 0 where it was slow
-/// or no impulse acted.
+/// Normal impulse per mass after which a contact separates at `restitution` times its approach speed; 0 if it was slow
+/// or had no impulse.
 template <class Contact>
 HEDON_FN float bounce(Contact& contact, const SolverConstants& c, float normal_velocity) {
   if (!(contact.approach < -c.restitution_threshold) || !(contact.normal_impulse > 0.0f)) return 0.0f;
@@ -152,9 +151,9 @@ HEDON_FN void apply_restitution(StaticContact* contacts, int32_t count, const So
   }
 }
 
-/// One pass of position correction between bodies: each moves half the way. The separation is that of the present
-/// places along the normal of the contact, which differs from the true one by less than the slop after a substep's
-/// motion. `distance` is that of touching centers [u].
+/// One pass of position correction between bodies: each moves half the distance. The separation is measured between
+/// the present places along the normal of the contact; after the motion of one substep it differs from the true one by
+/// less than the slop. `distance` is the distance of the centers when the bodies touch [u].
 HEDON_FN void correct_positions(const BodyContact* contacts, int32_t count, const SolverConstants& c, float distance,
                                 Vec2* position) {
   for (int32_t i = 0; i < count; ++i) {
@@ -167,7 +166,7 @@ HEDON_FN void correct_positions(const BodyContact* contacts, int32_t count, cons
   }
 }
 
-/// One pass of position correction against what never moves.
+/// One pass of position correction against static objects.
 HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, const SolverConstants& c,
                                 Vec2* position) {
   for (int32_t i = 0; i < count; ++i) {
@@ -178,7 +177,7 @@ HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, co
   }
 }
 
-/// Caps the velocities, moves the bodies by them.
+/// Limits the velocities and moves the bodies by them.
 HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
   for (int32_t place = range.first_place; place < range.last_place; ++place) {
     Motion motion = scratch.motion[place];
@@ -194,7 +193,7 @@ HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, 
 
 /// The solver by name `sequential`, for `try_batch`.
 struct SequentialSolver {
-  /// Damps, finds contacts, solves, bounces, moves, and pushes overlaps apart.
+  /// Damps velocities, finds contacts, solves, bounces, moves, and corrects overlaps.
   template <class Visitor>
   HEDON_FN static void substep(const Batch& batch, Visitor& visitor) {
     const PhysicsScratch& scratch = batch.scratch;

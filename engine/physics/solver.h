@@ -1,4 +1,4 @@
-/// What both contact solvers share: constants, velocities at a contact, and what an impulse does to its bodies.
+/// Code for both contact solvers: constants, velocities at a contact, and the effect of an impulse on its bodies.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hedon {
 
-/// What every substep needs, computed once per step.
+/// Constants of all substeps, computed once per step.
 struct SolverConstants {
   float dt;             ///< [s]
   float linear_decay;   ///< of velocities per substep
@@ -24,11 +24,11 @@ struct SolverConstants {
   float restitution;            ///< coefficient
   float restitution_threshold;  ///< approach speed from which contacts bounce [u/s]
   float correction_rate;
-  float slop;               ///< overlap that is left alone [u]
+  float slop;               ///< overlap that is not corrected [u]
   float max_correction;     ///< per pass [u]
   float max_speed;          ///< per axis [u/s]
   float max_angular_speed;  ///< [rad/s]
-  float glide;              ///< free path in a step per speed after the force [s]
+  float glide;              ///< distance moved in a step without contacts, per speed after the force [s]
 };
 
 HEDON_FN SolverConstants make_constants(const PhysicsConfig& config, const BodyShape& shape) {
@@ -77,7 +77,7 @@ HEDON_FN ContactVelocity relative_velocity(const StaticContact& contact, const M
           (a.x * contact.normal_y - a.y * contact.normal_x) - contact.arm * a.angular};
 }
 
-/// Applies an impulse per mass to a pair: onto the second body, and its opposite onto the first.
+/// Applies an impulse per mass to the second body of a pair, and the opposite impulse to the first.
 HEDON_FN void apply(const BodyContact& contact, float normal, float tangent, Motion& a, Motion& b) {
   const float x = normal * contact.normal_x - tangent * contact.normal_y;
   const float y = normal * contact.normal_y + tangent * contact.normal_x;
@@ -96,16 +96,16 @@ HEDON_FN void apply(const StaticContact& contact, float normal, float tangent, M
   a.angular -= contact.turn * tangent;
 }
 
-/// Effective mass along the normal, per mass of a body: a half for two equal bodies, one against what never moves.
+/// Effective mass along the normal, per mass of a body: a half for two equal bodies, one against a static object.
 HEDON_FN constexpr float normal_mass(const BodyContact&) { return 0.5f; }
 HEDON_FN constexpr float normal_mass(const StaticContact&) { return 1.0f; }
 
-/// How far one pass pushes a pair apart, as a negative length [u].
+/// Distance by which one pass separates a pair, as a negative length [u].
 HEDON_FN float correction(const SolverConstants& c, float separation) {
   return clamp(c.correction_rate * (separation + c.slop), -c.max_correction, 0.0f);
 }
 
-/// Keeps what the contacts accumulated for the next substep.
+/// Keeps the accumulated impulses of the contacts for the next substep.
 template <class Contact>
 HEDON_FN void keep_impulses(const Contact* contacts, int32_t count, const PairScratch& work) {
   for (int32_t i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
-/// All that the physics keeps between steps, and what it needs within one, as views over the caller's memory.
+/// All data that the physics keeps between steps, and its scratch memory, as views of the caller's memory.
 ///
-/// One list names every array: `visit_state` and `visit_scratch` call visit(name, array, count), by which the caller
-/// allocates, saves, compares and binds. The state must survive between steps; scratch need not.
+/// `visit_state` and `visit_scratch` list every array: they call visit(name, array, count), which the caller uses to
+/// allocate, save, compare and bind. The state must be kept between steps; scratch need not be.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@
 
 namespace hedon {
 
-inline constexpr int MAX_BATCHES = 32;  ///< independent pieces of one step, for as many threads
+inline constexpr int MAX_BATCHES = 32;  ///< independent parts of one step, for as many threads
 
-/// Pairs that may touch before the list is built again. Pairs of one first body stand together.
+/// Pairs that may touch before the list is built again. Pairs with the same first body are consecutive.
 struct PairList {
   Array<int32_t> start;          ///< first pair of each body, by place; (bodies + 1)
   Array<int32_t> first;          ///< place of the first body
   Array<int32_t> second;         ///< place of the second body, slot of the circle, or index of the wall
   Array<float> normal_impulse;   ///< accumulated, per mass of a body, >= 0 [u/s]
   Array<float> tangent_impulse;  ///< accumulated, per mass of a body [u/s]
-  Array<uint8_t> mark;           ///< what the visitor noted in this step; cleared when a step begins
+  Array<uint8_t> mark;           ///< the visitor's note in this step; cleared when a step begins
 
   HEDON_FIELDS(PairList, start, first, second, normal_impulse, tangent_impulse, mark)
 };
@@ -35,23 +35,23 @@ struct PairList {
 struct NeighborHead {
   int32_t bodies;   ///< in the list
   int32_t batches;  ///< in use
-  int32_t stale;    ///< 1: build anew before the next step; the caller sets it too
+  int32_t stale;    ///< 1: build again before the next step; the caller sets it too
   float skin;       ///< of the last build [u]
-  float free_path;  ///< of the fastest body in the last step [u]
+  float free_path;  ///< distance that the fastest body could move in the last step [u]
   int32_t unused;
   int64_t builds;                        ///< so far
-  int64_t repeats;                       ///< steps tried again because a body outran the skin
+  int64_t repeats;                       ///< steps tried again because a body moved too far for the skin
   int32_t batch_start[MAX_BATCHES + 2];  ///< first place of each batch; the last entry is not used
 
   HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, unused, builds, repeats, batch_start)
 };
 
-/// Which pairs may touch, and the bodies in the order in which they are worked on (their *place*).
+/// The pairs that may touch, and the bodies in the order in which the physics processes them (their *place*).
 struct NeighborList {
   Array<NeighborHead> head;  ///< (1)
   Array<int32_t> slot;       ///< of the body at each place
-  Array<int32_t> place;      ///< of each slot, -1 where it holds no listed body
-  Array<float> build_x;      ///< where the body at each place was at the last build [u]
+  Array<int32_t> place;      ///< of each slot, -1 if it holds no listed body
+  Array<float> build_x;      ///< position of the body at each place at the last build [u]
   Array<float> build_y;
   PairList bodies;   ///< first and second: places
   PairList circles;  ///< second: slot of the circle
@@ -64,9 +64,9 @@ struct PhysicsState {
   BodyState bodies;
   StaticCircles circles;
   Array<Segment> walls;
-  int32_t outer_walls;  ///< the first so many walls: a closed polygon, clockwise, in which the bodies live
+  int32_t outer_walls;  ///< number of outer walls, which come first: a closed polygon, clockwise, around the bodies
   int32_t unused;
-  Grid body_grid;    ///< bodies by slot, where they were at the last build or insertion
+  Grid body_grid;    ///< bodies by slot, at their positions of the last build or insertion
   Grid circle_grid;  ///< circles by slot
   NeighborList neighbors;
 
@@ -83,9 +83,10 @@ struct PairScratch {
   HEDON_FIELDS(PairScratch, first, second, normal, tangent)
 };
 
-/// What one batch says about its try of a step.
+/// Results of one batch for its try of a step.
 struct BatchReport {
-  float squared_moved;  ///< largest squared distance from where a body was at the last build; infinite if not finite
+  float squared_moved;  ///< largest squared distance of a body from its position at the last build; infinite if not
+                        ///< finite
   float squared_speed;  ///< largest squared speed at the end
   float squared_force;  ///< largest squared force
   float unused;
@@ -101,7 +102,7 @@ struct PhysicsScratch {
   Array<int32_t> new_place;  ///< of each rank
   Array<Vec2> position;      ///< by place [u]
   Array<Motion> motion;      ///< by place
-  Array<Motion> change;      ///< by place: what contacts add in a pass of the solver jacobi
+  Array<Motion> change;      ///< by place: changes by contacts in a pass of the solver jacobi
   Array<float> angle;        ///< by place, not wrapped within a step [rad]
   Array<uint32_t> colors;    ///< by place: colors of the contacts of the body
   Array<int32_t> active;     ///< pairs of bodies that touch in this substep
@@ -117,7 +118,7 @@ struct PhysicsScratch {
                color, bodies, circles, walls, body_contacts, static_contacts, reports)
 };
 
-/// How much of everything the arrays hold.
+/// The sizes of the arrays.
 struct PhysicsCapacity {
   int64_t bodies;
   int64_t circles;
@@ -128,16 +129,17 @@ struct PhysicsCapacity {
   int32_t columns;
   int32_t rows;
   float cell;  ///< side of a grid cell [u]
-  float skin;  ///< that the capacities were made for [u]
+  float skin;  ///< skin that the capacities are for [u]
 
   HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin)
 };
 
-/// Capacities for an arena. Discs that do not overlap bound the pairs: within a skin of 20 u (twice the radius) of a
-/// body of radius 10 u lie at most 22 others, half of them counted here; 16 leaves room for overlap. Around a circle
-/// lie fewer than 24 bodies. A convex corner shows a body its chords and two walls. With the solver jacobi a jam may
-/// burst: for a substep a body flies at up to 250 u/s, which takes a skin of 50 u and more. There is room for all pairs
-/// of up to 200 bodies, and for so many neighbors of each in a larger world.
+/// Capacities for an arena. Discs that do not overlap limit the number of pairs: within a skin of 20 u (twice the
+/// radius) of a body with radius 10 u there are at most 22 others, and half of them count here; 16 leaves room for
+/// overlap. Around a circle there are fewer than 24 bodies. In a convex corner, a body is near its chords and two
+/// walls. With the solver jacobi, a crowd can burst: for one substep a body moves at up to 250 u/s, which needs a skin
+/// of 50 u and more. There is room for all pairs of up to 200 bodies, and for the same number of neighbors of each body
+/// in a larger world.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
                                           const BodyShape& shape, const PhysicsConfig& config) {
   const bool bursts = config.solver == ContactSolver::jacobi;
@@ -150,7 +152,7 @@ HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64
   capacity.body_pairs = least((bursts ? 100 : 16) * bodies, bodies * (bodies - 1) / 2) + 1;
   capacity.circle_pairs = least((bursts ? 200 : 24) * circles, bodies * circles) + 1;
   capacity.wall_pairs = least((bursts ? 32 : 8) * bodies, bodies * walls) + 1;
-  // Cells as wide as the search, but no more than a few per item in an empty arena.
+  // Cells as wide as the search range, but at most a few per item in an almost empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
   const float search = 2.0f * shape.radius + skin;
   capacity.cell = even > search ? even : search;
@@ -175,8 +177,8 @@ void visit_pairs(PairList& list, int64_t bodies, int64_t pairs, Visit&& visit) {
   visit("mark", list.mark, pairs);
 }
 
-/// Calls visit(name, array, count) for each array that must survive between steps. Names repeat between groups; their
-/// order is fixed. Zeroed memory, `init_physics`, and then bodies make a valid state.
+/// Calls visit(name, array, count) for each array that must be kept between steps. Names repeat between groups; their
+/// order is fixed. Zeroed memory, then `init_physics`, then bodies give a valid state.
 template <class Visit>
 void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& visit) {
   const int64_t cells = static_cast<int64_t>(capacity.columns) * capacity.rows;
@@ -200,7 +202,7 @@ void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& v
   visit_pairs(list.walls, capacity.bodies, capacity.wall_pairs, visit);
 }
 
-/// Calls visit(name, array, count) for each array that is needed within a step only.
+/// Calls visit(name, array, count) for each array that is needed only within a step.
 template <class Visit>
 void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Visit&& visit) {
   visit("rank", scratch.rank, capacity.bodies);
@@ -224,7 +226,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
 }
 
 /// Makes zeroed memory a valid state without bodies or circles: empty grids of the capacity's shape, a stale list.
-/// After a restore only the shapes of the grids need setting: `set_grid_shape`.
+/// After a restore, only the shapes of the grids must be set: `set_grid_shape`.
 HEDON_FN void set_grid_shape(PhysicsState& state, const PhysicsCapacity& capacity) {
   for (Grid* grid : {&state.body_grid, &state.circle_grid}) {
     grid->inverse_cell = 1.0f / capacity.cell;
@@ -241,7 +243,7 @@ HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity)
   state.neighbors.head[0].stale = 1;
 }
 
-/// Says that the caller changed the order, a place, a circle or a wall: the next step lists its neighbors anew.
+/// Call this after a change of the order, a position, a circle or a wall: the next step builds its list again.
 HEDON_FN void mark_stale(const PhysicsState& state) { state.neighbors.head[0].stale = 1; }
 
 }  // namespace hedon

@@ -1,14 +1,14 @@
-/// One step of the physics: forces, damping, contacts, and the motion that they leave.
+/// One step of the physics: forces, damping, contacts, and the resulting motion.
 ///
-/// The caller's visitor hears of every contact in every substep:
-///   visitor.on_start(slot)   before a body's first substep of each try of a step: forget what it noted about it
+/// Every contact in every substep is reported to the caller's visitor:
+///   visitor.on_start(slot)   before a body's first substep of each try of a step: delete all notes about the body
 ///   visitor.on_contact(kind, body, other, direction, angle, mark)
 ///     body       slot of the body; a pair of bodies is reported for each of them
 ///     other      slot of the other body or circle, or index of the wall
 ///     direction  from the body's center to the contact, unit vector in the world's frame
-///     angle      of the body in this substep [rad]: its angle before the step plus what it has turned since
+///     angle      of the body in this substep [rad]: its angle before the step plus its rotation since then
 ///     mark       a byte of the pair, 0 when the step begins, free for the visitor's use
-/// Both are called by the thread that works on the body's island, so they may write what belongs to body or pair.
+/// The thread that works on the body's island calls both, so they may write data of the body or pair.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 
 namespace hedon {
 
-/// Copies a batch's bodies and impulses to where the substeps change them, and adds the forces of the first one.
+/// Copies a batch's bodies and impulses to scratch memory for the substeps, and adds the forces of the first substep.
 template <class Visitor>
 HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range,
                          const SolverConstants& c, const BodyForce& force, BatchReport& report, Visitor& visitor) {
@@ -54,7 +54,7 @@ HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratc
   load_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
-/// Writes back what a successful try computed of the body in `slot`, if there is one.
+/// Writes the result of a successful try back to the body in `slot`, if there is one.
 HEDON_FN void commit_body(const PhysicsState& state, const PhysicsScratch& scratch, int32_t slot) {
   const BodyState& bodies = state.bodies;
   const int32_t place = state.neighbors.place[slot];
@@ -81,7 +81,7 @@ HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scra
   store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
-/// Largest squared distance of a batch's bodies from where they were at the last build; infinite if one is not finite.
+/// Largest squared distance of a batch's bodies from their positions at the last build; infinite if one is not finite.
 HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scratch, const BatchRange& range) {
   float largest = 0.0f;
   for (int32_t place = range.first_place; place < range.last_place; ++place) {
@@ -92,7 +92,7 @@ HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scr
   return largest;
 }
 
-/// Tries all substeps of one batch in the scratch memory. Stops early where a body outran the skin.
+/// Tries all substeps of one batch in the scratch memory. Stops early if a body moved too far for the skin.
 template <class Solver, class Visitor>
 HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
                                      const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
@@ -116,7 +116,7 @@ HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShap
   scratch.reports[index] = report;
 }
 
-/// Where the largest of all batches stand.
+/// The maxima over all batches.
 HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batches) {
   BatchReport all{};
   for (int32_t batch = 0; batch < batches; ++batch) {
@@ -128,20 +128,20 @@ HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batch
   return all;
 }
 
-/// Doublings of the skin within a step before it is given up.
+/// Most doublings of the skin within a step; after that, the step fails.
 inline constexpr int MAX_REPEATS = 8;
 
 /// One step of the physics. All members of the group call it with the same arguments.
 ///
-/// order    slots of the living bodies, `count` of them; everything follows this order, so that renaming slots changes
-///          no bit. After any change of the order, of the circles or walls, or of positions by the caller, the caller
-///          sets `state.neighbors.head[0].stale` (`mark_stale`).
-/// force    pushes in the first substep
-/// fault    neighbor_overflow; not_finite; contact_outside_skin where even a skin 2^8 times as wide does not suffice.
+/// order    slots of the living bodies, `count` of them. Everything follows this order, so that results do not depend
+///          on which slots are used. After a change of the order, of circles, walls or positions, the caller sets
+///          `state.neighbors.head[0].stale` (`mark_stale`).
+/// force    acts in the first substep
+/// fault    neighbor_overflow; not_finite; contact_outside_skin if even a skin 2^8 times as wide is not enough.
 ///          The bodies are then as they were before the step.
 ///
-/// A step is tried in scratch memory. If a body moves further than the neighbor list allows for, the list is built
-/// again with twice the skin and the step tried anew, so that no contact is ever missed.
+/// A step is tried in scratch memory. If a body moves further than the neighbor list allows, the list is built with
+/// twice the skin and the step is tried again, so that no contact is ever missed.
 template <class Group, class Visitor>
 HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyShape& shape, const PhysicsState& state,
                            const PhysicsScratch& scratch, const Array<int32_t>& order, int32_t count,
@@ -177,18 +177,18 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
       });
       return;
     }
-    // A list that was fresh was too narrow; one that had been used may do as it is.
+    // If the list was new, its skin was too small. If it was used before, the same skin may be enough in a new list.
     skin = build ? 2.0f * skin : usual_skin;
     build = true;
   }
-  // The free path of the fastest body, pushed as hard as any was in this step, from where the furthest one is.
-  // Both solvers cap the speeds of a step before it begins to move.
+  // The distance that the fastest body can move in a step without contacts, with the largest force of this step. Both
+  // solvers limit the speeds of a step before its bodies move.
   const float capped = 2.0f * c.max_speed * c.max_speed;
   const float squared_speed = report.squared_speed < capped ? report.squared_speed : capped;
   const float speed = sqrtf(squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
   const float free_path = speed * c.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
-  // Bodies by slot, not by batch: two members would write to most cache lines in turn.
+  // Bodies by slot, not by batch: otherwise two members would write to most cache lines in turn.
   group.for_each(static_cast<int>(state.neighbors.place.count),
                  [&](int32_t slot) { commit_body(state, scratch, slot); });
   group.for_each(head.batches, [&](int32_t batch) {

@@ -1,4 +1,4 @@
-/// What must hold of every world, looked over at the end of each window: a run that has gone wrong stops, by name.
+/// Checks of every world at the end of each window: a run with an invalid state stops with a named fault.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace hedon {
 
-/// Whether all of `count` numbers are finite, told by the bits of their exponents, many at a time.
+/// Whether all of `count` numbers are finite, from the bits of their exponents, many at a time.
 HEDON_FN bool all_finite(const float* values, int64_t count) {
   constexpr uint32_t EXPONENT = 0x7F800000u;
   uint32_t wild = 0;
@@ -25,7 +25,7 @@ HEDON_FN bool all_finite(const float* values, int64_t count) {
 
 HEDON_FN bool is_finite(double value) { return value - value == 0.0; }
 
-/// Every slot is either held by one of the living or free, and its flag says which.
+/// Every slot is either used by one of the living or free, and its flag says which.
 HEDON_FN void audit_slots(const World& world) {
   const Clock& clock = world.clock();
   const WorldState& state = world.state;
@@ -46,7 +46,7 @@ HEDON_FN void audit_slots(const World& world) {
   for (int32_t i = 0; i < clock.free_count; ++i) look(state.free[i], 0);
 }
 
-/// Ids rise in the order of the living and none is newer than the newest; births, deaths and foods add up.
+/// Ids ascend in the order of the living and none is above the newest; counts of births, deaths and foods agree.
 HEDON_FN void audit_counts(const World& world) {
   const Clock& clock = world.clock();
   const Counters& counters = world.counters();
@@ -72,7 +72,7 @@ HEDON_FN void audit_counts(const World& world) {
   }
 }
 
-/// No list holds more than it has room for.
+/// No list holds more than its capacity.
 HEDON_FN void audit_capacity(const World& world) {
   const NeighborList& list = world.state.physics.neighbors;
   const int32_t bodies = list.head[0].bodies;
@@ -85,8 +85,8 @@ HEDON_FN void audit_capacity(const World& world) {
   if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
 }
 
-/// Energy held = initial + eaten + forgiven − basic − action − capped − lost, to rounding: an agent's step rounds at
-/// most eight sums, each by at most 2^-53 of the largest that it can be.
+/// Energy of all agents = initial + eaten + forgiven − basic − action − capped − lost, up to rounding: a step of an
+/// agent rounds at most eight sums, each by at most 2^-53 of its largest possible value.
 HEDON_FN void audit_ledger(const World& world) {
   constexpr double ROUNDING = 8.0 * 0x1p-53;
   const Counters& c = world.counters();
@@ -102,7 +102,7 @@ HEDON_FN void audit_ledger(const World& world) {
   if (!(gap <= ROUNDING * steps * moved)) world.fail(Status::ledger_open, -1, held - due);
 }
 
-/// Id of the agent whose circle stands at an index of the scene; -1 for a food.
+/// Id of the agent whose circle has this index in the scene; -1 for a food.
 HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
     const int32_t slot = world.state.living[i];
@@ -111,11 +111,11 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   return -1;
 }
 
-/// How deep two discs may overlap: by the radius of a body. What contacts leave is far less: motors close a gap by some
-/// 0.3 u per substep at most, of which the corrections of the next take a third. Beyond it a contact is ill-defined,
-/// since a body's center lies in what it touches, and the two may pass through each other: a pair was missed. The
-/// solver jacobi leaves 1 to 10 u in jams, and its contacts are well-defined up to the center: there centers must keep
-/// a quarter of the distance at which the two just touch.
+/// How far two discs may overlap: the radius of a body. Overlaps after contacts are much smaller: motors close a gap by
+/// at most about 0.3 u per substep, and the corrections of the next substep remove a third of that. With more overlap a
+/// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other:
+/// a pair was missed. The solver jacobi leaves overlaps of 1 to 10 u in crowds, and its contacts are well-defined up to
+/// the center. With it, the distance of centers must be at least a quarter of the distance at which the two just touch.
 HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const Scene& scene = world.scene;
   const SceneGrid& grid = world.shape->scene;
@@ -127,7 +127,7 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(x + reach, grid.inverse_cell, grid.columns);
   const int32_t last_row = cell_along(y + reach, grid.inverse_cell, grid.rows);
-  // All that is near is looked at, not the listed pairs alone: the neighbor list is among what is judged.
+  // Check everything near, not only listed pairs: the neighbor list itself may be wrong.
   for (int32_t row = cell_along(y - reach, grid.inverse_cell, grid.rows); row <= last_row; ++row) {
     const int32_t* start = scene.start.data + int64_t{row} * grid.columns;
     for (int32_t at = start[first_column]; at < start[last_column + 1]; ++at) {
@@ -140,7 +140,7 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   return {Status::ok, -1, 0.0};
 }
 
-/// The agent in `slot`: its numbers are finite, its center lies in the arena and in nothing else.
+/// The agent in `slot`: its numbers are finite, its center is inside the arena and inside no other object.
 HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
@@ -167,7 +167,7 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   return audit_overlap(world, slot);
 }
 
-/// Looks a world over. All members of the group call it; the first thing wrong, in canonical order, becomes the fault.
+/// Checks a world. All members of the group call it; the first problem, in canonical order, becomes the fault.
 template <class Group>
 HEDON_FN void audit(Group& group, World& world) {
   group.once([&] {

@@ -152,7 +152,7 @@ def test_a_checkpoint_of_another_version_config_or_shape_says_what_differs(half)
     head, arrays = (lambda found: (found.head, found.arrays))(load_checkpoint(checkpoint_paths(half)[-1]))
     cases = [
         ({"hedon_version": "0.0.9"}, r"made by hedon 0\.0\.9, and this is"),
-        ({"seeds": (1, 3)}, r"is of seeds \[1, 3\], and the run of \[1, 2\]"),
+        ({"seeds": (1, 3)}, r"has seeds \[1, 3\], and the run has \[1, 2\]"),
         ({"digests": ("0" * 16,) * 2}, "world 0 is not as it was saved"),
         ({"sampled": head.sampled[:1]}, "worlds or tables are missing"),
         ({"parts": {}}, "worlds or tables are missing"),
@@ -289,7 +289,7 @@ def test_the_command_says_what_it_does(half, whole):
     assert world["ledger"]["residual"] < 1e-6, "the ledger of a branch begins at the checkpoint"
     assert world["steps_per_second"] * found.run_seconds == pytest.approx(100)
     for arguments, words in (
-        (("resume", half), "say by --steps"),
+        (("resume", half), "give a larger total with --steps"),
         (("resume", half.with_name("rnu")), "did you mean"),
         (("branch", half, "--set", "arena.width=500"), "arena.width"),
     ):

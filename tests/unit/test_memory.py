@@ -75,4 +75,4 @@ except EngineError as error:
     print(error)
 """
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert "gives the worlds no memory" in answer.stdout, answer.stderr
+    assert "refuses memory for the worlds" in answer.stdout, answer.stderr

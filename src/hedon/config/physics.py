@@ -23,7 +23,7 @@ class PhysicsConfig:
         Literal["sequential", "jacobi"],
         Doc(
             "how contacts are solved: by sequential impulses (Catto 2005, in the order of Box2D), or by biased Jacobi "
-            "passes, under which bodies in a crowd overlap by several units",
+            "passes, with which bodies in a crowd overlap by several units",
             "",
             OURS + '; the code has "jacobi"',
         ),

@@ -69,7 +69,7 @@ def format_value(value: Any) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
     """The valid name closest to the given one, or None if none is close."""
-    if len(name) > LINE:  # no valid name is nearly as long, and comparing takes its time
+    if len(name) > LINE:  # no valid name is so long, and a comparison would take long
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
     return matches[0] if matches else None

@@ -15,7 +15,7 @@ MAX_VALUES = 5_000
 MAX_DEPTH = 8
 """Most levels of tables and lists inside one another; settings need five."""
 MAX_DIGITS = 1000
-"""Most digits of an integer that is read at all; its setting then refuses it and says more."""
+"""Most digits of an integer. Python can read a few thousand. Smaller integers are checked by their setting."""
 
 
 def read_toml(path: Path) -> Table:
@@ -60,7 +60,7 @@ def parse_toml(text: str, origin: str) -> Table:
 
 
 def require_plain(tables: Any, origin: str) -> None:
-    """Refuses tables that are deeper or larger than a config can be, and integers of too many digits.
+    """Refuses tables that are deeper or larger than a config can be, and integers with too many digits.
 
     Raises:
         ConfigError: They are.

@@ -101,9 +101,9 @@ def test_a_size_that_finds_no_memory_says_so(monkeypatch):
     monkeypatch.setattr(growth, "memory_bytes", lambda field: 49_000_000)
     rows = growth.measure(make_plan(threads="1", quick=True), NO_RATES)
     assert [row["slots"] for row in rows if "refused" in row] == [400]
-    assert "needs 0.1 GB of memory, and 0.0 GB are free" in rows[-1]["refused"]
+    assert "needs 0.1 GB of memory, but only 0.0 GB are free" in rows[-1]["refused"]
     notes = growth.table(rows, NO_RATES).notes
-    assert notes[0].startswith("400 slots: left out, needs")
+    assert notes[0].startswith("400 slots: skipped, needs")
 
 
 def test_the_scene_of_a_world_can_be_put_into_another():
