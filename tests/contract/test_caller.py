@@ -186,6 +186,15 @@ def test_a_forked_child_can_drop_the_simulation_and_make_its_own():
     assert done.stdout.strip() == "7"
 
 
+@pytest.fixture
+def ctrl_c() -> Iterator[None]:
+    """Python's own answer to Ctrl-C, also where the tests were started in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_is_heard_while_a_simulation_steps_and_its_state_is_kept():
     simulation = make_simulation("learning.update_epochs=0", threads=1)
     simulation.run(300)
