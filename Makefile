@@ -3,21 +3,27 @@ PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 
-.PHONY: run test test-long sync stubs clean
+.PHONY: run test test-long static sanitized sync stubs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
 	$(RUN) hedon run baseline
 
 test: sync
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
+	$(RUN) pytest --numprocesses auto --dist loadfile
+
+# Side by side, since each keeps one processor busy.
+static: sync
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
 	$(RUN) clang-format --dry-run -Werror $(shell find engine -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
 	$(RUN) pyright
-	$(RUN) pytest --numprocesses auto --dist loadfile
-	$(RUN) python tests/sanitize.py asan
 	$(RUN) --group cuda python tests/cuda.py
+
+sanitized: sync
+	$(RUN) python tests/sanitize.py asan
 
 # The same questions asked hundreds of times, and those that take minutes: before a release.
 test-long: sync
