@@ -2,6 +2,8 @@
 PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
+# Builds below start their own jobs: make's job server does not reach them through uv.
+unexport MAKEFLAGS
 
 .PHONY: run test test-long static sanitized sync stubs clean
 
