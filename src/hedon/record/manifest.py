@@ -31,7 +31,7 @@ class Session:
     Attributes:
         started, ended: ISO 8601, UTC; `ended` is None if the session is still running, or was killed.
         from_step: step at which it began [step].
-        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, during this session.
+        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, at the time.
     """
 
     started: str | None
