@@ -5,6 +5,7 @@ import math
 PURPOSES = (
     *("action", "life_and_death", "parent_order", "child_place", "child_heading", "mutation", "initial_genome"),
     *("initial_place", "network", "minibatch", "food_place", "frozen_mutation", "initial_heading", "initial_food"),
+    *("vacant_network", "vacant_genome"),
 )
 """What draws are for, in the order of their numbers."""
 

@@ -40,6 +40,8 @@ class Agent:
     birth_step: int = 0
     children: int = 0
     eaten: list[int] = field(default_factory=list)
+    old_slot: bool = False
+    """Whether somebody lived in its slot when the window began."""
 
 
 @dataclass
@@ -53,15 +55,37 @@ class Stock:
 
 
 @dataclass
+class Vacancy:
+    """What the dead left in a free slot, and whether somebody lived there when the window began."""
+
+    genome: np.ndarray
+    old_slot: bool = False
+
+
+@dataclass
+class Newborn:
+    """A birth of this window; `parent` is its place among the newborns, or -1 with the older parent's genome."""
+
+    agent_id: int
+    parent: int
+    genome: np.ndarray
+
+
+@dataclass
 class World:
-    """A world between two steps; `agents` in the order of their ids."""
+    """A world between two steps; `agents` in the order of their ids, the vacancy that is used next at the end."""
 
     step: int
     next_agent_id: int
     births_in_window: int
+    births_before: int
     agents: list[Agent]
     stocks: list[Stock]
     counters: dict[str, float]
+    vacancies: list[Vacancy]
+    newborns: list[Newborn] = field(default_factory=list)
+    ghosts: list[tuple[float, float]] = field(default_factory=list)
+    """Foods just eaten that rays still meet."""
 
 
 @dataclass
@@ -140,24 +164,31 @@ class Model:
 
     def found(self) -> World:
         population, body, kinds = self.config["population"], self.config["body"], self.config["food"]
-        world = World(0, 0, 0, [], [Stock(kind["initial_count"]) for kind in kinds], dict.fromkeys(COUNTED, 0.0))
+        late = self.config["birth"]["inheritance"] == "at_window_end"
+        stocks, free = (
+            [Stock(kind["initial_count"]) for kind in kinds],
+            population["capacity"] - population["initial_count"],
+        )
+        vacancies = [Vacancy(self.first_genome(i, "vacant_genome") * late) for i in range(free)]
+        world = World(0, 0, 0, 0, [], stocks, dict.fromkeys(COUNTED, 0.0), vacancies)
         for i in range(population["initial_count"]):
             places = (self.anywhere(self.draw("initial_place", i, 0, n)) for n in range(FOUNDING_TRIES))
             x, y = next(place for place in places if self.is_free(world, *place, body["radius"]))
-            angle = 2 * math.pi * uniform(self.draw("initial_heading", i, 0)[0])
+            angle = population["heading_range"] * uniform(self.draw("initial_heading", i, 0)[0])
             energy = self.config["energy"]["initial"]
-            world.agents.append(Agent(i, x, y, angle, energy, self.first_genome(i), eaten=[0] * len(kinds)))
+            genome, old = self.first_genome(i, "initial_genome"), self.config["birth"]["parents"] == "old_slots"
+            world.agents.append(Agent(i, x, y, angle, energy, genome, eaten=[0] * len(kinds), old_slot=old))
             world.counters["energy_initial"] += energy
             world.next_agent_id += 1
         for k in range(len(kinds)):
             self.place_food(world, k, "initial_food", 0, FOUNDING_TRIES)
         return world
 
-    def first_genome(self, agent_id: int) -> np.ndarray:
+    def first_genome(self, of: int, purpose: str) -> np.ndarray:
         g = self.config["genome"]
         means = [g["initial_mean_food"]] * len(self.config["food"]) + [g["initial_mean_action"]]
         means += [0.0] * g["neutral_count"]
-        noise = [normals(*self.draw("initial_genome", agent_id, 0, i)[:2])[0] for i in range(len(means))]
+        noise = [normals(*self.draw(purpose, of, 0, i)[:2])[0] for i in range(len(means))]
         return np.clip(means + g["initial_sd"] * np.array(noise), -g["weight_limit"], g["weight_limit"])
 
     # One step.
@@ -173,33 +204,41 @@ class Model:
             if self.pay(world, agent, meal, force):
                 starved.add(agent.agent_id)
             rewards[agent.agent_id] = self.reward(agent.genome, meal, force)
-        self.breed(world, starved)
-        dead = self.reap(world, starved)
+        if self.config["birth"]["order"] == "before_deaths":
+            self.breed(world, starved)
+            dead = self.reap(world, starved)
+        else:
+            dead = self.reap(world, starved)
+            self.breed(world, starved)
         self.grow(world)
         world.step += 1
         if world.step % self.config["learning"]["rollout_steps"] == 0 and world.agents:
-            world.births_in_window = 0
+            self.open_window(world)
         return Outcome(world, rewards, dead)
 
     def eat(self, world: World, deeds: list[Deed]) -> list[list[int]]:
-        """Each food goes to the nearest of those whose mouths it met; returns meals by agent and kind."""
+        """Each food goes to the nearest of those whose mouths it met, or to all; returns meals by agent and kind."""
+        world.ghosts = []
         meals = [[0] * len(world.stocks) for _ in deeds]
         for k, stock in enumerate(world.stocks):
             left = []
             for f, (x, y) in enumerate(stock.foods):
                 rivals = [i for i, deed in enumerate(deeds) if (k, f) in deed.mouthfuls]
-                if rivals:
-                    eater = min(rivals, key=lambda i: math.hypot(deeds[i].x - x, deeds[i].y - y))
+                if self.config["sensor"]["mouths"] == "nearest":
+                    rivals = sorted(rivals, key=lambda i: math.hypot(deeds[i].x - x, deeds[i].y - y))[:1]
+                for eater in rivals:
                     meals[eater][k] += 1
-                else:
+                if not rivals:
                     left.append((x, y))
-            gone = len(stock.foods) - len(left)
+                elif self.config["sensor"]["eaten_food"] == "seen":
+                    world.ghosts.append((x, y))
+            gone, fed = len(stock.foods) - len(left), sum(meal[k] for meal in meals)
             stock.foods = left
             placement = self.config["food"][k]["placement"]
             if placement["form"] == "switching":
-                turns = (stock.eaten + gone) // placement["switch_after"] - stock.eaten // placement["switch_after"]
+                turns = (stock.eaten + fed) // placement["switch_after"] - stock.eaten // placement["switch_after"]
                 stock.center = (stock.center + turns) % len(placement["centers"])
-            stock.eaten += gone
+            stock.eaten += fed
             stock.number -= gone
         return meals
 
@@ -230,11 +269,12 @@ class Model:
         return float(genome[: len(meal)] @ meal + settings["action_coef"] * genome[len(meal)] * strength)
 
     def breed(self, world: World, starved: set[int]) -> None:
-        """Who drew a birth has a child, but for those who starve in this step."""
-        parents = []
+        """Who drew a birth has a child, but for those who starve in this step, or have to wait."""
+        parents, old_only = [], self.config["birth"]["parents"] == "old_slots"
         for agent in world.agents:
             high, low, *_ = self.draw("life_and_death", agent.agent_id, world.step)
-            if agent.agent_id not in starved and fine_uniform(high, low) < self.birth_rate(agent.energy):
+            waits = old_only and not agent.old_slot
+            if not waits and agent.agent_id not in starved and fine_uniform(high, low) < self.birth_rate(agent.energy):
                 parents.append(agent)
         for parent in sorted(parents, key=lambda a: self.draw("parent_order", a.agent_id, world.step)[0]):
             if len(world.agents) == self.config["population"]["capacity"]:
@@ -260,20 +300,47 @@ class Model:
         share = self.config["energy"]["birth_share"] * parent.energy
         parent.energy -= share
         parent.children += 1
-        angle = 2 * math.pi * uniform(self.draw("child_heading", child_id, 0)[0])
-        genome = self.mutate(parent.genome, child_id, world.births_in_window)
+        shared = self.config["birth"]["heading"] == "shared"
+        of, step = (0, world.step) if shared else (child_id, 0)
+        angle = 2 * math.pi * uniform(self.draw("child_heading", of, step)[0])
+        vacancy = world.vacancies.pop()
+        if self.config["birth"]["inheritance"] == "at_birth":
+            genome = self.mutate(parent.genome, child_id, world.births_before, world.births_in_window)
+        else:
+            genome = vacancy.genome
+            among = [newborn.agent_id for newborn in world.newborns]
+            at = among.index(parent.agent_id) if parent.agent_id in among else -1
+            world.newborns.append(Newborn(child_id, at, parent.genome))
         family = (parent.agent_id, parent.generation + 1, world.step + 1)
-        world.agents.append(Agent(child_id, *place, angle, share, genome, *family, eaten=[0] * len(world.stocks)))
+        child = Agent(child_id, *place, angle, share, genome, *family, eaten=[0] * len(world.stocks))
+        child.old_slot = vacancy.old_slot
+        world.agents.append(child)
         world.next_agent_id += 1
         world.births_in_window += 1
         world.counters["births"] += 1
         world.counters["energy_shared"] += share
 
-    def mutate(self, genome: np.ndarray, child_id: int, birth_in_window: int) -> np.ndarray:
+    def open_window(self, world: World) -> None:
+        """Newborns that waited inherit; births are counted from 0, and taken slots are old."""
+        for index, newborn in enumerate(world.newborns):
+            parent = newborn.genome if newborn.parent < 0 else world.newborns[newborn.parent].genome
+            newborn.genome = self.mutate(parent, newborn.agent_id, world.births_in_window, index)
+            for agent in world.agents:
+                if agent.agent_id == newborn.agent_id:
+                    agent.genome = newborn.genome
+        world.newborns = []
+        world.births_before, world.births_in_window = world.births_in_window, 0
+        old = self.config["birth"]["parents"] == "old_slots"
+        for agent in world.agents:
+            agent.old_slot = old
+        for vacancy in world.vacancies:
+            vacancy.old_slot = False
+
+    def mutate(self, genome: np.ndarray, child_id: int, births: int, index: int) -> np.ndarray:
         g = self.config["genome"]
         frozen = g["mutation_noise"] == "frozen"
-        stream = ("frozen_mutation", birth_in_window) if frozen else ("mutation", child_id)
-        noise = np.array([cauchy(self.draw(*stream, 0, i)[0]) for i in range(len(genome))])
+        stream = ("frozen_mutation", index, births) if frozen else ("mutation", child_id, 0)
+        noise = np.array([cauchy(self.draw(*stream, i)[0]) for i in range(len(genome))])
         return np.clip(genome + g["mutation_scale"] * noise, -g["weight_limit"], g["weight_limit"])
 
     def reap(self, world: World, starved: set[int]) -> list[Agent]:
@@ -287,6 +354,7 @@ class Model:
                 dead.append(agent)
         gone = {agent.agent_id for agent in dead}
         world.agents = [agent for agent in world.agents if agent.agent_id not in gone]
+        world.vacancies += [Vacancy(agent.genome, agent.old_slot) for agent in dead]
         world.counters["deaths"] += len(dead)
         world.counters["energy_lost"] += sum(agent.energy for agent in dead)
         return dead

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hedon import _engine
+from hedon.config.dump import diff
 from hedon.config.load import load_config
 from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
@@ -17,6 +18,10 @@ STILL = ("motor.min_force=-1e-6", "motor.max_force=1e-6")
 """Motors so weak that nobody moves."""
 DEATHLESS = ("hazard.kappa=0", "hazard.alpha_age=0")
 CHILDLESS = ("birth.kappa=0",)
+RELEASED = tuple(
+    f"{path}={value}" for path, _, value in diff(load_config("baseline"), load_config("baseline", "released"))
+)
+"""The settings by which the paper's released program differs, with one kind of food."""
 
 
 def make_simulation(

@@ -45,6 +45,8 @@ enum class Purpose : uint32_t {
   frozen_mutation = 11,
   initial_heading = 12,
   initial_food = 13,
+  vacant_network = 14,
+  vacant_genome = 15,
 };
 
 /// The draws of one world for one purpose, one id (agent, food kind) and one step, counted by `index`.

@@ -65,8 +65,8 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
                           static_cast<float>(wall_type)};
   // For an eye at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
   const Aligned<float> next(HIDDEN * HIDDEN);
-  const Eye eye = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(),        sine.get(), static_cast<int32_t>(rays),
-                   start, length, -1,   {},   {next.get(), HIDDEN}};
+  const Eye eye = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(), sine.get(), static_cast<int32_t>(rays),
+                   start, length, -1,   1.0f, 0.0f,         {},         {next.get(), HIDDEN}};
   const int32_t sighted_circles = static_cast<int32_t>(count);
   const Sighted sighted = {{all.get(), all.get()}, {sighted_circles, sighted_circles}};
   alignas(64) float reading[PACKED_RAYS];

@@ -21,9 +21,8 @@ struct GenomeShape {
 HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 /// A founder's genome: independent normals around the configured means.
-HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t agent_id,
+HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, const RandomStream& random,
                           float* genome) {
-  const RandomStream random{seed, Purpose::initial_genome, agent_id, 0};
   for (int32_t g = 0; g < shape.size(); ++g) {
     const float mean = g < shape.kinds       ? config.initial_mean_food
                        : g == shape.action() ? config.initial_mean_action
@@ -34,14 +33,21 @@ HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, 
   }
 }
 
-/// A child's genome: the parent's plus Cauchy noise of scale `mutation_scale`, clipped to the weight limit.
-/// With frozen noise (a fault of the released code, kept for study) the noise depends on the seed, the gene and
-/// `birth_in_window`, the number of the birth within its window; so every window uses the same small table of noise.
+/// Which birth of its window a birth is: all that frozen noise depends on, beside the seed and the gene.
+struct BirthNumber {
+  uint32_t births;  ///< of this window, if its genomes are drawn at its end; else of the window before
+  uint32_t index;   ///< from 0, in the order of birth
+};
+
+/// A child's genome: the parent's plus Cauchy noise of scale `mutation_scale`, clipped to the weight limit. `parent`
+/// and `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on
+/// the seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
+/// noise.
 HEDON_FN void inherit(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t child_id,
-                      uint32_t birth_in_window, const float* parent, float* child) {
+                      BirthNumber number, const float* parent, float* child) {
   const bool frozen = config.mutation_noise == MutationNoise::frozen;
-  const RandomStream random{seed, frozen ? Purpose::frozen_mutation : Purpose::mutation,
-                            frozen ? birth_in_window : child_id, 0};
+  const RandomStream random = frozen ? RandomStream{seed, Purpose::frozen_mutation, number.index, number.births}
+                                     : RandomStream{seed, Purpose::mutation, child_id, 0};
   for (int32_t g = 0; g < shape.size(); ++g) {
     const float noise = to_cauchy(random.draw(static_cast<uint32_t>(g)).word[0]);
     child[g] = clip(parent[g] + config.mutation_scale * noise, -config.weight_limit, config.weight_limit);

@@ -25,11 +25,13 @@ HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lane
   rays.distance = smaller(candidate, rays.distance);
 }
 
-/// A ray misses a circle whose far side is before the ray's start. There is no branch, because branch prediction for 16
-/// rays would often fail. Memory is idle here, so each circle prefetches a row of the data that is read `next`.
+/// A ray misses a circle whose far side is before the ray's start, or, by the eye's `edge`, whose near side is. There
+/// is no branch, because branch prediction for 16 rays would often fail. Memory is idle here, so each circle prefetches
+/// a row of the data that is read `next`.
 HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const int32_t* circle, int32_t circles,
                                   const Rows& next, int32_t first_row, RayLanes& rays) {
   const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
+  const Lanes edge = broadcast(eye.edge);
   const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y);
   for (int32_t i = 0; i < circles; ++i) {
     const int32_t at = circle[i];
@@ -41,7 +43,7 @@ HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const i
     const Lanes squared = radius * radius - aside * aside;
     const Lanes along = multiply_add(rays.direction_x, x, rays.direction_y * y);
     const Lanes half_chord = square_root(larger(zero, squared));
-    const LaneMask hit = both(zero <= squared, start <= along + half_chord);
+    const LaneMask hit = both(zero <= squared, start <= multiply_add(edge, half_chord, along));
     take_hit(rays, hit, along - half_chord, start, length, broadcast(scene.circle_type[at]));
   }
 }
@@ -66,7 +68,7 @@ HEDON_INLINE uint32_t segments_ahead(const RayScene& scene, const Eye& eye, cons
 
 /// Segments are made longer by a millionth, so that no ray passes between two that meet.
 HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const Arc& arc, RayLanes& rays) {
-  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
+  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), nearest = broadcast(eye.nearest);
   const Lanes type = broadcast(scene.segment_type);
   for (int32_t first = 0; first < scene.segments; first += 16) {
     for (uint32_t bits = segments_ahead(scene, eye, arc, first); bits != 0; bits &= bits - 1) {
@@ -78,7 +80,7 @@ HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const 
       const Lanes part = (broadcast(ax) * rays.direction_y - broadcast(ay) * rays.direction_x) * inverse;
       const Lanes distance = broadcast(ax * ey - ay * ex) * inverse;
       const LaneMask within = both(broadcast(-1.0e-6f) <= part, part <= broadcast(1.000001f));
-      take_hit(rays, both(within, zero <= distance), distance, start, length, type);
+      take_hit(rays, both(within, nearest <= distance), distance, start, length, type);
     }
   }
 }

@@ -70,9 +70,11 @@ struct Eye {
   const float* ray_cosine;     ///< of each ray's angle to the heading; (32), entries past `rays` repeat the last
   const float* ray_sine;
   int32_t rays;
-  float start;   ///< distance from the center at which rays start: the body's radius [u]
-  float length;  ///< of a ray, from its start [u]
-  int32_t self;  ///< index of the agent's own circle, which its rays ignore; -1 if it has none
+  float start;    ///< distance from the center at which rays start: the body's radius [u]
+  float length;   ///< of a ray, from its start [u]
+  int32_t self;   ///< index of the agent's own circle, which its rays ignore; -1 if it has none
+  float edge;     ///< 1: a circle is hit if its far edge is past the start of the ray; -1: only if its near edge is
+  float nearest;  ///< distance from the center at which segments begin to be hit: 0, or `start` [u]
   Arc arc[RAY_ARCS];
   Rows next;  ///< data that is read after the rays are cast: prefetched meanwhile, one row per circle
 

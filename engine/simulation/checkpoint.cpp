@@ -14,6 +14,9 @@ Extent extent_of(const World& world) {
   const Clock& clock = world.clock();
   Extent extent{};
   extent.slots.assign(state.living.data, state.living.data + clock.living_count);
+  extent.free.assign(state.free.data, state.free.data + clock.free_count);
+  extent.ghosts = clock.ghost_count;
+  extent.newborns = state.newborn.count > 0 ? clock.births_in_window : 0;
   for (int32_t f = 0; f < world.shape->foods; ++f) {
     if (state.physics.circles.present[f]) extent.foods.push_back(f);
   }

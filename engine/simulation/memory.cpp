@@ -44,6 +44,10 @@ void set_counts(World& world, int members) {
   visit_scratch(world.physics_scratch, capacity, set_count);
   state.physics.circles.x.count = state.physics.circles.y.count = state.physics.circles.present.count = shape.foods;
   state.food_stock.count = kinds;
+  state.ghost.count = world.config->sensor.eaten_food == EatenFood::seen ? shape.foods : 0;
+  state.old_slot.count = world.config->birth.parents == Parents::old_slots ? slots : 0;
+  state.newborn.count = shape.newborns;
+  state.newborn_genome.count = shape.newborns * genes;
   state.params.count = state.first_moment.count = state.second_moment.count = slots * params;
   state.folded_bias.count = slots * HIDDEN;
   const bool rounded = world.config->learning.acting_weights == ActingWeights::bfloat16;
@@ -61,7 +65,7 @@ void set_counts(World& world, int members) {
   world.scratch.eater.count = world.scratch.eater_distance.count = shape.foods;
 
   Scene& scene = world.scene;
-  const int64_t circles = slots + shape.foods;
+  const int64_t circles = shape.circles;
   scene.x.count = scene.y.count = scene.radius.count = scene.type.count = scene.cell.count = circles;
   scene.start.count = int64_t{shape.scene.columns} * shape.scene.rows + 1;
   scene.own.count = slots;

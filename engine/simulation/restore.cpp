@@ -1,5 +1,6 @@
 /// Restores a world from a checkpoint. A checkpoint may come from anyone: everything that a step relies on is checked
 /// before the world is changed.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,6 +10,7 @@
 #include "base/float_mode.h"
 #include "simulation/saved.h"
 #include "simulation/simulation.h"
+#include "world/newborn.h"
 
 namespace hedon {
 namespace {
@@ -94,7 +96,9 @@ bool read_extent(Inspector& in, Extent& extent) {
   if (!in.has<int64_t>("clock.step", {1}) || !in.has<int32_t>("clock.living_count", {1}) ||
       !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("clock.step", 0, UINT32_MAX) ||
       !in.within<int32_t>("clock.living_count", 0, shape.slots) ||
-      !in.within<int32_t>("food.slot", 0, shape.foods - 1) ||
+      !in.within<int32_t>("food.slot", 0, shape.foods - 1) || !in.has<int32_t>("clock.births_in_window", {1}) ||
+      !in.has<int32_t>("clock.ghost_count", {1}) || !in.within<int32_t>("clock.births_in_window", 0, INT32_MAX - 1.0) ||
+      !in.within<int32_t>("clock.ghost_count", 0, static_cast<double>(in.world_.state.ghost.count)) ||
       !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("clock.living_count")[0]})) {
     return false;
   }
@@ -107,7 +111,11 @@ bool read_extent(Inspector& in, Extent& extent) {
   if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
   for (const int64_t birth : births) extent.learners += birth <= step - extent.filled;
   extent.slots.resize(births.size());
-  return true;
+  extent.free.resize(static_cast<size_t>(shape.slots) - births.size());
+  extent.ghosts = in.numbers<int32_t>("clock.ghost_count")[0];
+  if (shape.newborns == 0) return true;
+  extent.newborns = in.numbers<int32_t>("clock.births_in_window")[0];
+  return in.within<int32_t>("clock.births_in_window", 0, shape.newborns);
 }
 
 /// Checks that every array is there, that there are no others, and that all numbers are finite.
@@ -151,7 +159,7 @@ bool check_life(Inspector& in) {
   }
   return in.within<int64_t>("clock.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
          in.within<int32_t>("clock.next_agent_id", last_id + 1.0 - nobody, MOST) &&
-         in.within<int32_t>("clock.births_in_window", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
+         in.within<int32_t>("clock.births_before", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
          in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
@@ -176,9 +184,31 @@ bool check_food(Inspector& in, const Extent& extent) {
     if (fabs(number[at]) > config.capacity) return in.refuse("food_stock.number is above the capacity");
     if (center[at] < 0 || center[at] >= centers) return in.refuse("food_stock.center is not the index of a center");
   }
-  return in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
+  const bool ghosts = world.state.ghost.count == 0 || in.within<int32_t>("ghost.kind", 0, world.shape->kinds - 1);
+  return ghosts && in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
          in.within<float>("food.x", 0, world.config->arena.width) &&
          in.within<float>("food.y", 0, world.config->arena.height);
+}
+
+/// Checks the newborns that wait for their genomes: ids rise, and each parent among them is older than its child.
+bool check_newborns(Inspector& in) {
+  if (in.world_.state.newborn.count == 0) return true;
+  const std::vector<int32_t> ids = in.numbers<int32_t>("newborn.agent_id");
+  const std::vector<int32_t> parents = in.numbers<int32_t>("newborn.parent");
+  if (!rises(ids, true)) return in.refuse("newborn.agent_id is out of order");
+  for (size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] < -1 || parents[i] >= static_cast<int32_t>(i))
+      return in.refuse("newborn.parent is not an older newborn");
+  }
+  // Every agent that was born in this window waits: a parent is looked for among them.
+  const int64_t step = in.numbers<int64_t>("clock.step")[0];
+  const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
+  const std::vector<int32_t> living = in.numbers<int32_t>("life.agent_id");
+  for (size_t i = 0; i < births.size(); ++i) {
+    if (births[i] > step - step % in.world_.shape->steps && !std::binary_search(ids.begin(), ids.end(), living[i]))
+      return in.refuse("newborn.agent_id lacks an agent born in this window");
+  }
+  return true;
 }
 
 /// Checks the indices by which networks read rows: channels of rays, and bits of touch.
@@ -261,7 +291,7 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
   Inspector in(target, checkpoint);
   Extent extent{};
   if (!read_extent(in, extent) || !check_arrays(in, extent, checkpoint) || !check_life(in) || !check_food(in, extent) ||
-      !check_observations(in, extent) || !check_pairs(in, extent)) {
+      !check_newborns(in) || !check_observations(in, extent) || !check_pairs(in, extent)) {
     return in.complaint;
   }
   empty(target);
@@ -272,12 +302,16 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
     state.living[static_cast<int64_t>(i)] = slot;
     state.alive[slot] = 1;
   }
+  extent.free.assign(state.free.data, state.free.data + clock.free_count);
   for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
   for (const int32_t slot : extent.slots) target.kernel->derive(shape_.network, target.network(slot));
+  if (inherits_late(target)) {
+    for (const int32_t slot : extent.free) target.kernel->derive(shape_.network, target.network(slot));
+  }
   restore_pairs(in, target, extent);
   return "";
 }

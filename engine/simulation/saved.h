@@ -15,7 +15,10 @@ namespace hedon {
 /// Numbers of rows in the arrays of a checkpoint, and their slots.
 struct Extent {
   std::vector<int32_t> slots;  ///< of the living, in the order of their ids
+  std::vector<int32_t> free;   ///< free slots in the order of their stack
   std::vector<int32_t> foods;  ///< slots of the foods present, ascending
+  int64_t newborns;            ///< births of this window that wait for their genomes
+  int64_t ghosts;              ///< foods just eaten that are still seen
   int64_t learners;            ///< number of the living that were there when the window began; they come first
   int64_t filled;              ///< steps done in the window
 };
@@ -89,6 +92,24 @@ void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
   by_slot("first_moment", state.first_moment, shape.network.size());
   by_slot("second_moment", state.second_moment, shape.network.size());
   by_slot("updates", state.updates, 0);
+  if (state.ghost.count > 0) columns("ghost.", state.ghost.data, nullptr, extent.ghosts, keep_all);
+  // With some rules of birth the free slots matter too: the next newborns find there what the dead have left.
+  const auto by_free_slot = [&]<class T>(const std::string& name, const Array<T>& array, int64_t width) {
+    visit(name, SavedRows<T>{array.data, (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T)), extent.free.data(),
+                             static_cast<int64_t>(extent.free.size()), width});
+  };
+  if (state.old_slot.count > 0) {
+    by_slot("old_slot", state.old_slot, 0);
+    by_free_slot("free.old_slot", state.old_slot, 0);
+  }
+  if (state.newborn.count > 0) {
+    by_free_slot("free.params", state.params, shape.network.size());
+    by_free_slot("free.genome", state.genome, shape.genome.size());
+    columns("newborn.", state.newborn.data, nullptr, extent.newborns, keep_all);
+    const int64_t genes = shape.genome.size();
+    visit("newborn.genome",
+          SavedRows<float>{state.newborn_genome.data, genes * number, nullptr, extent.newborns, genes});
+  }
   if (extent.filled == 0) return;
   rollout("observation", reinterpret_cast<uint8_t*>(state.observation.data), steps + 1, sizeof(PackedObservation));
   rollout("action", state.action.data, steps, ACTIONS);

@@ -137,10 +137,10 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
   }
   empty(target);
   for (int64_t i = 0; i < scene.x.count; ++i) {
-    const int32_t slot = spawn(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i], 0);
-    init_genome(shape_.genome, config_.genome, target.seed, static_cast<uint32_t>(i), target.genome(slot));
-    target.counters().energy_initial += scene.energy[i];
+    spawn_founder(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i]);
   }
+  if (inherits_late(target)) fill_vacancies(target);
+  open_window(target);
   for (int64_t f = 0; f < scene.food_kind.count; ++f) {
     place_food(target, scene.food_kind[f], {scene.food_x[f], scene.food_y[f]});
   }

@@ -49,7 +49,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   });
   group.once([&] {
     world.counters().learners += learners;
-    clock.births_in_window = 0;
+    if (inherits_late(world)) settle_newborns(world);
+    open_window(world);
   });
 }
 

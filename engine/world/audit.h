@@ -81,6 +81,8 @@ HEDON_FN void audit_capacity(const World& world) {
     const int32_t count = pairs->start[bodies];
     if (count < 0 || count > pairs->first.count) return world.fail(Status::neighbor_overflow, -1, count);
   }
+  const int32_t ghosts = world.clock().ghost_count;
+  if (ghosts < 0 || ghosts > world.state.ghost.count) world.fail(Status::counts_inconsistent, -1, ghosts);
   const int32_t events = world.clock().event_count;
   if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
 }

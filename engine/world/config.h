@@ -43,6 +43,18 @@ struct MotorConfig {
 enum class ObservationScaling : int32_t { raw, unit };
 inline constexpr const char* OBSERVATION_SCALING_NAMES[] = {"raw", "unit"};
 
+/// What a ray reads whose start lies inside another body or beyond a wall.
+enum class RayInside : int32_t { hit, behind };
+inline constexpr const char* RAY_INSIDE_NAMES[] = {"hit", "behind"};
+
+/// Whether rays meet food that was eaten in the step before.
+enum class EatenFood : int32_t { gone, seen };
+inline constexpr const char* EATEN_FOOD_NAMES[] = {"gone", "seen"};
+
+/// Which of several mouths that touch a food in the same step are fed.
+enum class Mouths : int32_t { nearest, all };
+inline constexpr const char* MOUTHS_NAMES[] = {"nearest", "all"};
+
 struct SensorConfig {
   int32_t ray_count;
   float ray_spread;  ///< between the heading and the outermost ray on each side [degree]
@@ -50,15 +62,20 @@ struct SensorConfig {
   int32_t touch_sectors;
   float mouth_spread;  ///< between the heading and each end of the mouth [degree]
   ObservationScaling scaling;
+  RayInside ray_inside;
+  EatenFood eaten_food;
+  Mouths mouths;
 
-  HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling)
+  HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling, ray_inside,
+               eaten_food, mouths)
 };
 
 struct PopulationConfig {
   int32_t capacity;
   int32_t initial_count;
+  float heading_range;  ///< founders head to a uniform angle from 0 to this [rad]
 
-  HEDON_FIELDS(PopulationConfig, capacity, initial_count)
+  HEDON_FIELDS(PopulationConfig, capacity, initial_count, heading_range)
 };
 
 enum class PlacementForm : int32_t { uniform, gaussian, switching };
@@ -108,13 +125,33 @@ struct HazardConfig {
   HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age)
 };
 
+/// Which of the two comes first in a step.
+enum class BirthOrder : int32_t { before_deaths, after_deaths };
+inline constexpr const char* BIRTH_ORDER_NAMES[] = {"before_deaths", "after_deaths"};
+
+/// When a newborn gets its network and its genome.
+enum class Inheritance : int32_t { at_birth, at_window_end };
+inline constexpr const char* INHERITANCE_NAMES[] = {"at_birth", "at_window_end"};
+
+/// Who may have children: everyone, or only agents in slots that were taken when the window began.
+enum class Parents : int32_t { all, old_slots };
+inline constexpr const char* PARENTS_NAMES[] = {"all", "old_slots"};
+
+/// Whether each child has a heading of its own, or the children of one step share one.
+enum class ChildHeading : int32_t { own, shared };
+inline constexpr const char* CHILD_HEADING_NAMES[] = {"own", "shared"};
+
 struct BirthConfig {
   float kappa;
   float beta;
   int32_t attempts;
   Vec2 distance_sd;
+  BirthOrder order;
+  Inheritance inheritance;
+  Parents parents;
+  ChildHeading heading;
 
-  HEDON_FIELDS(BirthConfig, kappa, beta, attempts, distance_sd)
+  HEDON_FIELDS(BirthConfig, kappa, beta, attempts, distance_sd, order, inheritance, parents, heading)
 };
 
 struct WorldConfig {

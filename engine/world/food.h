@@ -45,7 +45,24 @@ HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& ra
   }
 }
 
-/// The nearest of the agents whose mouths touched a food in this step eats it.
+HEDON_FN int32_t food_kind(const WorldShape& shape, int32_t food) {
+  int32_t k = 0;
+  while (food >= shape.food_offset[k + 1]) ++k;
+  return k;
+}
+
+/// Feeds `slot` with a food of kind `k`; the place where food appears moves on after a number of meals.
+HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
+  FoodStock& stock = world.state.food_stock[k];
+  const PlacementConfig& placement = world.config->food[k].placement;
+  world.meal(slot)[k] += 1;
+  stock.eaten += 1;
+  if (placement.form == PlacementForm::switching && stock.eaten % placement.switch_after == 0) {
+    stock.center = (stock.center + 1) % placement.centers.count;
+  }
+}
+
+/// The nearest of the agents whose mouths touched a food in this step eats it; or all of them do.
 HEDON_FN void eat(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
@@ -53,11 +70,15 @@ HEDON_FN void eat(World& world) {
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
     for (int32_t k = 0; k < world.shape->kinds; ++k) world.meal(state.living[i])[k] = 0;
   }
+  world.clock().ghost_count = 0;
+  const bool all = world.config->sensor.mouths == Mouths::all;
+  const bool seen = world.config->sensor.eaten_food == EatenFood::seen;
   int32_t found = 0;
   for_each_circle_pair(state.physics.neighbors, [&](int32_t slot, int32_t f, uint8_t mark) {
     if (mark == 0) return;
     const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
     const float distance = squared_length(apart);
+    if (all && scratch.eater[f] >= 0) return feed(world, slot, food_kind(*world.shape, f));
     if (scratch.eater[f] >= 0 && scratch.eater_distance[f] <= distance) return;
     if (scratch.eater[f] < 0) ++found;
     scratch.eater[f] = slot;
@@ -66,7 +87,6 @@ HEDON_FN void eat(World& world) {
   if (found == 0) return;
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
     FoodStock& stock = state.food_stock[k];
-    const PlacementConfig& placement = world.config->food[k].placement;
     for (int32_t f = world.shape->food_offset[k]; f < world.shape->food_offset[k + 1]; ++f) {
       const int32_t slot = scratch.eater[f];
       if (slot < 0) continue;
@@ -76,11 +96,8 @@ HEDON_FN void eat(World& world) {
       mark_stale(state.physics);
       stock.present -= 1;
       stock.number -= 1.0;
-      stock.eaten += 1;
-      world.meal(slot)[k] += 1;
-      if (placement.form == PlacementForm::switching && stock.eaten % placement.switch_after == 0) {
-        stock.center = (stock.center + 1) % placement.centers.count;
-      }
+      feed(world, slot, k);
+      if (seen) state.ghost[world.clock().ghost_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
     }
   }
 }

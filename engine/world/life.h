@@ -123,7 +123,7 @@ HEDON_FN void breed(World& world) {
   int32_t parents = 0;
   for (int32_t i = 0; i < world.clock().living_count; ++i) {
     const int32_t slot = state.living[i];
-    if (scratch.breeds[slot] == 0) continue;
+    if (scratch.breeds[slot] == 0 || !may_breed(world, slot)) continue;
     const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id),
                               step};
     const uint32_t key = random.draw(0).word[0];

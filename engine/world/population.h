@@ -6,8 +6,8 @@
 #include "base/device.h"
 #include "base/random.h"
 #include "evolution/genome.h"
-#include "learning/init.h"
 #include "world/food.h"
+#include "world/newborn.h"
 #include "world/placement.h"
 #include "world/world.h"
 
@@ -23,7 +23,7 @@ HEDON_FN void list_by_slot(World& world) {
   }
 }
 
-/// A body at rest with a new network, no history and the next id, last in the living order. The caller sets its genome.
+/// A body at rest with no history and the next id, last in the living order. The caller gives it network and genome.
 HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int64_t birth_step) {
   WorldState& state = world.state;
   Clock& clock = world.clock();
@@ -46,15 +46,26 @@ HEDON_FN int32_t spawn(World& world, Vec2 place, float angle, double energy, int
   body.angular_velocity[slot] = 0.0f;
   insert(state.physics.body_grid, slot, place.x, place.y);
   mark_stale(state.physics);
-
-  const NetworkShape& network = world.shape->network;
-  float* params = world.params(slot);
-  init_network(network, RandomStream{world.seed, Purpose::network, static_cast<uint32_t>(id), 0}, params);
-  world.kernel->derive(network, world.network(slot));
-  const int64_t first = int64_t{slot} * network.size();
-  for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
-  state.updates[slot] = 0;
   return slot;
+}
+
+/// The first agents: each with a new network and a genome of its own.
+HEDON_FN int32_t spawn_founder(World& world, Vec2 place, float angle, double energy) {
+  const int32_t slot = spawn(world, place, angle, energy, 0);
+  give_own_network(world, slot);
+  const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
+  init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
+              world.genome(slot));
+  world.counters().energy_initial += energy;
+  return slot;
+}
+
+/// The heading of a child with this id that is born in this step.
+HEDON_FN float child_heading(const World& world, uint32_t id) {
+  const bool shared = world.config->birth.heading == ChildHeading::shared;
+  const uint32_t step = shared ? static_cast<uint32_t>(world.clock().step) : 0;
+  const Random4 bits = RandomStream{world.seed, Purpose::child_heading, shared ? 0 : id, step}.draw(0);
+  return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
 }
 
 /// A child of `parent` at `place`: part of its energy, its genome with mutation, and nothing that it learned.
@@ -66,13 +77,18 @@ HEDON_FN void bear(World& world, int32_t parent, Vec2 place) {
   parent_life.energy -= share;
   parent_life.children += 1;
   const uint32_t id = static_cast<uint32_t>(clock.next_agent_id);
-  const Random4 bits = RandomStream{world.seed, Purpose::child_heading, id, 0}.draw(0);
-  const int32_t slot = spawn(world, place, wrap_angle(TWO_PI_F * to_uniform(bits.word[0])), share, clock.step + 1);
+  const int32_t slot = spawn(world, place, child_heading(world, id), share, clock.step + 1);
   Life& child = state.life[slot];
   child.parent_id = parent_life.agent_id;
   child.generation = parent_life.generation + 1;
-  inherit(world.shape->genome, world.config->genome, world.seed, id, static_cast<uint32_t>(clock.births_in_window),
-          world.genome(parent), world.genome(slot));
+  if (inherits_late(world)) {
+    note_newborn(world, parent, child.agent_id);
+  } else {
+    give_own_network(world, slot);
+    inherit(world.shape->genome, world.config->genome, world.seed, id,
+            {static_cast<uint32_t>(clock.births_before), static_cast<uint32_t>(clock.births_in_window)},
+            world.genome(parent), world.genome(slot));
+  }
   clock.births_in_window += 1;
   world.counters().births += 1;
   world.counters().energy_shared += share;
@@ -115,10 +131,11 @@ HEDON_FN void found(World& world) {
     } while (!can_place(world, place, config.body.radius) && ++tries < TRIES);
     if (tries == TRIES) return world.fail(Status::initial_placement, i, i);
     const Random4 bits = RandomStream{world.seed, Purpose::initial_heading, static_cast<uint32_t>(i), 0}.draw(0);
-    const int32_t slot = spawn(world, place, wrap_angle(TWO_PI_F * to_uniform(bits.word[0])), config.energy.initial, 0);
-    init_genome(world.shape->genome, config.genome, world.seed, static_cast<uint32_t>(i), world.genome(slot));
-    world.counters().energy_initial += config.energy.initial;
+    const float angle = wrap_angle(config.population.heading_range * to_uniform(bits.word[0]));
+    spawn_founder(world, place, angle, config.energy.initial);
   }
+  if (inherits_late(world)) fill_vacancies(world);
+  open_window(world);
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
     FoodStock& stock = world.state.food_stock[k];
     stock.number = config.food[k].initial_count;

@@ -10,7 +10,8 @@
 namespace hedon {
 
 /// Collects the circles that rays may hit and sorts them by cell; within a cell, the living come in their order, then
-/// the foods. (A counting sort: its time is in proportion to the circles and cells.)
+/// the foods, then those just eaten if they are seen. (A counting sort: its time is in proportion to the circles and
+/// cells.)
 HEDON_FN void gather_scene(World& world) {
   Scene& scene = world.scene;
   const WorldState& state = world.state;
@@ -30,6 +31,8 @@ HEDON_FN void gather_scene(World& world) {
   for (int32_t f = 0; f < world.shape->foods; ++f) {
     if (food.present[f]) find_cell(slots + f, food.x[f], food.y[f]);
   }
+  const int32_t ghosts = world.clock().ghost_count, first_ghost = slots + world.shape->foods;
+  for (int32_t g = 0; g < ghosts; ++g) find_cell(first_ghost + g, state.ghost[g].x, state.ghost[g].y);
 
   int32_t sum = 0;
   for (int32_t cell = 0; cell < cells; ++cell) {
@@ -45,6 +48,10 @@ HEDON_FN void gather_scene(World& world) {
     scene.type[at] = static_cast<float>(type);
     return at;
   };
+  for (int32_t g = ghosts - 1; g >= 0; --g) {
+    const Ghost& ghost = state.ghost[g];
+    put(first_ghost + g, ghost.x, ghost.y, world.config->body.food_radius, 1 + ghost.kind);
+  }
   for (int32_t k = world.shape->kinds - 1; k >= 0; --k) {
     for (int32_t f = world.shape->food_offset[k + 1] - 1; f >= world.shape->food_offset[k]; --f) {
       if (food.present[f]) put(slots + f, food.x[f], food.y[f], world.config->body.food_radius, 1 + k);
@@ -68,7 +75,7 @@ HEDON_FN RayScene ray_scene(const World& world) {
 
 /// Empty lists of sighted circles in the memory of one member of the team.
 HEDON_FN Sighted no_circles(const World& world, int rank) {
-  const int64_t room = int64_t{world.shape->slots} + world.shape->foods + 16;
+  const int64_t room = int64_t{world.shape->circles} + 16;
   Sighted sighted{};
   for (int32_t a = 0; a < RAY_ARCS; ++a) sighted.circle[a] = world.scene.sighted.data + (rank * RAY_ARCS + a) * room;
   return sighted;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/device.h"
+#include "world/food.h"
 #include "world/scene.h"
 #include "world/world.h"
 
@@ -33,6 +34,8 @@ HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
           world.config->body.radius,
           sensor.ray_length,
           world.scene.own[slot],
+          sensor.ray_inside == RayInside::behind ? -1.0f : 1.0f,
+          sensor.ray_inside == RayInside::behind ? world.config->body.radius : 0.0f,
           {},
           square_layer(world, slot)};
   if (!constants.arc_convex) return eye;
@@ -127,9 +130,7 @@ struct TouchVisitor {
     int32_t type = AGENT_TYPE;
     if (kind == PairKind::wall) type = world->shape->wall_type();
     if (kind == PairKind::circle) {
-      int32_t k = 0;
-      while (other >= world->shape->food_offset[k + 1]) ++k;
-      type = 1 + k;
+      type = 1 + food_kind(*world->shape, other);
       if (mouth) mark = 1;
     }
     world->state.touch[slot] |= uint64_t{1} << (type * world->config->sensor.touch_sectors + at);

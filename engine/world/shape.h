@@ -41,7 +41,9 @@ struct WorldShape {
   int32_t foods;  ///< most foods present at a time, all kinds
   int32_t walls;
   int32_t outer_walls;  ///< the first walls, a closed convex polygon
+  int32_t circles;      ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
   int32_t events;       ///< deaths that can wait for the reader
+  int32_t newborns;     ///< births of a window that can wait for their genomes
   int32_t steps;        ///< of a rollout
   GenomeShape genome;
   NetworkShape network;
@@ -66,6 +68,8 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   shape.steps = config.learning.rollout_steps;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
+  shape.circles = shape.slots + shape.foods + (config.sensor.eaten_food == EatenFood::seen ? shape.foods : 0);
+  shape.newborns = config.birth.inheritance == Inheritance::at_window_end ? shape.events : 0;
   shape.scene = make_scene_grid(config, shape.slots + shape.foods);
   shape.genome = {shape.kinds, config.genome.neutral_count};
   const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;

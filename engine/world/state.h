@@ -78,11 +78,29 @@ struct Clock {
   int32_t living_count;
   int32_t free_count;
   int32_t births_in_window;
+  int32_t births_before;  ///< of the window before
+  int32_t ghost_count;
   int32_t event_count;  ///< deaths not yet taken by the reader
   int32_t reserved;
 
-  HEDON_FIELDS(Clock, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, event_count,
-               reserved)
+  HEDON_FIELDS(Clock, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, births_before,
+               ghost_count, event_count, reserved)
+};
+
+/// A birth of this window whose genome is drawn at the window's end.
+struct Newborn {
+  int32_t agent_id;
+  int32_t parent;  ///< index of its parent among the newborns; -1 if the parent is older than the window
+
+  HEDON_FIELDS(Newborn, agent_id, parent)
+};
+
+/// A food eaten in the last step that rays still meet.
+struct Ghost {
+  float x, y;
+  int32_t kind;
+
+  HEDON_FIELDS(Ghost, x, y, kind)
 };
 
 struct WorldState {
@@ -101,6 +119,12 @@ struct WorldState {
   PhysicsState physics;   // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
 
   Array<FoodStock> food_stock;  // (kinds)
+  Array<Ghost> ghost;           // (foods) none unless eaten food is seen
+
+  // Rules of birth that reach over a window; none unless the config has them.
+  Array<uint8_t> old_slot;      // (slots) 1 for slots that were taken when the window began
+  Array<Newborn> newborn;       // (births) of this window, in the order of birth
+  Array<float> newborn_genome;  // (births, genes) of each newborn's parent, if that is older than the window
 
   // Learners, by slot.
   Array<float> params;          // (slots, params)
@@ -123,8 +147,8 @@ struct WorldState {
   Array<float> event_genome;   // (events, genes)
 
   HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
-               params, folded_bias, paired_weights, first_moment, second_moment, updates, observation, action, log_prob,
-               value, reward, event, event_eaten, event_genome)
+               ghost, old_slot, newborn, newborn_genome, params, folded_bias, paired_weights, first_moment,
+               second_moment, updates, observation, action, log_prob, value, reward, event, event_eaten, event_genome)
 };
 
 }  // namespace hedon

@@ -92,8 +92,9 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, by_slot[i], t); });
   group.once([&] {
     keep_ledger(world);
-    breed(world);
+    if (world.config->birth.order == BirthOrder::before_deaths) breed(world);
     reap(world);
+    if (world.config->birth.order == BirthOrder::after_deaths) breed(world);
     grow(world);
     clock.step += 1;
     prepare_step(world);

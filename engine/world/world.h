@@ -12,15 +12,15 @@
 
 namespace hedon {
 
-/// The circles of the living and of the foods present, sorted by the cells of a grid, and the walls: all that rays may
+/// The circles of the living and of the foods, sorted by the cells of a grid, and the walls: all that rays may
 /// hit. `gather_scene` computes it from the state.
 struct Scene {
-  Array<float> x, y, radius, type;  ///< (slots + foods) of the circles: cell by cell, row by row of cells
-  Array<int32_t> start;             ///< (cells + 1) first circle of each cell
-  Array<int32_t> own;               ///< (slots) index of the circle of the agent in each slot
-  Array<int32_t> cell;              ///< (slots + foods) of each circle, before sorting
+  Array<float> x, y, radius, type;                  ///< (circles) of the circles: cell by cell, row by row of cells
+  Array<int32_t> start;                             ///< (cells + 1) first circle of each cell
+  Array<int32_t> own;                               ///< (slots) index of the circle of the agent in each slot
+  Array<int32_t> cell;                              ///< (circles) of each circle, before sorting
   Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< (walls)
-  Array<int32_t> sighted;  ///< (members, RAY_ARCS, slots + foods + 16) for each member of the team: see `Sighted`
+  Array<int32_t> sighted;  ///< (members, RAY_ARCS, circles + 16) for each member of the team: see `Sighted`
 
   HEDON_FIELDS(Scene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, sighted)
 };
@@ -69,6 +69,8 @@ struct World {
   HEDON_FN Clock& clock() const { return state.clock[0]; }
   HEDON_FN Counters& counters() const { return state.counters[0]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
+  /// The step at which the window of the current step began.
+  HEDON_FN int64_t window_start() const { return clock().step - clock().step % shape->steps; }
   HEDON_FN bool over() const { return clock().extinct_step >= 0 || fault().status != Status::ok; }
 
   /// Keeps the first error; later ones are usually its consequences.

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from worlds import QUICK, make_engine, make_simulation
+from worlds import QUICK, RELEASED, make_engine, make_simulation
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 WINDOW = 64
@@ -12,7 +12,12 @@ DERIVED = {"alive", "living", "free", "folded_bias", "paired_weights"}
 TAKEN_BY_READER = {"event", "event_eaten", "event_genome"}
 FROM_CONFIG = {"physics.walls"}
 IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}
-SAVED_AS = {"physics.bodies": "body", "physics.circles": "food", "fault": None}
+SAVED_AS = {
+    "physics.bodies": "body",
+    "physics.circles": "food",
+    "newborn_genome": "newborn.genome",
+    "fault": None,
+}
 
 
 def continued(pieces, *, saved_at, preset="baseline", threads=1, slot_order=(), settings=()):
@@ -64,8 +69,16 @@ def test_a_restored_world_has_the_same_future(saved_at, preset):
         np.testing.assert_array_equal(values, other.agents()[name])
 
 
-def test_it_may_be_saved_at_every_step():
-    few = (*LIVELY, "population.capacity=40", "population.initial_count=30")
+@pytest.mark.parametrize("saved_at", [0, 1, WINDOW - 1, WINDOW, 2 * WINDOW + 30])
+def test_the_released_program_has_the_same_future(saved_at):
+    """Its newborns that wait, what the dead left in free slots, and eaten food that is seen are state too."""
+    world = continued([150], saved_at=saved_at, settings=RELEASED, threads=2)
+    assert world.digest() == left_alone(saved_at + 150, settings=RELEASED).digest()
+
+
+@pytest.mark.parametrize("settings", [(), RELEASED], ids=["corrected", "released"])
+def test_it_may_be_saved_at_every_step(settings):
+    few = (*LIVELY, *settings, "population.capacity=40", "population.initial_count=30")
     simulation, other = (make_simulation(*few, seeds=(3,)) for _ in range(2))
     for _ in range(2 * WINDOW + 5):
         simulation.engine.restore(0, simulation.engine.save(0))
@@ -115,9 +128,10 @@ def test_a_crowd_that_pushes_goes_on_pushing():
     assert first.worlds[0].digest() != third.worlds[0].digest(), "impulses matter"
 
 
-def test_slots_and_reads_are_no_part_of_a_digest():
-    plain = make_engine(*LIVELY)
-    shuffled = make_engine(*LIVELY, slot_order=np.random.default_rng(1).permutation(200).tolist())
+@pytest.mark.parametrize("settings", [(), RELEASED], ids=["corrected", "released"])
+def test_slots_and_reads_are_no_part_of_a_digest(settings):
+    plain = make_engine(*LIVELY, *settings)
+    shuffled = make_engine(*LIVELY, *settings, slot_order=np.random.default_rng(1).permutation(200).tolist())
     for _ in range(4):
         plain.run(50)
         shuffled.run(50)
@@ -138,7 +152,7 @@ def test_a_dead_world_stays_dead():
 
 
 def test_every_array_of_the_state_is_saved_or_known_to_follow_from_others():
-    engine = make_engine(*LIVELY)
+    engine = make_engine(*LIVELY, *RELEASED)
     engine.run(WINDOW + 1)
     saved = set(engine.save(0))
     for path in engine.view_names():

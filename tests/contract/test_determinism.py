@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from worlds import QUICK, make_engine, make_simulation
+from worlds import QUICK, RELEASED, make_engine, make_simulation
 
 from hedon.error import EngineError
 
@@ -17,8 +17,8 @@ LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 """Births and deaths in every few steps, so that slots are reused."""
 
 
-def _digests(seeds=(7,), threads=1, pieces=(STEPS,), preset="baseline"):
-    simulation = make_simulation(*LIVELY, preset=preset, seeds=seeds, threads=threads)
+def _digests(seeds=(7,), threads=1, pieces=(STEPS,), preset="baseline", settings=()):
+    simulation = make_simulation(*LIVELY, *settings, preset=preset, seeds=seeds, threads=threads)
     for steps in pieces:
         simulation.run(steps)
     assert simulation.worlds[0].counters["births"] > 20
@@ -53,9 +53,16 @@ def test_other_presets_repeat_themselves_on_any_threads(preset):
     assert _digests(preset=preset, threads=2) == _digests(preset=preset)
 
 
-def test_which_slot_an_agent_gets_changes_nothing():
-    plain = make_engine(*LIVELY)
-    shuffled = make_engine(*LIVELY, slot_order=np.random.default_rng(0).permutation(200).tolist())
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_the_released_program_repeats_itself(threads):
+    together = _digests((7, 3, 11), threads, pieces=(63, 1, 1, 135), settings=RELEASED)
+    assert together[7] == _digests((7,), settings=RELEASED)[7]
+
+
+@pytest.mark.parametrize("settings", [(), RELEASED], ids=["corrected", "released"])
+def test_which_slot_an_agent_gets_changes_nothing(settings):
+    plain = make_engine(*LIVELY, *settings)
+    shuffled = make_engine(*LIVELY, *settings, slot_order=np.random.default_rng(0).permutation(200).tolist())
     for engine in (plain, shuffled):
         engine.run(STEPS)
     a, b = plain.living_rows(0), shuffled.living_rows(0)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from worlds import make_simulation, set_scene
+from worlds import CHILDLESS, DEATHLESS, STILL, make_simulation, set_scene
 
 SCENES = sorted((Path(__file__).parents[1] / "data" / "sensors").glob("*.npz"))
 AGENT, FOOD, WALL = 0, 1, 2
@@ -46,6 +46,54 @@ def test_a_ray_that_starts_beyond_a_wall_reads_one():
     set_scene(simulation, [(240, 355, 0.0)])
     rays = simulation.worlds[0].rays()[0]
     assert np.all(rays[8:16, WALL] == 1.0)
+
+
+def test_by_the_released_rule_a_ray_reads_what_lies_behind_the_body_that_it_starts_in():
+    simulation = make_simulation('sensor.ray_inside="behind"')
+    set_scene(simulation, [(240, 180, 0.0), (240, 195, 0.0)], [(240, 250)])
+    rays = simulation.worlds[0].rays()[0]
+    assert rays[11:13, AGENT].tolist() == [-1.0, -1.0]
+    np.testing.assert_allclose(rays[11:13, FOOD], 1 - (250 - 4 - 190) / 200, atol=2e-3)
+    # From outside nothing changes: the other looks away, and a third sees it as ever.
+    set_scene(simulation, [(240, 180, 0.0), (240, 230, 0.0)])
+    assert simulation.worlds[0].rays()[0, 12, AGENT] == pytest.approx(1 - 30 / 200, abs=2e-3)
+
+
+def test_by_the_released_rule_a_ray_that_starts_beyond_a_wall_does_not_meet_it():
+    simulation = make_simulation('sensor.ray_inside="behind"')
+    set_scene(simulation, [(240, 355, 0.0)])
+    rays = simulation.worlds[0].rays()[0]
+    assert np.all(rays[8:16, WALL] == -1.0)
+    set_scene(simulation, [(240, 345, 0.0)])  # the start of the ray lies 5 u before it
+    assert simulation.worlds[0].rays()[0, 12, WALL] == pytest.approx(1 - 5 / 200, abs=2e-3)
+
+
+@pytest.mark.parametrize(("rule", "seen"), [("gone", [-1.0, -1.0]), ("seen", [1.0, -1.0])])
+def test_eaten_food_is_seen_for_one_more_step_by_the_released_rule(rule, seen):
+    simulation = make_simulation(
+        *STILL, *DEATHLESS, *CHILDLESS, f"sensor.eaten_food={rule}", "food.normal.growth_rate=0"
+    )
+    set_scene(simulation, [(240, 180, 0.0)], [(240, 193)])
+    world = simulation.worlds[0]
+    assert world.rays()[0, 12, FOOD] == 1.0
+    simulation.run(1)
+    assert world.view("food_stock.eaten")[0] == 1
+    after = [world.observations()[0, :72].reshape(24, 3)[12, FOOD]]
+    simulation.run(1)
+    after.append(world.observations()[0, :72].reshape(24, 3)[12, FOOD])
+    assert after == seen
+
+
+@pytest.mark.parametrize(("rule", "meals"), [("nearest", [1, 0]), ("all", [1, 1])])
+def test_two_mouths_at_one_food(rule, meals):
+    simulation = make_simulation(*STILL, *DEATHLESS, *CHILDLESS, f"sensor.mouths={rule}", "food.normal.growth_rate=0")
+    set_scene(simulation, [(240, 180, 0.0), (240, 207, math.pi)], [(240, 193.2)])
+    before = simulation.worlds[0].view("food_stock.number")[0]
+    simulation.run(1)
+    world = simulation.worlds[0]
+    assert world.agents()["eaten"].ravel().tolist() == meals
+    assert world.view("food_stock.present")[0] == 0
+    assert world.view("food_stock.number")[0] == before - 1
 
 
 def test_a_food_inside_the_mouth_does_not_hide_behind_the_start_of_the_ray():

@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 import pytest
-from worlds import make_simulation
+from worlds import RELEASED, make_simulation
 
 from hedon import _engine
 
@@ -20,8 +20,8 @@ STEPS = 1100  # one whole window with its learning, and the beginning of the nex
 def digest(preset: str, fidelity: str, weights: str, kernel: str) -> str:
     """The digest of one short life."""
     acting = f'learning.acting_weights="{weights}"'
-    released = ('learning.critic_target="batch_mean"', 'physics.solver="jacobi"') if fidelity == "released" else ()
-    simulation = make_simulation(*released, acting, preset=preset, seeds=(1,), threads=2, kernel=kernel)
+    settings = RELEASED if fidelity == "released" else ()
+    simulation = make_simulation(*settings, acting, preset=preset, seeds=(1,), threads=2, kernel=kernel)
     simulation.run(STEPS)
     return simulation.worlds[0].digest()
 

@@ -6,18 +6,31 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from worlds import QUICK, make_simulation
+from worlds import QUICK, RELEASED, make_simulation
 
 from hedon.error import EngineError
 
 CROWD = ("arena.width=220", "arena.height=180", "motor.min_force=20", "food.normal.initial_count=12")
-LIVELY = (*QUICK, *CROWD, "birth.kappa=0.02", "hazard.kappa=0.2", "population.capacity=60")
+LIVELY = (
+    *RELEASED,
+    *QUICK,
+    *CROWD,
+    "birth.kappa=0.1",
+    "hazard.kappa=0.2",
+    "population.capacity=60",
+    "population.initial_count=35",
+)
 BOUNDED = {  # array: a value that no world has
     "clock.step": -1,
     "clock.living_count": 61,
     "clock.next_agent_id": 0,
     "clock.extinct_step": 3,
     "clock.births_in_window": -1,
+    "clock.births_before": -1,
+    "clock.ghost_count": -1,
+    "ghost.kind": 1,
+    "newborn.agent_id": 0,
+    "newborn.parent": 30_000,
     "food.slot": 10_000,
     "food.x": -1.0,
     "food_stock.center": 1,
@@ -49,10 +62,13 @@ PLACE = {"observation": 128, "impulse.body": 0}
 @pytest.fixture(scope="module")
 def saved():
     simulation = make_simulation(*LIVELY)
-    simulation.run(112)  # in the midst of a window, so that there are rollouts
-    arrays = simulation.engine.save(0)
-    assert all(len(arrays[name]) for name in BOUNDED), "nothing to spoil"
-    return arrays
+    simulation.run(80)  # in the midst of a window, so that there are rollouts
+    while simulation.worlds[0].step < 127:
+        simulation.run(1)
+        arrays = simulation.engine.save(0)
+        if all(len(arrays.get(name, ())) for name in BOUNDED):
+            return arrays
+    raise AssertionError("nothing to spoil")
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 """The table of frozen mutation noise, read off the records of a world.
 
 With `genome.mutation_noise = "frozen"` a birth's mutation of a gene depends on the seed, the gene and the number of the
-birth within its window of learning. So the change from parent to child shows the table, but for children clipped at
+birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
 the limit of weights. Weights are float32, so equal mutations agree to the rounding of a weight: 1e-6 at 10.
 
 With independent noise the same computation gives no table, and births of equal number disagree as much as any.
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.genealogy import genealogy
-from hedon.analysis.walk import birth_number
+from hedon.analysis.walk import birth_number, mutation_law
 from hedon.analysis.world import WorldRecord
 
 Floats = NDArray[np.float64]
@@ -30,12 +30,14 @@ class Mutations:
     """How one gene changed at the births of a world, in their order.
 
     Attributes:
-        number: of each birth within its window, from 0, (n,).
+        birth_step: of each [step], (n,).
+        number: of each birth, see `walk.birth_number`, (n,).
         change: child's weight − parent's, (n,).
         clipped: whether the child's was clipped, so that the mutation was larger than the change, (n,).
         rounding: distance of neighboring weights at the limit.
     """
 
+    birth_step: Ints
     number: Ints
     change: Floats
     clipped: NDArray[np.bool_]
@@ -76,13 +78,18 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
     whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
     agents = world.agents.head(int(whole))
     tree = genealogy(agents)
-    child = np.flatnonzero(tree.parent >= 0)
+    law = mutation_law(world.config)
+    inherited = np.ones(tree.size, bool)
+    if law.late:  # who died in the window of its birth never got a genome, and a window that goes on gave none yet
+        end = -(-tree.birth // law.window) * law.window
+        inherited = (tree.parent < 0) | ((tree.death > end) & (end <= world.last_step))
+    child = np.flatnonzero((tree.parent >= 0) & inherited & inherited[tree.parent])
     weights = agents[weight].to_numpy().astype(np.float64)
     limit = world.config.genome.weight_limit
     clipped = np.abs(weights[child]) >= limit * (1.0 - _NEAR)
-    number = birth_number(tree, world.config.learning.rollout_steps)[child]
+    number = birth_number(tree, law.window, law.late)[child]
     change = weights[child] - weights[tree.parent[child]]
-    return Mutations(number, change, clipped, float(np.spacing(np.float32(limit))))
+    return Mutations(tree.birth[child], number, change, clipped, float(np.spacing(np.float32(limit))))
 
 
 def noise_table(found: Mutations) -> NoiseTable:

@@ -173,8 +173,7 @@ def _pool(found: Mutations, table: NoiseTable) -> Floats:
 
 def _half_biases(world: WorldRecord, found: Mutations, table: NoiseTable) -> tuple[float, float]:
     """Mean mutation over the births of the first and of the second half of the record."""
-    steps = world.agents.filter(pl.col("parent_id").is_not_null())["birth_step"].to_numpy()[: len(found.change)]
-    pool, is_late = _pool(found, table), steps > 0.5 * world.last_step
+    pool, is_late = _pool(found, table), found.birth_step > 0.5 * world.last_step
     first, second = (float(pool[half].mean()) if half.any() else NAN for half in (~is_late, is_late))
     return first, second
 

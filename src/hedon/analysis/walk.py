@@ -29,8 +29,9 @@ class MutationLaw:
         mean, sd: of the founders' normal distribution.
         scale: of the Cauchy noise that each birth adds.
         limit: weights are clipped to ± this.
-        frozen: whether the noise is the same for the births of equal number in every window.
+        frozen: whether the noise is the same for all births of equal `birth_number`.
         window: length of a window [step].
+        late: whether genomes are drawn at a window's end, when its number of births is known.
     """
 
     mean: float
@@ -39,6 +40,7 @@ class MutationLaw:
     limit: float
     frozen: bool
     window: int
+    late: bool
 
 
 def mutation_law(config: Config, mean: float = 0.0) -> MutationLaw:
@@ -51,6 +53,7 @@ def mutation_law(config: Config, mean: float = 0.0) -> MutationLaw:
         limit=genome.weight_limit,
         frozen=genome.mutation_noise == "frozen",
         window=config.learning.rollout_steps,
+        late=config.birth.inheritance == "at_window_end",
     )
 
 
@@ -116,7 +119,7 @@ def _walked(
     order = np.argsort(generation, kind="stable")
     levels = np.split(order, np.cumsum(np.bincount(generation))[:-1])
     parent = place[tree.parent[nodes]]
-    number = birth_number(tree, law.window)[nodes]
+    number = birth_number(tree, law.window, law.late)[nodes]
     for first in range(0, walks, _PIECE):
         count = min(_PIECE, walks - first)
         gene = np.empty((len(nodes), count), np.float32)
@@ -157,9 +160,22 @@ def lineages(
     return genes
 
 
-def birth_number(tree: Genealogy, window: int) -> NDArray[np.int64]:
-    """The number of each birth within its window of learning, from 0; 0 for founders, shape (n,)."""
+def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
+    """Numbers births so that those with equal frozen noise have equal numbers.
+
+    Frozen noise depends on a birth's index within its window of learning and on a number of births: that of the window
+    itself if genomes are drawn at its end (`late`), else that of the window before.
+
+    Returns:
+        Numbers from 0 without gaps, in the order of (births, index); 0 for founders, shape (n,).
+    """
     born = tree.parent >= 0
     # Born in step s (counted from 0) has birth s + 1; ids, so positions, follow the order of birth.
-    births = pl.DataFrame({"window": np.where(born, (tree.birth - 1) // window, -1)})
-    return births.select(pl.int_range(pl.len()).over("window")).to_series().to_numpy() * born
+    of = np.where(born, (tree.birth - 1) // window, -1)
+    index = pl.DataFrame({"window": of}).select(pl.int_range(pl.len()).over("window")).to_series().to_numpy()
+    births = np.bincount(of[born] + 1, minlength=2)  # of each window, after a 0 for the one before the first
+    known = births[of + late]
+    number = np.zeros(tree.size, np.int64)
+    pairs = np.stack([known, index], axis=1)[born]
+    number[born] = np.unique(pairs, axis=0, return_inverse=True)[1].ravel() if born.any() else 0
+    return number

@@ -81,3 +81,28 @@ class SensorConfig:
             OURS,
         ),
     ] = "raw"
+    ray_inside: Annotated[
+        Literal["hit", "behind"],
+        Doc(
+            "what a ray reads that starts inside another body or beyond a wall: that object at distance 0, or what "
+            "lies behind it",
+            "",
+            OURS + '; the code has "behind"',
+        ),
+    ] = "hit"
+    eaten_food: Annotated[
+        Literal["gone", "seen"],
+        Doc(
+            "whether rays still meet a food in the step after it was eaten",
+            "",
+            OURS + '; the code has "seen"',
+        ),
+    ] = "gone"
+    mouths: Annotated[
+        Literal["nearest", "all"],
+        Doc(
+            "who is fed if several mouths touch a food in the same step",
+            "",
+            OURS + '; the code has "all"',
+        ),
+    ] = "nearest"

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -9,7 +10,18 @@ from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
-EARLIER = {"learning.acting_weights": "float32", "physics.solver": "sequential"}
+EARLIER = {
+    "learning.acting_weights": "float32",
+    "physics.solver": "sequential",
+    "sensor.ray_inside": "hit",
+    "sensor.eaten_food": "gone",
+    "sensor.mouths": "nearest",
+    "population.heading_range": math.tau,
+    "birth.order": "before_deaths",
+    "birth.inheritance": "at_birth",
+    "birth.parents": "all",
+    "birth.heading": "own",
+}
 """Settings that older versions did not have, with what those versions did. A complete file without such a setting is
 older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""
 

@@ -18,7 +18,7 @@ class GenomeConfig:
             OURS,
             Range(ge=0, le=16),
         ),
-    ] = 1
+    ] = 16
     initial_mean_food: Annotated[
         float,
         Doc("mean of the founders' food weights", "", EITHER, Range(ge=-1e3, le=1e3)),
@@ -42,7 +42,8 @@ class GenomeConfig:
     mutation_noise: Annotated[
         Literal["independent", "frozen"],
         Doc(
-            "new noise for every birth, or noise fixed by seed, gene and the birth's number within its window",
+            "new noise for every birth, or noise fixed by seed, gene, the number of births in a window and the birth's "
+            "index among them",
             "",
             PAPER + '; the code has "frozen"',
         ),

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, EITHER, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,3 +66,37 @@ class BirthConfig:
         Literal["u", "arena_width"],
         Doc("unit of distance_sd", "", EITHER),
     ] = "u"
+    order: Annotated[
+        Literal["before_deaths", "after_deaths"],
+        Doc(
+            "which comes first in a step; after deaths, the dying do not breed, their slots are free, and the hazard "
+            "takes the parent's energy before it is shared",
+            "",
+            OURS + '; the code has "after_deaths"',
+        ),
+    ] = "before_deaths"
+    inheritance: Annotated[
+        Literal["at_birth", "at_window_end"],
+        Doc(
+            "when a newborn gets its network and its genome; until the window's end it acts with the network of the "
+            "agent that died in its slot, and gets that agent's rewards",
+            "",
+            PAPER + '; the code has "at_window_end"',
+        ),
+    ] = "at_birth"
+    parents: Annotated[
+        Literal["all", "old_slots"],
+        Doc(
+            "who may have children: all, or only agents in slots that were taken when the window began",
+            "",
+            PAPER + '; the code has "old_slots"',
+        ),
+    ] = "all"
+    heading: Annotated[
+        Literal["own", "shared"],
+        Doc(
+            "whether each child has a random heading of its own, or the children of one step share one",
+            "",
+            OURS + '; the code has "shared"',
+        ),
+    ] = "own"

@@ -14,7 +14,7 @@ from hedon.analysis.world import read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
 
-LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10)
+LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10, late=False)
 
 
 def chain(parent: list[int], birth: list[int] | None = None) -> Genealogy:
@@ -55,7 +55,7 @@ def test_founders_and_the_limit() -> None:
 def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     """Two births in a row, each the first of its window: the same noise twice, so that the scale doubles."""
     rng = np.random.default_rng(3)
-    frozen = dataclasses.replace(LAW, frozen=True)
+    frozen = dataclasses.replace(LAW, frozen=True, late=True)
     tree = chain([-1, 0, 1], [0, 5, 15])
     values = neutral_means(tree, np.array([1, 2]), frozen, rng, 20_000)
     assert quartile(values) == pytest.approx(0.15, rel=0.05)  # (X + 2·X)/2
@@ -65,7 +65,7 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
         values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
         assert np.mean(np.abs(values) > 0.5) == pytest.approx(equal, abs=0.03)
     assert mutation_law(load_config("baseline", "released")).frozen
-    assert mutation_law(load_config("baseline")) == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024)
+    assert mutation_law(load_config("baseline")) == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024, False)
 
 
 def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:

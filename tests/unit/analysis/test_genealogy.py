@@ -115,4 +115,8 @@ def test_births_are_numbered_within_their_window() -> None:
     #            founders   window 0 (steps 1 to 10)  window 1
     birth = np.array([0, 0, 1, 9, 10, 11, 11, 20])
     tree = Genealogy(np.array([-1, -1, 0, 1, 1, 0, 2, 2]), birth, birth + 5, 0)
-    assert birth_number(tree, 10).tolist() == [0, 0, 0, 1, 2, 0, 1, 2]
+    # Three births in both windows. With the births of the window before, those of the first window count as after none.
+    assert birth_number(tree, 10, late=True).tolist() == [0, 0, 0, 1, 2, 0, 1, 2]
+    assert birth_number(tree, 10, late=False).tolist() == [0, 0, 0, 1, 2, 3, 4, 5]
+    # Windows of 11 steps have five births and one.
+    assert birth_number(tree, 11, late=True).tolist() == [0, 0, 1, 2, 3, 4, 5, 0]

@@ -59,7 +59,7 @@ def test_places_of_food() -> None:
 
 
 @pytest.mark.parametrize("preset", PRESETS)
-def test_released_is_the_contact_solver_and_three_faults(preset: str) -> None:
+def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_senses(preset: str) -> None:
     released, corrected = load_config(preset, "released"), load_config(preset)
     assert released.genome.mutation_noise == "frozen"
     assert released.learning.critic_target == "batch_mean"
@@ -70,8 +70,11 @@ def test_released_is_the_contact_solver_and_three_faults(preset: str) -> None:
         fidelity="corrected",
         genome=corrected.genome,
         physics=corrected.physics,
+        sensor=corrected.sensor,
+        population=corrected.population,
+        birth=corrected.birth,
         learning=dataclasses.replace(released.learning, critic_target="per_state"),
-        food={k: dataclasses.replace(food, growth_rate=0.2) for k, food in released.food.items()},
+        food={k: dataclasses.replace(food, growth_rate=0.2, candidates=10) for k, food in released.food.items()},
     )
     assert undone == corrected
 

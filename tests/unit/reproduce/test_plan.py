@@ -10,7 +10,7 @@ from resumed_run import SMALL, small_run
 from hedon.analysis.item.gather import find_runs, gather
 from hedon.analysis.item.item import Arm, Item, Scale
 from hedon.analysis.item.request import Request, needs, setting_name
-from hedon.config import load_config
+from hedon.config import diff, load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
 from hedon.experiment.run import run
@@ -145,8 +145,9 @@ def test_names_of_runs_tell_settings_apart() -> None:
 
 
 def test_equal_settings_written_in_two_ways_are_one_condition(tmp_path: Path) -> None:
-    faults = ("food.normal.growth_rate=1.0", "genome.mutation_noise=frozen", "learning.critic_target=batch_mean")
-    small_run(tmp_path / "a", 64, seeds=(1,), overrides=(*faults, "physics.solver=jacobi"))
+    changes = diff(load_config("baseline"), load_config("baseline", "released"))
+    faults = tuple(f"{path}={value}" for path, _, value in changes)
+    small_run(tmp_path / "a", 64, seeds=(1,), overrides=faults)
     config = load_config("baseline", "released", SMALL)
     run(RunPlan(config, (2,), 64, tmp_path / "b", 1))
     item = an_item("a", Arm("released", overrides=SMALL, fidelity="released"), steps=64)

@@ -1,0 +1,102 @@
+/// Newborns that inherit only when the window ends, as in the paper's released code: until then they act with the
+/// network and are paid by the genome that their slot had before.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/random.h"
+#include "evolution/genome.h"
+#include "learning/init.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Gives the agent in `slot` a new network and the optimizer that belongs to it.
+HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& random) {
+  const WorldState& state = world.state;
+  const NetworkShape& network = world.shape->network;
+  init_network(network, random, world.params(slot));
+  world.kernel->derive(network, world.network(slot));
+  const int64_t first = int64_t{slot} * network.size();
+  for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
+  state.updates[slot] = 0;
+}
+
+/// The network of an agent that has learned nothing.
+HEDON_FN void give_own_network(World& world, int32_t slot) {
+  const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
+  give_network(world, slot, RandomStream{world.seed, Purpose::network, id, 0});
+}
+
+HEDON_FN bool inherits_late(const World& world) {
+  return world.config->birth.inheritance == Inheritance::at_window_end;
+}
+
+/// Puts a network and a genome into every free slot of a new world, for the newborns that come first.
+HEDON_FN void fill_vacancies(World& world) {
+  for (int32_t i = 0; i < world.clock().free_count; ++i) {
+    const int32_t slot = world.state.free[i];
+    const uint32_t place = static_cast<uint32_t>(i);
+    give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, place, 0});
+    init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::vacant_genome, place, 0},
+                world.genome(slot));
+  }
+}
+
+HEDON_FN float* newborn_genome(const World& world, int32_t index) {
+  return &world.state.newborn_genome[int64_t{index} * world.shape->genome.size()];
+}
+
+/// Notes who the parent of the newest agent is, until the window ends.
+HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
+  const WorldState& state = world.state;
+  const int32_t at = world.clock().births_in_window;
+  if (at >= world.shape->newborns) return world.fail(Status::birth_overflow, child_id, at);
+  const Life& life = state.life[parent];
+  Newborn& newborn = state.newborn[at] = {child_id, -1};
+  if (life.birth_step > world.window_start()) {
+    for (newborn.parent = at - 1; state.newborn[newborn.parent].agent_id != life.agent_id;) --newborn.parent;
+    return;
+  }
+  for (int32_t g = 0; g < world.shape->genome.size(); ++g) newborn_genome(world, at)[g] = world.genome(parent)[g];
+}
+
+/// Gives the newborns of a window, in the order of their births, their genomes, and those that still live their
+/// networks. A newborn that was itself a parent passes on the genome that it gets here.
+HEDON_FN void settle_newborns(World& world) {
+  const WorldState& state = world.state;
+  const Clock& clock = world.clock();
+  const GenomeShape& shape = world.shape->genome;
+  const int32_t births = clock.births_in_window;
+  for (int32_t i = 0; i < births; ++i) {
+    const Newborn& newborn = state.newborn[i];
+    const float* parent = newborn_genome(world, newborn.parent < 0 ? i : newborn.parent);
+    inherit(shape, world.config->genome, world.seed, static_cast<uint32_t>(newborn.agent_id),
+            {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent, newborn_genome(world, i));
+  }
+  // Both lists are in the order of ids, and the newborns are the youngest of the living.
+  for (int32_t i = births - 1, at = clock.living_count - 1; i >= 0 && at >= 0; --i) {
+    const int32_t slot = state.living[at];
+    if (state.life[slot].agent_id != state.newborn[i].agent_id) continue;  // it has died
+    for (int32_t g = 0; g < shape.size(); ++g) world.genome(slot)[g] = newborn_genome(world, i)[g];
+    give_own_network(world, slot);
+    --at;
+  }
+}
+
+/// Begins a window: notes which slots are taken, and counts births from 0.
+HEDON_FN void open_window(World& world) {
+  Clock& clock = world.clock();
+  clock.births_before = clock.births_in_window;
+  clock.births_in_window = 0;
+  if (world.config->birth.parents == Parents::all) return;
+  for (int32_t slot = 0; slot < world.shape->slots; ++slot) world.state.old_slot[slot] = world.state.alive[slot];
+}
+
+/// Whether the agent in `slot` may have children in this window.
+HEDON_FN bool may_breed(const World& world, int32_t slot) {
+  return world.config->birth.parents == Parents::all || world.state.old_slot[slot] != 0;
+}
+
+}  // namespace hedon

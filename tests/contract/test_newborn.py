@@ -1,0 +1,50 @@
+"""Newborns that inherit at the window's end: until then they act and are paid by what their slot had before."""
+
+import numpy as np
+from worlds import DEATHLESS, QUICK, make_simulation
+
+WINDOW = 64
+LATE = ("birth.inheritance=at_window_end", "birth.kappa=0.02", *QUICK)
+
+
+def by_slot(world, name):
+    return world.view(name).reshape(200, -1)
+
+
+def test_a_new_world_has_a_network_and_a_genome_in_every_slot():
+    world = make_simulation(*LATE, seeds=(3,)).worlds[0]
+    for name in ("genome", "params"):
+        assert len(np.unique(by_slot(world, name), axis=0)) == 200
+
+
+def test_a_newborn_acts_and_is_paid_by_what_its_slot_had_until_the_window_ends():
+    simulation = make_simulation(*LATE, "hazard.kappa=0.2", seeds=(3,))
+    world, waiting, settled = simulation.worlds[0], 0, 0
+    for _ in range(4 * WINDOW):
+        before = {name: by_slot(world, name).copy() for name in ("params", "genome")}
+        newest = world.agents()["agent_id"].max()
+        simulation.run(1)
+        agents, slots, ends = world.agents(), world.living, world.step % WINDOW == 0
+        recent = agents["birth_step"] > world.step - WINDOW if ends else agents["agent_id"] > newest
+        for name, old in before.items():
+            kept = (by_slot(world, name)[slots[recent]] == old[slots[recent]]).all(axis=1)
+            assert not kept.any() if ends else kept.all(), name
+        waiting += recent.sum() * (not ends)
+        settled += recent.sum() * ends
+        assert (world.view("updates")[slots[recent]] == 0).all() or not ends
+    assert waiting > settled > 50
+
+
+def test_the_network_that_a_newborn_gets_late_is_the_one_it_would_have_got_at_birth():
+    quiet = (*QUICK, *DEATHLESS, "birth.kappa=0.02")
+    networks = []
+    for rule in ("at_window_end", "at_birth"):
+        simulation = make_simulation(*quiet, f"birth.inheritance={rule}", seeds=(3,))
+        simulation.run(WINDOW)
+        world = simulation.worlds[0]
+        ids = world.agents()["agent_id"].tolist()
+        networks.append(dict(zip(ids, by_slot(world, "params")[world.living], strict=True)))
+    both = [agent for agent in networks[0] if agent >= 50 and agent in networks[1]]  # the first 50 have learned
+    assert len(both) > 20
+    for agent in both:
+        np.testing.assert_array_equal(networks[0][agent], networks[1][agent])
