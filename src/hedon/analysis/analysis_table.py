@@ -6,11 +6,11 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.markdown import pipe_table
 from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
 from hedon.printed_table import PrintedTable
+from hedon.statistic.interval import SHOWN_FROM
 
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that only the files hold."""

@@ -8,27 +8,24 @@ alone. Scores that are all too small say that it was *held* (the lower tail). Th
 further from its start than the recorded neutral markers of the same worlds do.
 """
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.analysis.correction import holm
 from hedon.analysis.genealogy import genealogy
-from hedon.analysis.interval import LEVEL, distance_interval, mean_interval
 from hedon.analysis.topic.result import generator
 from hedon.analysis.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.weight import LAST_AGENTS
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.correction import holm
+from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
+from hedon.statistic.interval import mean_bounds
 
 NAN = math.nan
-_EXACT = 12  # worlds up to which all sign flips are gone through
-_FLIPS = 10_000  # otherwise so many at random
 
 
 @dataclass(frozen=True)
@@ -128,12 +125,6 @@ def standard_drift(world: WorldRecord) -> list[WorldDrift]:
     return _KNOWN[world]
 
 
-def rank_score(value: float, null: NDArray[np.float64]) -> float:
-    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half."""
-    below = np.count_nonzero(null < value) + 0.5 * np.count_nonzero(null == value)
-    return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
-
-
 def drift_tests(
     worlds: Sequence[Sequence[WorldDrift]],
     reward_names: Sequence[str],
@@ -154,37 +145,9 @@ def drift_tests(
     return [*_corrected(walked, neutral_names), *_corrected(marked, neutral_names)]
 
 
-def sign_flip_p(values: NDArray[np.float64], rng: np.random.Generator) -> float:
-    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign."""
-    n = len(values)
-    if n <= _EXACT:
-        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
-        extra = 0
-    else:
-        signs = rng.choice((-1.0, 1.0), (_FLIPS, n))
-        extra = 1  # the sample itself is one of the draws
-    sums = np.abs(signs @ values)
-    as_far = np.count_nonzero(sums >= abs(values.sum()) * (1.0 - 1e-12))
-    return float((as_far + extra) / (len(sums) + extra))
-
-
 def _against_walks(name: str, worlds: Sequence[dict[str, WorldDrift]]) -> list[DriftTest]:
     scores = np.array([world[name].score for world in worlds])
-    n = len(scores)
-    if n == 0:
-        return [DriftTest(name, test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance", "held")]
-    p = float(2.0 * stats.norm.sf(abs(scores.sum()) / np.sqrt(n)))
-    half = float(stats.norm.ppf(0.5 + LEVEL / 2)) / math.sqrt(n)
-    effect, t_low, t_high = _mean_and_bounds(scores)
-    by_drift = {"drift_low": effect - half, "drift_high": effect + half}
-    square = float(np.sum(scores**2))
-    distance, low, high = distance_interval(scores)
-    wide = (low, high) if n > 1 else (NAN, NAN)
-    return [
-        DriftTest(name, "direction", n, effect, t_low, t_high, p, **by_drift),
-        DriftTest(name, "distance", n, distance, *wide, float(stats.chi2.sf(square, n))),
-        DriftTest(name, "held", n, distance, *wide, float(stats.chi2.cdf(square, n))),
-    ]
+    return [DriftTest(weight=name, **vars(test)) for test in score_tests(scores)]
 
 
 def _against_markers(
@@ -194,13 +157,7 @@ def _against_markers(
         [_displacement(w[name]) - np.mean([_displacement(w[m]) for m in markers]) for w in worlds], np.float64
     )
     p = sign_flip_p(excess, rng) if len(excess) else NAN
-    return DriftTest(name, "marker", len(excess), *_mean_and_bounds(excess), p)
-
-
-def _mean_and_bounds(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    interval = mean_interval(values)
-    mean, low, high = (NAN if number is None else number for number in (interval.mean, interval.low, interval.high))
-    return mean, low, high
+    return DriftTest(name, "marker", len(excess), *mean_bounds(excess), p)
 
 
 def _displacement(result: WorldDrift) -> float:

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.analysis.claim import Claim
-from hedon.analysis.correction import holm
 from hedon.analysis.drift import standard_drift
-from hedon.analysis.interval import distance_interval, mean_interval, share_interval, spread_interval
-from hedon.analysis.mode import ENOUGH_WORLDS, modes
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.correction import holm
+from hedon.statistic.drift import score_tests
+from hedon.statistic.interval import distance_interval, mean_bounds, share_interval, spread_interval
+from hedon.statistic.mode import ENOUGH_WORLDS, modes
 
 Floats = NDArray[np.float64]
 
@@ -62,8 +62,7 @@ def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Es
     if claim.over_worlds in ("spread", "distance"):
         return _against_neutral(claim, figures, worlds)
     logs = claim.over_worlds == "ratio"
-    interval = mean_interval(np.log(figures[figures > 0]) if logs else figures)
-    value, low, high = (NAN if x is None else float(x) for x in (interval.mean, interval.low, interval.high))
+    value, low, high = mean_bounds(np.log(figures[figures > 0]) if logs else figures)
     return Estimate(math.exp(value), math.exp(low), math.exp(high)) if logs else Estimate(value, low, high)
 
 
@@ -88,17 +87,12 @@ def _walk(scores: Floats) -> Estimate:
     Both tests are corrected for each other. That nothing was found does not say that the weight drifts, so the claim
     never fails.
     """
-    n = len(scores)
-    square = float(np.sum(scores**2))
-    direction = 2.0 * float(stats.norm.sf(abs(scores.sum()) / math.sqrt(n)))
-    tails = float(stats.chi2.cdf(square, n)), float(stats.chi2.sf(square, n))
-    p_direction, p_distance = holm([direction, min(1.0, 2.0 * min(tails))])
-    half = float(stats.norm.ppf(1.0 - _LEVEL / 2)) / math.sqrt(n)
-    mean = float(scores.mean())
+    direction, distance, held = score_tests(scores)
+    p_direction, p_distance = holm([direction.p, min(1.0, 2.0 * min(held.p, distance.p))])
     return Estimate(
-        mean,
-        mean - half,
-        mean + half,
+        direction.effect,
+        direction.drift_low,
+        direction.drift_high,
         "holds" if min(p_direction, p_distance) <= _LEVEL else "undecided",
         f"against neutral walks: direction p {p_direction:.2g}, distance p {p_distance:.2g}",
     )

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.cohort import COMPLETE
-from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.style import draw_message, new_figure, say_empty, step_unit, styled
 from hedon.analysis.trace import draw_zero_line
+from hedon.statistic.interval import SHOWN_FROM
 
 _ROWS = {"children": "children", "lifespan": "length of life"}
 _LEAST_RANGE = 0.1  # of the gradient axis, so that noise does not look like selection

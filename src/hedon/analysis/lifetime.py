@@ -4,7 +4,9 @@ Only the dead have a lifetime. Those who still live when a run ends tend to be t
 is too small where lives are not short against the run: look at the number alive, or estimate survival instead.
 """
 
+import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 
 def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False) -> pl.DataFrame:
@@ -33,3 +35,18 @@ def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run:
     """
     values = dead_agents(agents, last=last, born_in_run=born_in_run)["lifetime"].to_numpy()
     return float(values.mean()) if len(values) else None
+
+
+def durations(agents: pl.DataFrame, last_step: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """How long each agent is known to have lived, and whether it died.
+
+    Args:
+        agents: table `agents` of one world.
+        last_step: up to which the records reach [step].
+
+    Returns:
+        Lifetimes or ages so far [step] and whether the agent died, each (n,).
+    """
+    died = agents["death_step"].is_not_null().to_numpy()
+    end = agents["death_step"].fill_null(last_step).to_numpy()
+    return (end - agents["birth_step"].to_numpy()).astype(np.float64), died

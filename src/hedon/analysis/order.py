@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.claim import Measure, last_mean, lifetime_of_dead
-from hedon.analysis.contrast import difference_interval, spread_ratio_interval
 from hedon.analysis.paper import PAPER, STEPS
+from hedon.statistic.contrast import difference_interval, spread_ratio_interval
 
 MUCH = 3.0
 """Much longer (≫ in the paper) is read as at least this many times as long; the paper's own ratios are 12 and 13."""

@@ -9,10 +9,10 @@ import polars as pl
 
 from hedon.analysis.claim import last_mean
 from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.lifetime import mean_lifetime
+from hedon.analysis.lifetime import durations, mean_lifetime
 from hedon.analysis.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.survival import SurvivalCurve, durations, restricted_mean, survival_curve
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_curve
 
 _NEGLIGIBLE = 0.01
 """Share of a mean lifetime that may lie beyond the age up to which a curve is trusted."""

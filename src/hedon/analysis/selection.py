@@ -1,30 +1,25 @@
-"""Which weights does selection favor, and how strongly? Differentials and gradients of Lande & Arnold (1983).
+"""Which weights does selection favor? Differentials, gradients and curvature in a birth cohort, by two fitnesses."""
 
-With ω = W / mean W the relative fitness of an agent and z its weights, the *differential* s = Cov(ω, z) is how far
-selection within a generation moves the mean weight, by whatever route; the *gradient* β = Cov(z)⁻¹ s, the slopes
-of the multiple regression of ω on all weights, is what a weight does by itself, others held fixed. Standardized
-to the weight's standard deviation σ they are s/σ and β·σ: change of relative fitness per standard deviation.
-"""
-
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.bootstrap import REPLICATES, percentile_interval, resampled_sums
 from hedon.analysis.cohort import complete_share
-from hedon.analysis.survival import durations
+from hedon.analysis.lifetime import durations
+from hedon.statistic.bootstrap import REPLICATES
+from hedon.statistic.selection import (
+    FEWEST,
+    STATISTICS,
+    linear_selection,
+    quadratic_selection,
+    relative_fitness,
+    within_strata,
+)
 
 FITNESS = ("children", "lifespan")
-STRATUM = 200
-"""Births that are compared with one another. Agents are compared with contemporaries alone: where weights and mean
-fitness both drift within a window, a comparison across it would show selection that is none."""
-FEWEST = 50
-"""Agents below which nothing is estimated."""
-_ROUNDING = 1e-9  # deviations below which a weight does not vary
-STATISTICS = ("differential", "intensity", "gradient", "standard_gradient")
 
 Floats = NDArray[np.float64]
 
@@ -67,6 +62,28 @@ class Selection:
     standard_gradient_high: float
 
 
+@dataclass(frozen=True)
+class Curvature:
+    """The curvature of fitness along one weight in one cohort.
+
+    Attributes:
+        fitness: "children" or "lifespan".
+        weight: genome column.
+        agents: in the cohort.
+        complete: share of them that has died.
+        curvature: γ·σ²; NaN where it cannot be estimated, as its bounds.
+        low, high: bounds of the bootstrap's 95 % interval.
+    """
+
+    fitness: str
+    weight: str
+    agents: int
+    complete: float
+    curvature: float
+    low: float
+    high: float
+
+
 def selection(
     cohort: pl.DataFrame,
     names: Sequence[str],
@@ -76,9 +93,8 @@ def selection(
 ) -> list[Selection]:
     """Selection on each weight within one birth cohort.
 
-    Intervals are percentiles of a bootstrap that draws sibships as wholes, since siblings share their
-    mother's place and energy. They take sibships as independent; for statements about a condition use the
-    spread over worlds.
+    Intervals are percentiles of a bootstrap that draws sibships as wholes. They take sibships as independent; for
+    statements about a condition use the spread over worlds.
 
     Args:
         cohort: rows of the table `agents` of one world.
@@ -90,117 +106,74 @@ def selection(
     Returns:
         By fitness and weight.
     """
-    cohort = cohort.sort("birth_step", "agent_id")
-    weights = cohort.select(names).to_numpy().astype(np.float64)
-    lived, _ = durations(cohort, last_step)
-    fitness = {"children": cohort["children"].to_numpy().astype(np.float64), "lifespan": lived}
-    complete = complete_share(cohort)
-    z = within_strata(weights)
-    z[:, np.abs(z).max(axis=0, initial=0.0) < _ROUNDING] = 0.0
-    sd = z.std(axis=0) if len(z) else np.full(len(names), np.nan)
+    traits = _Traits(cohort, names, last_step)
     tables = np.full((len(FITNESS), 3, len(STATISTICS), len(names)), np.nan)
-    if cohort.height >= FEWEST:
-        omega = np.stack([relative_fitness(fitness[name]) for name in FITNESS], axis=1)
-        tables = _estimates(z, omega, sd, sibships(cohort), rng, replicates)
-    results = []
-    for name, table in zip(FITNESS, tables, strict=True):
-        mean = float(fitness[name].mean()) if cohort.height else float("nan")
-        for i, weight in enumerate(names):
-            numbers = {
-                f"{statistic}{bound}": float(table[b, k, i]) if mean > 0 else float("nan")
+    if traits.count >= FEWEST:
+        tables = linear_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
+    sd = traits.z.std(axis=0) if traits.count else np.full(len(names), np.nan)
+    return [
+        Selection(
+            fitness,
+            names[i],
+            traits.count,
+            traits.complete,
+            mean,
+            float(sd[i]),
+            **{
+                f"{statistic}{bound}": float(table[b, k, i])
                 for k, statistic in enumerate(STATISTICS)
                 for b, bound in enumerate(("", "_low", "_high"))
-            }
-            results.append(Selection(name, weight, cohort.height, complete, mean, float(sd[i]), **numbers))
-    return results
+            },
+        )
+        for fitness, mean, table in traits.by_fitness(tables)
+        for i in range(len(names))
+    ]
 
 
-def differential_and_gradient(z: Floats, omega: Floats) -> tuple[Floats, Floats]:
-    """s = Cov(ω, z) and β = Cov(z)⁻¹ s.
+def curvature(
+    cohort: pl.DataFrame,
+    names: Sequence[str],
+    last_step: int,
+    rng: np.random.Generator,
+    replicates: int = REPLICATES,
+) -> list[Curvature]:
+    """Curvature along each weight within one birth cohort, all other weights held fixed by their linear parts.
 
-    Args:
-        z: weights, shape (n, p).
-        omega: relative fitness, shape (n,).
-
-    Returns:
-        Each (p,). The gradient of a weight without variance is NaN, and the others are as without it.
+    Arguments and order as for `selection`.
     """
-    features = _features(z, omega[:, None])
-    s, beta = _solve(features.sum(axis=0, keepdims=True), z.shape[1], 0)
-    return s[0], beta[0]
+    traits = _Traits(cohort, names, last_step)
+    tables = np.full((len(FITNESS), 3, len(names)), np.nan)
+    if traits.count >= FEWEST:
+        tables = quadratic_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
+    return [
+        Curvature(fitness, name, traits.count, traits.complete, *map(float, table[:, i]))
+        for fitness, _, table in traits.by_fitness(tables)
+        for i, name in enumerate(names)
+    ]
 
 
-def _estimates(
-    z: Floats, omega: Floats, sd: Floats, cluster: NDArray[np.int64], rng: np.random.Generator, replicates: int
-) -> Floats:
-    """Value and bounds of the four statistics of each weight, by measure of fitness, shape (f, 3, 4, p).
+class _Traits:
+    """The weights of a cohort, as deviations from contemporaries, with the agents' fitness."""
 
-    All measures are taken from the same bootstrap samples, since making these takes nearly all the time.
-    """
-    scale = np.where(sd > 0, sd, 1.0)
-    features = _features(z / scale, omega)
-    sums = np.concatenate([features.sum(axis=0, keepdims=True), resampled_sums(features, cluster, rng, replicates)])
-    varies = np.where(sd > 0, 1.0, np.nan)
-    tables = []
-    for k in range(omega.shape[1]):
-        s, beta = _solve(sums, z.shape[1], k)
-        # In units of the whole cohort's standard deviation, also within a bootstrap sample.
-        statistics = np.stack([s * scale, s * varies, beta / scale, beta], axis=1)  # (1 + replicates, 4, p)
-        low, high = percentile_interval(statistics[1:])
-        tables.append(np.stack([statistics[0], low, high]))
-    return np.stack(tables)
+    def __init__(self, cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> None:
+        self._cohort = cohort.sort("birth_step", "agent_id")
+        lived, _ = durations(self._cohort, last_step)
+        self._fitness = {"children": self._cohort["children"].to_numpy().astype(np.float64), "lifespan": lived}
+        self.count = cohort.height
+        self.complete = complete_share(cohort)
+        self.z = within_strata(self._cohort.select(names).to_numpy().astype(np.float64))
 
+    def relative_fitness(self) -> Floats:
+        """Against contemporaries, a column per measure of fitness."""
+        return np.stack([relative_fitness(self._fitness[name]) for name in FITNESS], axis=1)
 
-def _features(z: Floats, omega: Floats) -> Floats:
-    """What has to be summed over agents for all moments: 1, z, the upper triangle of zz, and each ω with its ωz.
+    def sibships(self) -> NDArray[np.int64]:
+        """One number per mother; each founder has one of its own, below 0."""
+        own = -1 - pl.int_range(pl.len(), dtype=pl.Int64)
+        return self._cohort.select(pl.coalesce(pl.col("parent_id").cast(pl.Int64), own)).to_series().to_numpy()
 
-    Args:
-        z: weights, shape (n, p).
-        omega: relative fitness by each measure, shape (n, f).
-    """
-    first, second = np.triu_indices(z.shape[1])
-    parts = [np.ones((len(z), 1)), z, z[:, first] * z[:, second]]
-    for column in omega.T:
-        parts += [column[:, None], column[:, None] * z]
-    return np.hstack(parts)
-
-
-def _solve(sums: Floats, p: int, measure: int) -> tuple[Floats, Floats]:
-    """Differentials and gradients on one measure of fitness from sums of features, each (samples, p)."""
-    means = sums[:, 1:] / sums[:, :1]
-    first, second = np.triu_indices(p)
-    begin = p + len(first) + measure * (1 + p)
-    z, zz = means[:, :p], means[:, p : p + len(first)]
-    omega, omega_z = means[:, begin : begin + 1], means[:, begin + 1 : begin + 1 + p]
-    covariance = np.empty((len(sums), p, p))
-    covariance[:, first, second] = covariance[:, second, first] = zz - z[:, first] * z[:, second]
-    s = omega_z / omega - z
-    beta = (np.linalg.pinv(covariance, rcond=_ROUNDING, hermitian=True) @ s[..., None])[..., 0]
-    beta[:, covariance[0].diagonal() <= 0] = np.nan  # the first sample is the cohort itself
-    return s, beta
-
-
-def _strata(count: int) -> list[NDArray[np.int64]]:
-    """Positions of agents, in the order of birth, cut into runs of at least `STRATUM`."""
-    return np.array_split(np.arange(count), max(count // STRATUM, 1))
-
-
-def within_strata(values: Floats) -> Floats:
-    """Deviations from the mean of contemporaries, shape as given."""
-    parts = [values[part] - values[part].mean(axis=0) for part in _strata(len(values)) if len(part)]
-    return np.concatenate(parts) if parts else values
-
-
-def relative_fitness(values: Floats) -> Floats:
-    """Fitness over the mean fitness of contemporaries; 1 where all of these have none."""
-    parts = []
-    for part in _strata(len(values)):
-        mean = values[part].mean()
-        parts.append(values[part] / mean if mean > 0 else np.ones(len(part)))
-    return np.concatenate(parts)
-
-
-def sibships(cohort: pl.DataFrame) -> NDArray[np.int64]:
-    """One number per mother; each founder has one of its own, below 0."""
-    own = -1 - pl.int_range(pl.len(), dtype=pl.Int64)
-    return cohort.select(pl.coalesce(pl.col("parent_id").cast(pl.Int64), own)).to_series().to_numpy()
+    def by_fitness(self, tables: Floats) -> Iterator[tuple[str, float, Floats]]:
+        """Each measure of fitness with its mean and its table, which is NaN where nobody has any."""
+        for name, table in zip(FITNESS, tables, strict=True):
+            mean = float(self._fitness[name].mean()) if self.count else float("nan")
+            yield name, mean, table if mean > 0 else np.full_like(table, np.nan)

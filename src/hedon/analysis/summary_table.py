@@ -6,10 +6,10 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.interval import SHOWN_FROM
 from hedon.analysis.paper import STEPS
 from hedon.analysis.weight import LAST_AGENTS
 from hedon.printed_table import PrintedTable
+from hedon.statistic.interval import SHOWN_FROM
 
 _NOTHING = "-"
 _QUANTITIES = {  # key of the summary: name, key among the paper's figures

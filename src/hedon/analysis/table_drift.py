@@ -11,23 +11,21 @@ weight of those born last; the bias of the first half of a run with that of the 
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.analysis.drift import start_of
-from hedon.analysis.interval import LEVEL
 from hedon.analysis.noise_table import Mutations, NoiseTable, mutations, noise_table
 from hedon.analysis.weight import last_agents
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.interval import LEVEL
+from hedon.statistic.prediction import Prediction, prediction
 
 NAN = math.nan
-FEWEST = 3
-"""Pairs from which on a correlation and a slope are told."""
 _LINES = 4000
 
 Floats = NDArray[np.float64]
@@ -79,30 +77,6 @@ class GeneDrift:
     generations: float
 
 
-@dataclass(frozen=True)
-class Prediction:
-    """How well one comparison went, over worlds; NaN with fewer than three pairs.
-
-    Attributes:
-        pairs: that have both values.
-        correlation: Pearson's.
-        rank_correlation: Spearman's, which a single large table does not rule.
-        slope: of seen = slope · predicted, by least squares through the origin.
-        low, high: bounds of its 95 % interval, Student's t.
-        same_sign: pairs of equal sign.
-        p_sign: two-sided chance of so many or so few if signs were tossed, exact binomial.
-    """
-
-    pairs: int
-    correlation: float
-    rank_correlation: float
-    slope: float
-    low: float
-    high: float
-    same_sign: int
-    p_sign: float
-
-
 def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> GeneDrift | None:
     """Prediction and observation of one gene.
 
@@ -141,23 +115,6 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
         end=float(newest[weight].to_numpy().mean(dtype=np.float64)),
         generations=generations,
     )
-
-
-def prediction(predicted: Iterable[float], seen: Iterable[float]) -> Prediction:
-    """Compares pairs; those without both values are left out."""
-    x, y = (np.array(list(values), np.float64) for values in (predicted, seen))
-    known = np.isfinite(x) & np.isfinite(y)
-    x, y = x[known], y[known]
-    n = len(x)
-    same = int(np.count_nonzero(np.sign(x) == np.sign(y)))
-    p_sign = float(stats.binomtest(same, n).pvalue) if n else NAN
-    if n < FEWEST or np.ptp(x) == 0 or np.ptp(y) == 0:
-        return Prediction(n, NAN, NAN, NAN, NAN, NAN, same, p_sign)
-    slope = float(x @ y / (x @ x))
-    error = math.sqrt(float(np.sum((y - slope * x) ** 2)) / (n - 1) / float(x @ x))
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, n - 1)) * error
-    plain, ranked = (float(np.corrcoef(a, b)[0, 1]) for a, b in ((x, y), (stats.rankdata(x), stats.rankdata(y))))
-    return Prediction(n, plain, ranked, slope, slope - half, slope + half, same, p_sign)
 
 
 def compare(drifts: Sequence[GeneDrift], comparison: str) -> Prediction:

@@ -6,8 +6,8 @@ import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
 
-from hedon.analysis.interval import SHOWN_FROM, mean_interval
 from hedon.analysis.style import PALE, step_unit
+from hedon.statistic.interval import SHOWN_FROM, mean_interval
 
 
 def draw_traces(

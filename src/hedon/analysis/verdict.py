@@ -13,12 +13,12 @@ from functools import cache
 import numpy as np
 
 from hedon.analysis.claim import CLAIMS, SOURCE, Claim
-from hedon.analysis.contrast import fisher_mid_p
 from hedon.analysis.estimate import Estimate, estimate
-from hedon.analysis.extinction import ExtinctShare, extinct_share
 from hedon.analysis.order import ORDERS, Order, compare
 from hedon.analysis.world import WorldRecord, by_condition
 from hedon.config import Config, digest, load_config
+from hedon.statistic.contrast import fisher_mid_p
+from hedon.statistic.extinction import ExtinctShare, extinct_share
 
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"

@@ -4,7 +4,6 @@ import polars as pl
 import pytest
 
 from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.interval import mean_interval
 from hedon.analysis.ledger import world_ledger
 from hedon.analysis.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.paper import EXTINCTION, PAPER, paper_figures
@@ -17,6 +16,7 @@ from hedon.analysis.population import (
     run_tail,
 )
 from hedon.analysis.weight import last_agents, world_weights
+from hedon.statistic.interval import mean_interval
 
 # Three dead and one alive. Foods per step of life: 2/100, 0/300, 12/600.
 AGENTS = pl.DataFrame(

@@ -3,10 +3,11 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.curvature import REACH, curvature, standardized
+from hedon.analysis.selection import curvature
 from hedon.analysis.topic.stability import curvature_topic
 from hedon.analysis.world import by_condition, read_worlds
 from hedon.record.reader import open_run
+from hedon.statistic.selection import REACH, standardized
 
 NAMES = ("w_normal", "w_action", "neutral_1")
 

@@ -6,13 +6,14 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.correction import holm
-from hedon.analysis.drift import WorldDrift, drift_tests, rank_score, sign_flip_p, world_drift
+from hedon.analysis.drift import WorldDrift, drift_tests, world_drift
 from hedon.analysis.genealogy import Genealogy
 from hedon.analysis.walk import MutationLaw, mutation_law, neutral_means
 from hedon.analysis.world import read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
+from hedon.statistic.correction import holm
+from hedon.statistic.drift import rank_score, sign_flip_p
 
 LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10, late=False)
 

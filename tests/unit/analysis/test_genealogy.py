@@ -17,10 +17,10 @@ from hedon.analysis.genealogy import (
     living_at,
 )
 from hedon.analysis.generation import generation_time
-from hedon.analysis.price import price
 from hedon.analysis.walk import birth_number
 from hedon.analysis.world import read_worlds
 from hedon.record.reader import open_run
+from hedon.statistic.price import price
 
 # Two founders; 0 has 2, 2 has 3 and 4, 3 has 5; 1 has 6, who dies. 4 and 5 live.
 AGENTS = pl.DataFrame(
@@ -86,15 +86,15 @@ def test_generation_time_by_both_measures() -> None:
 
 
 def test_price_on_the_small_pedigree() -> None:
-    tree = genealogy(AGENTS)
+    parent, weight = genealogy(AGENTS).parent, AGENTS["w_normal"].to_numpy()
     cohort = np.array([True, True, True, False, False, False, False])
-    terms = price(AGENTS, tree, cohort, ["w_normal"])[0]
+    terms = price(weight, parent, cohort)
     # Parents 1, 2, 1.5 have 1, 1, 2 children, with weights 1.5; 2; 1.25 and 2.5.
     assert (terms.parents, terms.offspring) == (3, 4)
     assert terms.change == pytest.approx(7.25 / 4 - 1.5)
     assert terms.selection == pytest.approx(np.cov([1, 1, 2], [1, 2, 1.5], ddof=0)[0, 1] / (4 / 3))
     assert terms.transmission == pytest.approx((1 * 0.5 + 1 * 0.0 + 2 * 0.375) / 3 / (4 / 3))
-    childless = price(AGENTS, tree, np.arange(7) == 5, ["w_normal"])[0]
+    childless = price(weight, parent, np.arange(7) == 5)
     assert np.isnan(childless.change)
 
 
@@ -103,11 +103,12 @@ def test_price_closes_on_records(tmp_path: Path) -> None:
     for world in read_worlds([run]):
         tree = genealogy(world.agents)
         cohort = tree.birth < 20_000
-        for terms in price(world.agents, tree, cohort, world.weight_names):
+        for name in world.weight_names:
+            terms = price(world.agents[name].to_numpy().astype(np.float64), tree.parent, cohort)
             assert abs(terms.residual) < 1e-14
             assert terms.offspring == world.agents.filter(cohort)["children"].sum()
             assert terms.selection != 0
-        food = price(world.agents, tree, cohort, ["w_normal"])[0]
+        food = price(world.agents["w_normal"].to_numpy().astype(np.float64), tree.parent, cohort)
         assert food.selection > 0  # the synthetic worlds select on it
 
 

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.contrast import fisher_mid_p
 from hedon.analysis.item.extinction import ARMS, EXTINCTIONS
 from hedon.analysis.item.item import Material
 from hedon.analysis.paper import EXTINCTION, EXTINCTION_STEP
@@ -14,6 +13,7 @@ from hedon.analysis.verdict import world_extinction
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
+from hedon.statistic.contrast import fisher_mid_p
 
 (ITEM,) = EXTINCTIONS
 OWN, DEAR = "0.001, 2e-5", "0.002, 2e-5"

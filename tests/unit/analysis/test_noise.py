@@ -7,9 +7,10 @@ import polars as pl
 import pytest
 
 from hedon.analysis.noise_table import mutations, noise_table
-from hedon.analysis.table_drift import compare, gene_drift, prediction
+from hedon.analysis.table_drift import compare, gene_drift
 from hedon.analysis.world import WorldRecord
 from hedon.config import load_config
+from hedon.statistic.prediction import prediction
 
 WINDOW = 1024
 GENE = "neutral_1"

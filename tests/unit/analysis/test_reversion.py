@@ -6,11 +6,11 @@ from synthetic_run import write_run
 
 from hedon.analysis.course import WorldCourse, world_course
 from hedon.analysis.genealogy import genealogy, living_at
-from hedon.analysis.reversion import reversion
 from hedon.analysis.topic.stability import reversion_topic
 from hedon.analysis.walk import MutationLaw, neutral_courses
 from hedon.analysis.world import WorldRecord, by_condition, read_worlds
 from hedon.record.reader import open_run
+from hedon.statistic.reversion import reversion
 
 TIMES = 61
 

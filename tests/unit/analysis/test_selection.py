@@ -2,8 +2,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.bootstrap import percentile_interval, resampled_sums
-from hedon.analysis.selection import STRATUM, differential_and_gradient, selection
+from hedon.analysis.selection import selection
+from hedon.statistic.bootstrap import percentile_interval, resampled_sums
+from hedon.statistic.selection import STRATUM, differential_and_gradient
 
 NAMES = ("w_normal", "w_action", "neutral_1")
 

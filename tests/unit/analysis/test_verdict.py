@@ -8,15 +8,15 @@ import pytest
 from synthetic_run import write_run
 
 from hedon.analysis.claim import CLAIMS, SAME_FACTOR, Claim, OverWorlds
-from hedon.analysis.contrast import fisher_mid_p
 from hedon.analysis.drift import WorldDrift
 from hedon.analysis.estimate import estimate
-from hedon.analysis.interval import distance_interval, spread_interval
 from hedon.analysis.order import ORDERS, Order, Scale
 from hedon.analysis.verdict import judge, judge_order, place, verdicts
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
+from hedon.statistic.contrast import fisher_mid_p
+from hedon.statistic.interval import distance_interval, spread_interval
 
 
 @pytest.fixture(scope="module")

@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.contrast import fisher_mid_p
-from hedon.analysis.interval import mean_interval
 from hedon.analysis.item.census import missing, present, sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP
 from hedon.analysis.population import mean_alive, mean_energy, run_tail
-from hedon.analysis.survival import survival_curve
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.verdict import world_extinction
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.contrast import fisher_mid_p
+from hedon.statistic.interval import mean_interval
+from hedon.statistic.survival import survival_curve
 
 _READ = (
     "Costs are those of living [energy/step] and of action [energy/(step·force)]. The share is that of worlds extinct "

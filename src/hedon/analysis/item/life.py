@@ -8,7 +8,6 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.interval import mean_interval
 from hedon.analysis.item.census import count_extinct, missing, present, sentences, steps_reached
 from hedon.analysis.item.condition import PAPER_SCALE, PLACES, SIZES
 from hedon.analysis.item.item import Arm, Item, Material
@@ -16,6 +15,7 @@ from hedon.analysis.paper import paper_figures
 from hedon.analysis.topic.life import lifetime
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.interval import mean_interval
 
 # Column of the table of worlds: what it is called, and which of the paper's figures is made by the same rule.
 _QUANTITIES = {

@@ -8,7 +8,6 @@ import polars as pl
 from hedon.analysis.decline import EXTINCT, FATES, HEADING, STANDING, Fate, fate
 from hedon.analysis.figure_fate import draw_fates
 from hedon.analysis.figure_weights import draw_weights
-from hedon.analysis.interval import share_interval
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.mutation import Drifts, arm_drifts, drift_parts
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
@@ -17,6 +16,7 @@ from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.interval import share_interval
 
 LABEL = "released"
 ARMS = (Arm(LABEL, fidelity="released"),)

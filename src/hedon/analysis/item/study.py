@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from hedon.analysis.interval import SHOWN_FROM, Interval, mean_interval
 from hedon.analysis.item.census import missing, sentences
 from hedon.analysis.item.item import Arm, Material, Scale
 from hedon.analysis.response import Response, common_to, figures
+from hedon.statistic.interval import SHOWN_FROM, Interval, mean_interval
 
 
 def world_rows(material: Material, arms: Sequence[Arm], responses: Sequence[Response]) -> list[dict[str, Any]]:

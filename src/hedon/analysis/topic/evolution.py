@@ -9,11 +9,11 @@ from hedon.analysis.claim import last_mean
 from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.drift import drift_tests, standard_drift
 from hedon.analysis.genealogy import genealogy
-from hedon.analysis.mode import ENOUGH_WORLDS, modes
-from hedon.analysis.price import price
 from hedon.analysis.selection import selection
 from hedon.analysis.topic.life import Conditions, window_count
 from hedon.analysis.topic.result import SEED, ResultTable, generator, labels, over_worlds, table
+from hedon.statistic.mode import ENOUGH_WORLDS, modes
+from hedon.statistic.price import price
 
 
 def genome(conditions: Conditions) -> list[ResultTable]:
@@ -90,9 +90,14 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
         for world in worlds:
             tree = genealogy(world.agents)
             cohorts = with_cohorts(world.agents, world.last_step, windows)["window"].to_numpy()
+            weights = {name: world.agents[name].to_numpy().astype(np.float64) for name in world.weight_names}
             for window in range(windows):
-                found = price(world.agents, tree, cohorts == window, world.weight_names)
-                rows += [labels(world) | {"window": window} | asdict(row) for row in found]
+                rows += [
+                    labels(world)
+                    | {"window": window, "weight": name}
+                    | asdict(price(z, tree.parent, cohorts == window))
+                    for name, z in weights.items()
+                ]
     worlds_table = table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)
     by_world = worlds_table.rows
     terms = ("change", "selection", "transmission", "residual")

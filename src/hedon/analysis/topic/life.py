@@ -10,11 +10,12 @@ from hedon.analysis.budget import energy_budget
 from hedon.analysis.cohort import COMPLETE, window_bounds, with_cohorts
 from hedon.analysis.food import food_per_agent_step, food_per_step
 from hedon.analysis.generation import generation_time
+from hedon.analysis.lifetime import durations
 from hedon.analysis.population import run_tail
 from hedon.analysis.reproduction import reproduction
-from hedon.analysis.survival import SurvivalCurve, durations, exposure_mean, restricted_mean, survival_curve
 from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.survival import SurvivalCurve, exposure_mean, restricted_mean, survival_curve
 
 Conditions = Mapping[str, Sequence[WorldRecord]]
 

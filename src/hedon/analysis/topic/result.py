@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from hedon.analysis.interval import mean_interval
 from hedon.analysis.world import WorldRecord
+from hedon.statistic.interval import mean_interval
 
 SEED = 20240717
 """Of the bootstrap and the neutral walks, so that the same records give the same numbers."""

@@ -7,12 +7,12 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.cohort import COMPLETE, window_bounds, with_cohorts
-from hedon.analysis.correction import holm
 from hedon.analysis.course import WorldCourse, world_course
-from hedon.analysis.curvature import curvature
-from hedon.analysis.reversion import Reversion, reversion
+from hedon.analysis.selection import curvature
 from hedon.analysis.topic.life import Conditions, window_count
 from hedon.analysis.topic.result import ResultTable, generator, labels, over_worlds, table
+from hedon.statistic.correction import holm
+from hedon.statistic.reversion import Reversion, reversion
 
 _INTERVALS = 100  # into which the longest world of a condition is cut
 

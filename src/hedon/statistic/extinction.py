@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, stats
 
-from hedon.analysis.interval import LEVEL
-from hedon.analysis.survival import survival_curve
+from hedon.statistic.interval import LEVEL
+from hedon.statistic.survival import survival_curve
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from hedon.analysis.contrast import difference_interval, fisher_mid_p, spread_ratio_interval
-from hedon.analysis.interval import distance_interval, share_interval, spread_interval
+from hedon.statistic.contrast import difference_interval, fisher_mid_p, spread_ratio_interval
+from hedon.statistic.interval import distance_interval, share_interval, spread_interval
 
 
 def rejections(n: int, m: int) -> np.ndarray:

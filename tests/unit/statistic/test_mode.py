@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from hedon.analysis.mode import ENOUGH_POWER, ENOUGH_WORLDS, LEVEL, dip, modes
+from hedon.statistic.mode import ENOUGH_POWER, ENOUGH_WORLDS, LEVEL, dip, modes
 
 
 def dip_by_programming(x: np.ndarray) -> float:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from hedon.analysis.extinction import extinct_share
+from hedon.statistic.extinction import extinct_share
 
 
 def test_a_world_that_ends_early_is_censored() -> None:

@@ -2,7 +2,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.survival import durations, exposure_mean, restricted_mean, survival_curve
+from hedon.analysis.lifetime import durations
+from hedon.statistic.survival import exposure_mean, restricted_mean, survival_curve
 
 # Remission times of the 6-MP group of Freireich et al. (1963), the textbooks' example.
 DIED = [6, 6, 6, 7, 10, 13, 16, 22, 23]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.analysis.interval import LEVEL
+from hedon.statistic.interval import LEVEL
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.interval import LEVEL
+from hedon.statistic.interval import LEVEL
 
 REPLICATES = 1000
 """Enough for the 2.5 % points of an interval: some 25 replicates lie beyond each."""

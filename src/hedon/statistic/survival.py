@@ -10,11 +10,10 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import polars as pl
 from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.analysis.interval import LEVEL
+from hedon.statistic.interval import LEVEL
 
 AT_RISK = 20
 """Agents that must have reached an age for the curve to be read there: beyond, it is made of a few lives."""
@@ -78,21 +77,6 @@ class RestrictedMean:
     mean: float
     error: float
     until: float
-
-
-def durations(agents: pl.DataFrame, last_step: int) -> tuple[Floats, NDArray[np.bool_]]:
-    """How long each agent is known to have lived, and whether it died.
-
-    Args:
-        agents: table `agents` of one world.
-        last_step: up to which the records reach [step].
-
-    Returns:
-        Lifetimes or ages so far [step] and whether the agent died, each (n,).
-    """
-    died = agents["death_step"].is_not_null().to_numpy()
-    end = agents["death_step"].fill_null(last_step).to_numpy()
-    return (end - agents["birth_step"].to_numpy()).astype(np.float64), died
 
 
 def survival_curve(duration: Floats, died: NDArray[np.bool_], level: float = LEVEL) -> SurvivalCurve:

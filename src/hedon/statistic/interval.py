@@ -48,6 +48,13 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Inter
     return Interval(mean, mean - half, mean + half, known.size)
 
 
+def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
+    """Mean and bounds of `mean_interval`, with NaN for what has no value."""
+    found = mean_interval(values, level)
+    mean, low, high = (math.nan if number is None else number for number in (found.mean, found.low, found.high))
+    return mean, low, high
+
+
 def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, float]:
     """Jeffreys' interval of a share: the middle of the beta law that the count leaves of a prior Beta(1/2, 1/2).
 

@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.analysis.correction import holm
-from hedon.analysis.interval import LEVEL
+from hedon.statistic.correction import holm
+from hedon.statistic.interval import LEVEL
 
 Cell = tuple[bool, ...]
 """Which factors are there, in their order."""

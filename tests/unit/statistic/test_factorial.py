@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from hedon.analysis.factorial import Cell, FactorialFit, all_effects, fit_factorial
+from hedon.statistic.factorial import Cell, FactorialFit, all_effects, fit_factorial
 
 CELLS: list[Cell] = list(itertools.product((False, True), repeat=3))
 TRUE = {(0,): 2.0, (1,): -1.0, (2,): 0.5, (0, 1): 4.0, (0, 2): 0.0, (1, 2): -3.0, (0, 1, 2): 8.0}

@@ -10,13 +10,10 @@ the clipping at the weight limit, and heavy-tailed, since mutations are Cauchy. 
 the less noisy of the two.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import polars as pl
-
-from hedon.analysis.genealogy import Genealogy
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -24,7 +21,6 @@ class PriceTerms:
     """The change of one weight from a cohort to its children.
 
     Attributes:
-        weight: genome column.
         parents: agents of the cohort, with or without children.
         offspring: children of the cohort.
         change: mean of the children minus mean of the cohort; NaN without children, as all below.
@@ -33,7 +29,6 @@ class PriceTerms:
         residual: change − selection − transmission: rounding alone.
     """
 
-    weight: str
     parents: int
     offspring: int
     change: float
@@ -42,29 +37,22 @@ class PriceTerms:
     residual: float
 
 
-def price(agents: pl.DataFrame, tree: Genealogy, cohort: np.ndarray, names: Sequence[str]) -> list[PriceTerms]:
-    """Price's equation for each weight.
+def price(weight: NDArray[np.float64], parent: NDArray[np.int64], cohort: NDArray[np.bool_]) -> PriceTerms:
+    """Price's equation for one weight.
 
     Args:
-        agents: table `agents` of one world, by agent_id.
-        tree: its pedigree.
-        cohort: who belongs to the cohort of parents, bool, shape (n,).
-        names: genome columns.
+        weight: of each agent, (n,).
+        parent: position of each agent's parent, −1 where it has none, (n,).
+        cohort: who belongs to the cohort of parents, (n,).
     """
     members = np.flatnonzero(cohort)
-    children = np.flatnonzero((tree.parent >= 0) & cohort[tree.parent])
+    children = np.flatnonzero((parent >= 0) & cohort[parent])
     if len(children) == 0:
-        nothing = (float("nan"),) * 4
-        return [PriceTerms(name, len(members), 0, *nothing) for name in names]
-    count = np.bincount(tree.parent[children], minlength=tree.size)[members].astype(np.float64)
+        return PriceTerms(len(members), 0, np.nan, np.nan, np.nan, np.nan)
+    count = np.bincount(parent[children], minlength=len(parent))[members].astype(np.float64)
     mean_count = len(children) / len(members)
-    terms = []
-    for name in names:
-        z = agents[name].to_numpy().astype(np.float64)
-        mean = z[members].mean()
-        change = z[children].mean() - mean
-        selection = float(np.mean((count - mean_count) * (z[members] - mean)) / mean_count)
-        transmission = float(np.sum(z[children] - z[tree.parent[children]]) / len(members) / mean_count)
-        residual = float(change - selection - transmission)
-        terms.append(PriceTerms(name, len(members), len(children), float(change), selection, transmission, residual))
-    return terms
+    mean = weight[members].mean()
+    change = float(weight[children].mean() - mean)
+    selection = float(np.mean((count - mean_count) * (weight[members] - mean)) / mean_count)
+    transmission = float(np.sum(weight[children] - weight[parent[children]]) / len(members) / mean_count)
+    return PriceTerms(len(members), len(children), change, selection, transmission, change - selection - transmission)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from hedon.analysis.interval import LEVEL
+from hedon.statistic.interval import LEVEL
 
 SHOWN_LEVEL = 0.05
 """An optimum is told only where a pull is found at this level: a gene that drifts has none."""

@@ -1,0 +1,1 @@
+"""Statistics: functions of arrays that know no run, no file and no world. One method per file."""

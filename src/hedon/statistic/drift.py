@@ -1,0 +1,91 @@
+"""Did a trait go further, or more in one direction, than drift alone would have carried it? Tests on scores.
+
+In each world the trait is ranked among draws of what drift does there, and the rank becomes a standard normal *score*.
+Over worlds, scores that lean to one side say that the trait was pushed in a *direction* (Stouffer); scores that are
+large, whatever their sign, that it was carried a *distance* (chi-squared): a trait with two modes shows in the second
+alone. Scores that are all too small say that it was *held* (the lower tail).
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.statistic.interval import LEVEL, distance_interval, mean_bounds
+
+NAN = math.nan
+_EXACT = 12  # values up to which all sign flips are gone through
+_FLIPS = 10_000  # of more values, drawn at random
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ScoreTest:
+    """Scores of several worlds against drift.
+
+    Attributes:
+        test: "direction", "distance" or "held".
+        worlds: number of scores.
+        effect: for "direction" the mean score, in standard deviations of drift; else the root mean square score, 1
+            under drift. NaN without scores, as p.
+        low, high: bounds of the effect's 95 % interval: Student's t over worlds for "direction", else from the
+            chi-squared law of normal scores; NaN with fewer than two worlds.
+        p: two-sided for "direction"; the chance of a larger effect for "distance", of a smaller one for "held".
+        drift_low, drift_high: for "direction", bounds of the effect's 95 % interval by the spread that scores have
+            under drift, 1, as p takes it, and not by that between these worlds; NaN for other tests.
+    """
+
+    test: str
+    worlds: int
+    effect: float
+    low: float
+    high: float
+    p: float
+    drift_low: float = NAN
+    drift_high: float = NAN
+
+
+def rank_score(value: float, null: Floats) -> float:
+    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half."""
+    below = np.count_nonzero(null < value) + 0.5 * np.count_nonzero(null == value)
+    return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
+
+
+def score_tests(scores: Floats) -> list[ScoreTest]:
+    """The three tests, in the order direction, distance, held.
+
+    Args:
+        scores: one per world, shape (n,).
+    """
+    n = len(scores)
+    if n == 0:
+        return [ScoreTest(test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance", "held")]
+    p = float(2.0 * stats.norm.sf(abs(scores.sum()) / math.sqrt(n)))
+    half = float(stats.norm.ppf(0.5 + LEVEL / 2)) / math.sqrt(n)
+    effect, t_low, t_high = mean_bounds(scores)
+    square = float(np.sum(scores**2))
+    distance, low, high = distance_interval(scores)
+    wide = (low, high) if n > 1 else (NAN, NAN)
+    return [
+        ScoreTest("direction", n, effect, t_low, t_high, p, effect - half, effect + half),
+        ScoreTest("distance", n, distance, *wide, float(stats.chi2.sf(square, n))),
+        ScoreTest("held", n, distance, *wide, float(stats.chi2.cdf(square, n))),
+    ]
+
+
+def sign_flip_p(values: Floats, rng: np.random.Generator) -> float:
+    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign."""
+    n = len(values)
+    if n <= _EXACT:
+        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
+        extra = 0
+    else:
+        signs = rng.choice((-1.0, 1.0), (_FLIPS, n))
+        extra = 1  # the sample itself is one of the draws
+    sums = np.abs(signs @ values)
+    as_far = np.count_nonzero(sums >= abs(values.sum()) * (1.0 - 1e-12))
+    return float((as_far + extra) / (len(sums) + extra))
