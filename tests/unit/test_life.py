@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
-from hedon.analysis.demography import birth_rate, hazard
 from hedon.config.load import load_config
+from hedon.demography.life import birth_rate, hazard
 from hedon.error import EngineError
 
 SAFE = (*DEATHLESS, *CHILDLESS)

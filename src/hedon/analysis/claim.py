@@ -15,7 +15,6 @@ from typing import Literal
 
 from scipy import optimize
 
-from hedon.analysis.demography import cumulative_hazard
 from hedon.analysis.drift import standard_drift
 from hedon.analysis.food import food_per_step
 from hedon.analysis.lifetime import mean_lifetime
@@ -23,6 +22,7 @@ from hedon.analysis.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP, 
 from hedon.analysis.population import last_generation, mean_alive, run_tail
 from hedon.analysis.weight import last_agents
 from hedon.analysis.world import WorldRecord
+from hedon.demography.life import cumulative_hazard
 
 SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 13"
 SAME_FACTOR = 1.5

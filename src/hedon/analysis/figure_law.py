@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.demography import birth_rate, expected_lifetime, hazard, reproduction_number, survival
 from hedon.analysis.figure_demography import draw_reproduction
 from hedon.analysis.style import (
     BLUE,
@@ -22,6 +21,7 @@ from hedon.analysis.style import (
 )
 from hedon.config import Config
 from hedon.config.life import HazardConfig
+from hedon.demography.life import birth_rate, expected_lifetime, hazard, reproduction_number, survival
 
 ENERGIES = {0.0: VERMILION, 5.0: ORANGE, 10.0: GREEN, 20.0: SKY, 40.0: BLUE}
 """Energies that curves are drawn for, with their colors."""

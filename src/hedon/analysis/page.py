@@ -10,7 +10,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from hedon.analysis.analysis_table import cells, is_numeric
 from hedon.analysis.analyze import Analysis
-from hedon.analysis.forecast import setting_warnings
 from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
@@ -19,6 +18,7 @@ from hedon.config import dump_toml, load_config
 from hedon.config.dump import diff
 from hedon.config.load import PRESETS
 from hedon.config.problem import format_value
+from hedon.demography.forecast import setting_warnings
 from hedon.record.reader import Run
 
 

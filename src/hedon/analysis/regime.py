@@ -33,9 +33,9 @@ from itertools import pairwise
 import numpy as np
 import polars as pl
 
-from hedon.analysis.demography import hazard
 from hedon.analysis.population import whole_window
 from hedon.config import Config
+from hedon.demography.life import hazard
 
 EXTINCT, IDLE, ROOM, FOOD, BETWEEN = (
     "extinct",

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hedon.analysis.demography import birth_rate, expected_lifetime, reproduction_number
 from hedon.analysis.figure_law import draw_birth, draw_hazard
 from hedon.analysis.figure_walk import draw_walks
 from hedon.analysis.item.condition import BASELINE
@@ -13,6 +12,7 @@ from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import SEED
 from hedon.analysis.walk import mutation_law
 from hedon.config import Config
+from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
 
 
 def window_births(config: Config) -> int:

@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from hedon.analysis.forecast import forecast, fresh_force, setting_warnings
-from hedon.analysis.placement import is_free, placement_success
 from hedon.config import Config, load_config
 from hedon.config.arena import is_inside
+from hedon.demography.forecast import forecast, fresh_force, setting_warnings
+from hedon.demography.placement import is_free, placement_success
 
 
 def setting(*overrides: str) -> Config:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hedon.analysis.demography import expected_lifetime, reproduction_number
-from hedon.analysis.placement import placement_success
 from hedon.config import Config
+from hedon.demography.life import expected_lifetime, reproduction_number
+from hedon.demography.placement import placement_success
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(32)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
