@@ -5,18 +5,18 @@ from collections.abc import Iterator, Mapping, Sequence
 import polars as pl
 
 from hedon.analysis import report_figure
-from hedon.analysis.figure_demography import draw_demography
-from hedon.analysis.figure_history import draw_history
-from hedon.analysis.figure_lineage import draw_lineages
-from hedon.analysis.figure_population import draw_population
-from hedon.analysis.figure_regime import draw_regimes
-from hedon.analysis.figure_selection import draw_selection
-from hedon.analysis.figure_survival import draw_survival
-from hedon.analysis.figure_weights import draw_weights
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import food_colors, weight_colors, weight_titles
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
+from hedon.figure.demography import draw_demography
+from hedon.figure.history import draw_history
+from hedon.figure.lineage import draw_lineages
+from hedon.figure.named import NamedFigure
+from hedon.figure.population import draw_population
+from hedon.figure.regime import draw_regimes
+from hedon.figure.selection import draw_selection
+from hedon.figure.style import food_colors, weight_colors, weight_titles
+from hedon.figure.survival import draw_survival
+from hedon.figure.weight import draw_weights
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:

@@ -13,11 +13,12 @@ from pathlib import Path
 
 from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
 from hedon.analysis.condition_figure import condition_figures
-from hedon.analysis.figure_world import draw_world, telling_agent
 from hedon.analysis.page import FigureFile, report_pages
-from hedon.analysis.report_figure import WORLD, NamedFigure
-from hedon.analysis.style import food_colors, save_figure, svg_bytes
+from hedon.analysis.report_figure import WORLD
 from hedon.analysis.summary import summarize
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import food_colors, save_figure, svg_bytes
+from hedon.figure.world import draw_world, telling_agent
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES, SUMMARY

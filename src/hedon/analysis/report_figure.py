@@ -1,45 +1,6 @@
 """The figures of a report: what each asks, and how it is read."""
 
-from dataclasses import dataclass
-
-from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True)
-class NamedFigure:
-    """A figure.
-
-    Attributes:
-        name: names its file.
-        question: that it answers, its heading.
-        figure: itself.
-        caption: how to read it; may be empty.
-    """
-
-    name: str
-    question: str
-    figure: Figure
-    caption: str = ""
-
-
-@dataclass(frozen=True)
-class FigureKind:
-    """A kind of figure that reports have.
-
-    Attributes:
-        name: names its file.
-        question: that it answers, its heading.
-        caption: what is drawn and how to read it.
-    """
-
-    name: str
-    question: str
-    caption: str
-
-    def drawn(self, figure: Figure) -> NamedFigure:
-        """A figure of this kind."""
-        return NamedFigure(self.name, self.question, figure, self.caption)
-
+from hedon.figure.named import FigureKind
 
 WEIGHTS = FigureKind(
     "weights",

@@ -11,10 +11,10 @@ from synthetic_run import write_run
 from hedon.analysis.item.drift import ALL, ARMS, DRIFT
 from hedon.analysis.item.item import Material
 from hedon.analysis.paper import STEPS
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import PRESETS
+from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 
 (ITEM,) = DRIFT

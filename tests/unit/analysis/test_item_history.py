@@ -13,9 +13,9 @@ from synthetic_run import write_run
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.weight_history import HISTORIES
 from hedon.analysis.paper import STEPS
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import save_figure
 from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import save_figure
 from hedon.record.reader import open_run
 
 ITEMS = {item.name: item for item in HISTORIES}

@@ -8,13 +8,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from scipy.integrate import trapezoid
 
-from hedon.analysis.figure_walk import LENGTHS, draw_walks, unlimited_share
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.law import LAWS, window_births
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import svg_bytes
 from hedon.analysis.walk import MutationLaw, lineages, mutation_law
 from hedon.config import load_config
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import svg_bytes
+from hedon.figure.walk import LENGTHS, draw_walks, unlimited_share
 
 CONFIG = load_config("baseline")
 LAW = mutation_law(CONFIG)

@@ -10,12 +10,12 @@ from matplotlib.image import imread
 from matplotlib.patches import Circle, Ellipse, FancyArrowPatch, Wedge
 from synthetic_run import synthetic_snapshot
 
-from hedon.analysis.figure_body import draw_body, ray_directions
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.picture import PICTURES
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import save_figure
 from hedon.config import PRESETS, load_config
+from hedon.figure.body import draw_body, ray_directions
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import save_figure
 from hedon.record.snapshot import Snapshot
 
 ITEMS = {item.name: item for item in PICTURES}

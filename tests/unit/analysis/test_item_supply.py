@@ -5,13 +5,13 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.figure_supply import draw_supply
 from hedon.analysis.item.item import Material
 from hedon.analysis.item.supply import ARMS, SUPPLY, growth
 from hedon.analysis.paper import PAPER
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.figure.named import NamedFigure
+from hedon.figure.supply import draw_supply
 from hedon.record.reader import open_run
 
 (ITEM,) = SUPPLY

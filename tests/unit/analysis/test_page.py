@@ -11,14 +11,14 @@ from markdown_it import MarkdownIt
 from synthetic_run import write_run
 
 from hedon.analysis.analyze import Analysis, analyze
-from hedon.analysis.figure_lineage import draw_lineages
-from hedon.analysis.figure_regime import REGIME_COLORS, draw_regimes
-from hedon.analysis.figure_selection import draw_selection
-from hedon.analysis.figure_survival import draw_survival
 from hedon.analysis.page import FigureFile, report_pages
 from hedon.analysis.report import write_report
 from hedon.analysis.report_figure import FIGURES
-from hedon.analysis.style import svg_bytes, weight_colors, weight_titles
+from hedon.figure.lineage import draw_lineages
+from hedon.figure.regime import REGIME_COLORS, draw_regimes
+from hedon.figure.selection import draw_selection
+from hedon.figure.style import svg_bytes, weight_colors, weight_titles
+from hedon.figure.survival import draw_survival
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 

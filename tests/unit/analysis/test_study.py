@@ -13,11 +13,11 @@ from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
 from hedon.analysis.item import acting, entropy, fault, noise, released, supply
 from hedon.analysis.item.item import Item, Material
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.config import digest, load_config
+from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 
 ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY, *acting.ACTING]

@@ -7,14 +7,14 @@ says that it does not matter; one that reaches beyond leaves it open.
 
 from collections.abc import Iterator
 
-from hedon.analysis.figure_course import draw_courses
 from hedon.analysis.item.census import present, sentences, stack, steps_reached, world_indices
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import change, missing_note, read_change, world_rows
 from hedon.analysis.population import history
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES
 from hedon.analysis.topic.result import ResultTable, table
+from hedon.figure.course import draw_courses
+from hedon.figure.named import NamedFigure
 
 FULL, HALF = "float32", "bfloat16"
 ARMS = tuple(

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from hedon.analysis.drift import WorldDrift, drift_tests, standard_drift
-from hedon.analysis.figure_score import draw_scores
 from hedon.analysis.item.census import present, sentences
 from hedon.analysis.item.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.item.study import missing_note
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import SEED, ResultTable, table
+from hedon.figure.drift import draw_scores
+from hedon.figure.named import NamedFigure
 from hedon.statistic.interval import SHOWN_FROM
 
 ARMS = (*SIZES, *PLACES[1:], POOR, POISON)

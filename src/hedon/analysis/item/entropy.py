@@ -5,15 +5,15 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from hedon.analysis.appetite import WINDOWS, appetite, half_way_weight
-from hedon.analysis.figure_appetite import draw_appetite
 from hedon.analysis.item.census import present, sentences, stack, world_indices
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import change, missing_note, read_change, world_rows
 from hedon.analysis.population import history
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES, Response
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
+from hedon.figure.appetite import draw_appetite
+from hedon.figure.named import NamedFigure
 
 WITH, WITHOUT = "entropy 0.001", "entropy 0"
 ARMS = (

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.analysis.figure_weights import WeightGroup, draw_weight_groups
 from hedon.analysis.item.census import describe, missing, present, sentences, stack, world_indices
 from hedon.analysis.item.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 from hedon.analysis.item.item import Arm, Item, Material
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import draw_message
 from hedon.analysis.weight import LAST_AGENTS, last_agents
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import draw_message
+from hedon.figure.weight import WeightGroup, draw_weight_groups
 
 _READ = (
     f"A point is one of the {LAST_AGENTS} agents of a world that were born last; the neutral marker, which enters no "

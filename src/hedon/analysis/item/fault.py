@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hedon.analysis.figure_factorial import draw_cells, draw_effects
 from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES, Response
 from hedon.analysis.topic.result import ResultTable, table
+from hedon.figure.factorial import draw_cells, draw_effects
+from hedon.figure.named import NamedFigure
 from hedon.statistic.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
 
 FACTORS = {

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Literal
 
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
 from hedon.config import Config, load_config
+from hedon.figure.named import NamedFigure
 from hedon.record.snapshot import Snapshot
 
 

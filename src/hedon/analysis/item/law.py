@@ -4,15 +4,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hedon.analysis.figure_law import draw_birth, draw_hazard
-from hedon.analysis.figure_walk import draw_walks
 from hedon.analysis.item.condition import BASELINE
 from hedon.analysis.item.item import Item, Material
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import SEED
 from hedon.analysis.walk import mutation_law
 from hedon.config import Config
 from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
+from hedon.figure.law import draw_birth, draw_hazard
+from hedon.figure.named import NamedFigure
+from hedon.figure.walk import draw_walks
 
 
 def window_births(config: Config) -> int:

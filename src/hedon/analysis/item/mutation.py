@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hedon.analysis.figure_prediction import draw_predictions
 from hedon.analysis.item.census import sentences
 from hedon.analysis.item.item import Arm, Material
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.table_drift import COMPARISONS, GeneDrift, compare, gene_drift
 from hedon.analysis.topic.result import ResultTable, generator, table
+from hedon.figure.named import NamedFigure
+from hedon.figure.prediction import draw_predictions
 from hedon.statistic.interval import SHOWN_FROM
 
 GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}

@@ -6,8 +6,8 @@ from hedon.analysis.item.fault import FACTORS
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.mutation import arm_drifts, drift_parts
 from hedon.analysis.item.study import missing_note
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.topic.result import ResultTable
+from hedon.figure.named import NamedFigure
 
 ARMS = (
     Arm("frozen", overrides=(FACTORS["noise"],), fidelity="corrected"),

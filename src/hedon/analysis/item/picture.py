@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
-from hedon.analysis.figure_arenas import ArenaPanel, draw_arenas
-from hedon.analysis.figure_body import draw_body
-from hedon.analysis.figure_world import draw_world, telling_agent
 from hedon.analysis.item.condition import BASELINE, PLACES, POISON, POOR, SIZES
 from hedon.analysis.item.item import Item, Material, Scale
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import food_colors
+from hedon.figure.arena import ArenaPanel, draw_arenas
+from hedon.figure.body import draw_body
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import food_colors
+from hedon.figure.world import draw_world, telling_agent
 from hedon.record.snapshot import Snapshot
 
 _FOODS = (*PLACES[1:], POOR, POISON)

@@ -6,16 +6,16 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.decline import EXTINCT, FATES, HEADING, STANDING, Fate, fate
-from hedon.analysis.figure_fate import draw_fates
-from hedon.analysis.figure_weights import draw_weights
 from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.mutation import Drifts, arm_drifts, drift_parts
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.paper import EXTINCTION, PAPER
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
+from hedon.figure.fate import draw_fates
+from hedon.figure.named import NamedFigure
+from hedon.figure.weight import draw_weights
 from hedon.statistic.interval import share_interval
 
 LABEL = "released"

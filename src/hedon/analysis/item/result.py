@@ -11,12 +11,12 @@ from hedon.analysis.item.gather import Gathered
 from hedon.analysis.item.item import Item, Material
 from hedon.analysis.item.page import Made, html_page, markdown_page
 from hedon.analysis.page import FigureFile
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import save_figure, svg_bytes
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.fate import regime, verdict
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord, by_condition
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import save_figure, svg_bytes
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES

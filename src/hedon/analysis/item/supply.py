@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import Any
 
-from hedon.analysis.figure_supply import Eater, draw_supply
 from hedon.analysis.food import food_per_agent_step
 from hedon.analysis.item.census import sentences
 from hedon.analysis.item.fault import FACTORS
@@ -11,11 +10,12 @@ from hedon.analysis.item.item import Arm, Item, Material, Scale
 from hedon.analysis.item.study import missing_note, shown_interval, world_rows
 from hedon.analysis.paper import PAPER
 from hedon.analysis.population import run_tail
-from hedon.analysis.report_figure import NamedFigure
 from hedon.analysis.response import RESPONSES, Common, Response
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord
 from hedon.config import Config
+from hedon.figure.named import NamedFigure
+from hedon.figure.supply import Eater, draw_supply
 
 CONDITIONS = ("small", "baseline", "centered")
 """The baseline, and the two in which the paper's agents live in plenty."""

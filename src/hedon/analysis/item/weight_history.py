@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.analysis.figure_history import HistoryRow, draw_histories
 from hedon.analysis.item.census import describe, missing, present, sentences, stack, world_indices
 from hedon.analysis.item.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 from hedon.analysis.item.item import Arm, Item, Material
-from hedon.analysis.report_figure import NamedFigure
-from hedon.analysis.style import draw_message, food_colors
+from hedon.figure.history import HistoryRow, draw_histories
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import draw_message, food_colors
 
 _READ = (
     "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from three worlds on; a cross "

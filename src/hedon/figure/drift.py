@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.style import GRID, INK, PALE, new_figure, seed_color, styled
+from hedon.figure.style import GRID, INK, PALE, new_figure, seed_color, styled
 
 _NORMAL = 1.96  # standard deviations that hold 95 % of a normal law
 _LEAST = 3.0  # reach of the axis

@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 from synthetic_run import write_run
 
 from hedon.analysis.analyze import Analysis, analyze
-from hedon.analysis.figure_demography import draw_demography
-from hedon.analysis.figure_law import draw_birth
-from hedon.analysis.figure_lineage import draw_lineages
-from hedon.analysis.figure_population import draw_population
-from hedon.analysis.figure_survival import draw_survival
 from hedon.config import load_config
+from hedon.figure.demography import draw_demography
+from hedon.figure.law import draw_birth
+from hedon.figure.lineage import draw_lineages
+from hedon.figure.population import draw_population
+from hedon.figure.survival import draw_survival
 from hedon.record.reader import open_run
 
 BASELINE = load_config("baseline")

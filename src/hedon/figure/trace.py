@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
 
-from hedon.analysis.style import PALE, step_unit
+from hedon.figure.style import PALE, step_unit
 from hedon.statistic.interval import SHOWN_FROM, mean_interval
 
 

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from hedon.analysis.response import Response
-from hedon.analysis.style import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
+from hedon.figure.style import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
 
 _COLUMNS = 3
 _WIDTH = 9.0

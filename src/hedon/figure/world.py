@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Wedge
 
-from hedon.analysis.outline import wall_outline
-from hedon.analysis.style import INK, MUTED, PALE, new_figure, styled
+from hedon.figure.outline import wall_outline
+from hedon.figure.style import INK, MUTED, PALE, new_figure, styled
 from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"

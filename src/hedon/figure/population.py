@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.population import history
-from hedon.analysis.style import BLUE, INK, ORANGE, VERMILION, VIOLET, legend_above, new_figure, say_empty, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces
+from hedon.figure.style import BLUE, INK, ORANGE, VERMILION, VIOLET, legend_above, new_figure, say_empty, styled
+from hedon.figure.trace import draw_time_axis, draw_traces
 
 _POINTS = 100  # few enough that chance does not hide the course
 

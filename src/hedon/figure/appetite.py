@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.appetite import AppetiteBin
-from hedon.analysis.style import BLUE, PALE, VERMILION, new_figure, say_empty, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
+from hedon.figure.style import BLUE, PALE, VERMILION, new_figure, say_empty, styled
+from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _COLORS = (BLUE, VERMILION)
 _TICKS = (-10, -1, -0.1, 0, 0.1, 1, 10)

@@ -4,8 +4,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.figure_demography import draw_reproduction
-from hedon.analysis.style import (
+from hedon.config import Config
+from hedon.config.life import HazardConfig
+from hedon.demography.life import birth_rate, expected_lifetime, hazard, reproduction_number, survival
+from hedon.figure.demography import draw_reproduction
+from hedon.figure.style import (
     BLUE,
     GREEN,
     INK,
@@ -19,9 +22,6 @@ from hedon.analysis.style import (
     step_unit,
     styled,
 )
-from hedon.config import Config
-from hedon.config.life import HazardConfig
-from hedon.demography.life import birth_rate, expected_lifetime, hazard, reproduction_number, survival
 
 ENERGIES = {0.0: VERMILION, 5.0: ORANGE, 10.0: GREEN, 20.0: SKY, 40.0: BLUE}
 """Energies that curves are drawn for, with their colors."""

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.cohort import COMPLETE
-from hedon.analysis.style import draw_message, new_figure, say_empty, step_unit, styled
-from hedon.analysis.trace import draw_zero_line
+from hedon.figure.style import draw_message, new_figure, say_empty, step_unit, styled
+from hedon.figure.trace import draw_zero_line
 from hedon.statistic.interval import SHOWN_FROM
 
 _ROWS = {"children": "children", "lifespan": "length of life"}

@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from hedon.analysis.style import (
+from hedon.analysis.weight import LAST_AGENTS, last_agents
+from hedon.figure.style import (
     MUTED,
     NEUTRAL_COLOR,
     PALE,
@@ -23,7 +24,6 @@ from hedon.analysis.style import (
     step_unit,
     styled,
 )
-from hedon.analysis.weight import LAST_AGENTS, last_agents
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes
 _SHARE_WITHIN = 0.98  # of the agents, in each weight; the few beyond would squeeze all others

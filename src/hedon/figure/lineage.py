@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.style import INK, MUTED, draw_message, new_figure, number_log_axis, step_unit, styled
-from hedon.analysis.trace import draw_zero_line
+from hedon.figure.style import INK, MUTED, draw_message, new_figure, number_log_axis, step_unit, styled
+from hedon.figure.trace import draw_zero_line
 from hedon.statistic.interval import SHOWN_FROM, mean_interval
 
 

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.population import history
-from hedon.analysis.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
+from hedon.figure.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, styled
+from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
 _WIDEST = 10.0  # figure [inch]

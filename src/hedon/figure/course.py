@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import polars as pl
 from matplotlib.figure import Figure
 
-from hedon.analysis.style import SEED_COLORS, new_figure, styled
-from hedon.analysis.trace import draw_time_axis, draw_traces, last_step
+from hedon.figure.style import SEED_COLORS, new_figure, styled
+from hedon.figure.trace import draw_time_axis, draw_traces, last_step
 
 
 def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str]) -> Figure:

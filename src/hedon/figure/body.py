@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Wedge
 from numpy.typing import NDArray
 
-from hedon.analysis.style import BLUE, INK, MUTED, VERMILION, new_figure, styled
 from hedon.config import Config
 from hedon.config.food import FoodConfig
+from hedon.figure.style import BLUE, INK, MUTED, VERMILION, new_figure, styled
 
 _BODY = "#dce8f2"
 _MOUTH_WIDTH = 0.1  # of the radius

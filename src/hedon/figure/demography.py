@@ -10,9 +10,9 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hedon.analysis.population import run_tail
-from hedon.analysis.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 from hedon.config import Config
 from hedon.demography.life import expected_lifetime, reproduction_number
+from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 
 _LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
 

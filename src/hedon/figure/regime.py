@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from hedon.analysis.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, ROOM
-from hedon.analysis.style import GREEN, INK, ORANGE, PALE, VIOLET, draw_message, new_figure, step_unit, styled
+from hedon.figure.style import GREEN, INK, ORANGE, PALE, VIOLET, draw_message, new_figure, step_unit, styled
 
 REGIME_COLORS = {ROOM: ORANGE, FOOD: GREEN, IDLE: VIOLET, BETWEEN: PALE, EXTINCT: INK}
 _NAMED_WORLDS = 24  # rows that still have room for their seed

@@ -8,9 +8,9 @@ from matplotlib.lines import Line2D
 
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, Fate
 from hedon.analysis.population import history
-from hedon.analysis.style import BLUE, ORANGE, VERMILION, new_figure, step_unit, styled
-from hedon.analysis.trace import draw_time_axis, draw_zero_line, last_step
 from hedon.analysis.world import WorldRecord
+from hedon.figure.style import BLUE, ORANGE, VERMILION, new_figure, step_unit, styled
+from hedon.figure.trace import draw_time_axis, draw_zero_line, last_step
 
 _COLORS = {STANDING: BLUE, HEADING: ORANGE, EXTINCT: VERMILION}
 _POINTS = 100

@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, FancyArrowPatch
 
-from hedon.analysis.figure_world import AGENT_COLOR, draw_agents, draw_foods, draw_walls
-from hedon.analysis.style import INK, MUTED, food_colors, new_figure, styled
 from hedon.config import Config
 from hedon.config.arena import walls
 from hedon.config.food import PlacementConfig
+from hedon.figure.style import INK, MUTED, food_colors, new_figure, styled
+from hedon.figure.world import AGENT_COLOR, draw_agents, draw_foods, draw_walls
 from hedon.record.snapshot import Snapshot
 
 _WIDTH = 9.0  # of the figure [inch]

@@ -5,7 +5,7 @@ import polars as pl
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.style import INK, draw_message, new_figure, number_log_axis, seed_color, step_unit, styled
+from hedon.figure.style import INK, draw_message, new_figure, number_log_axis, seed_color, step_unit, styled
 
 _LEGEND_SEEDS = 10
 _SHOWN_SHARE = 0.01  # of the newborn, below which the long tail of the axes is cut

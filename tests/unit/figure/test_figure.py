@@ -9,15 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
-from hedon.analysis.figure_history import draw_history
-from hedon.analysis.figure_population import draw_population
-from hedon.analysis.figure_weights import draw_weights
-from hedon.analysis.figure_world import draw_world, ray_segments, telling_agent
-from hedon.analysis.outline import wall_outline
 from hedon.analysis.population import history
 from hedon.analysis.report import write_report
-from hedon.analysis.style import food_colors, save_figure, step_unit
-from hedon.analysis.trace import over_worlds
+from hedon.figure.history import draw_history
+from hedon.figure.outline import wall_outline
+from hedon.figure.population import draw_population
+from hedon.figure.style import food_colors, save_figure, step_unit
+from hedon.figure.trace import over_worlds
+from hedon.figure.weight import draw_weights
+from hedon.figure.world import draw_world, ray_segments, telling_agent
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.record.snapshot import Snapshot

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.special import voigt_profile
 
-from hedon.analysis.style import INK, MUTED, new_figure, seed_color, styled
-from hedon.analysis.trace import draw_zero_line
 from hedon.analysis.walk import MutationLaw, lineages
+from hedon.figure.style import INK, MUTED, new_figure, seed_color, styled
+from hedon.figure.trace import draw_zero_line
 
 LENGTHS = (100, 1000)
 """Numbers of mutations after which weights are shown; as in the paper."""
