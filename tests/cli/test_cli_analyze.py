@@ -4,9 +4,9 @@ from pathlib import Path
 from synthetic_run import write_run
 from typer.testing import CliRunner
 
-from hedon.analysis.topic.topic import TopicError
 from hedon.cli.main import app
 from hedon.record.error import RecordError
+from hedon.report.topic import TopicError
 
 
 def test_analyze_prints_and_writes(tmp_path: Path) -> None:

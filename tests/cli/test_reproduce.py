@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import hedon
-from hedon.analysis.item.catalogue import ITEMS
+from hedon.replication.catalogue import ITEMS
 
 LAWS = ("hazard", "birth", "walk", "body", "parameters")
 

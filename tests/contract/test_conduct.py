@@ -13,10 +13,10 @@ from hedon.config import load_config
 from hedon.experiment.plan import Moment
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
-from hedon.reproduce.conduct import conduct, next_share
-from hedon.reproduce.plan import Job
-from hedon.reproduce.progress import PlanDisplay
-from hedon.reproduce.work import Outcome
+from hedon.replication.run.conduct import conduct, next_share
+from hedon.replication.run.plan import Job
+from hedon.replication.run.progress import PlanDisplay
+from hedon.replication.run.work import Outcome
 
 STEPS = 640
 

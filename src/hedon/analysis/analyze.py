@@ -9,12 +9,12 @@ from typing import Any
 
 from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.topic.topic import TOPICS, run_topics
 from hedon.analysis.world import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
+from hedon.report.topic import TOPICS, run_topics
 
 ANALYSIS = "analysis"
 """Folder of the answers within the folder of a single run."""

@@ -11,10 +11,10 @@ import polars as pl
 from hedon.analysis.food import food_per_agent_step, food_per_step
 from hedon.analysis.ledger import world_ledger
 from hedon.analysis.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.paper import paper_figures
 from hedon.analysis.population import extinct_step, last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.weight import LAST_AGENTS, world_weights
 from hedon.record.reader import Run
+from hedon.replication.paper import paper_figures
 from hedon.statistic.interval import mean_interval
 
 _OVER_WORLDS = {

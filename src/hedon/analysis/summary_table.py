@@ -6,9 +6,9 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.paper import STEPS
 from hedon.analysis.weight import LAST_AGENTS
 from hedon.printed_table import PrintedTable
+from hedon.replication.paper import STEPS
 from hedon.statistic.interval import SHOWN_FROM
 
 _NOTHING = "-"

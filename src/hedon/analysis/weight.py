@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import polars as pl
 
+from hedon.analysis.world import WorldRecord
+
 LAST_AGENTS = 5000  # whose weights the paper shows
 
 
@@ -29,6 +31,12 @@ def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
         count: per world; all where there are fewer.
     """
     return agents.sort("world", "birth_step", "agent_id").group_by("world", maintain_order=True).tail(count)
+
+
+def last_mean(weight: str, world: WorldRecord) -> float | None:
+    """Mean of a weight over the 5000 agents of a world that were born last; None without agents."""
+    values = last_agents(world.agents)[weight].to_numpy()
+    return float(values.mean(dtype=float)) if len(values) else None
 
 
 def world_weights(

@@ -44,8 +44,8 @@ def analyze(
     from hedon.analysis.analysis_table import analysis_group
     from hedon.analysis.analyze import ANALYSIS, write_analysis
     from hedon.analysis.analyze import analyze as answer
-    from hedon.analysis.topic.topic import choose_topics
     from hedon.record.reader import open_run
+    from hedon.report.topic import choose_topics
 
     topics = choose_topics(only)
     analysis = answer([open_run(run) for run in runs], topics)

@@ -14,8 +14,8 @@ from hedon.experiment.argument import MAX_STEPS
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.analysis.item.request import Request
-    from hedon.reproduce.plan import Job
+    from hedon.replication.request import Request
+    from hedon.replication.run.plan import Job
 
 LIST = "list"
 
@@ -61,10 +61,10 @@ def reproduce(
       hedon reproduce faults
     """
     # Imported here because this takes seconds: other commands must not wait for it.
-    from hedon.analysis.item.request import Request
     from hedon.config import FIDELITIES
     from hedon.config.problem import nearest
-    from hedon.reproduce.choice import choose_items
+    from hedon.replication.choice import choose_items
+    from hedon.replication.request import Request
 
     names = items or []
     if fidelity not in FIDELITIES:
@@ -82,19 +82,19 @@ def reproduce(
 
 
 def _list(request: "Request", runs: Path, threads: int, console: "Console") -> None:
-    from hedon.reproduce.listing import listing
+    from hedon.replication.run.listing import listing
 
     console.print(listing(request, runs, threads))
 
 
 def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
-    from hedon.analysis.item.gather import find_runs, gather
-    from hedon.analysis.item.request import needs
-    from hedon.analysis.item.result import write_items
     from hedon.record.provenance import usable_cpus
-    from hedon.reproduce.conduct import conduct
-    from hedon.reproduce.plan import plan_jobs
-    from hedon.reproduce.progress import PlanDisplay
+    from hedon.replication.gather import find_runs, gather
+    from hedon.replication.request import needs
+    from hedon.replication.run.conduct import conduct
+    from hedon.replication.run.plan import plan_jobs
+    from hedon.replication.run.progress import PlanDisplay
+    from hedon.report.replication import write_items
 
     wanted = needs(request)
     found, _ = find_runs(runs, wanted)

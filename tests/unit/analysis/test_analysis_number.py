@@ -6,7 +6,6 @@ import pytest
 from hedon.analysis.food import food_per_agent_step, food_per_step
 from hedon.analysis.ledger import world_ledger
 from hedon.analysis.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.paper import EXTINCTION, PAPER, paper_figures
 from hedon.analysis.population import (
     extinct_step,
     history,
@@ -16,6 +15,7 @@ from hedon.analysis.population import (
     run_tail,
 )
 from hedon.analysis.weight import last_agents, world_weights
+from hedon.replication.paper import EXTINCTION, PAPER, paper_figures
 from hedon.statistic.interval import mean_interval
 
 # Three dead and one alive. Foods per step of life: 2/100, 0/300, 12/600.

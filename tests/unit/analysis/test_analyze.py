@@ -13,8 +13,8 @@ from hedon.analysis.analyze import Analysis, analyze, write_analysis
 from hedon.analysis.lifetime import mean_lifetime
 from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.topic.result import table
-from hedon.analysis.topic.topic import TOPICS, TopicError, choose_topics
 from hedon.record.reader import open_run
+from hedon.report.topic import TOPICS, TopicError, choose_topics
 
 
 @pytest.fixture(scope="module")

@@ -5,13 +5,13 @@ from dataclasses import asdict
 import numpy as np
 import polars as pl
 
-from hedon.analysis.claim import last_mean
 from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.drift import drift_tests, standard_drift
 from hedon.analysis.genealogy import genealogy
 from hedon.analysis.selection import selection
 from hedon.analysis.topic.life import Conditions, window_count
 from hedon.analysis.topic.result import SEED, ResultTable, generator, labels, over_worlds, table
+from hedon.analysis.weight import last_mean
 from hedon.statistic.mode import ENOUGH_WORLDS, modes
 from hedon.statistic.price import price
 

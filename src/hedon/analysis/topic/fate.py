@@ -1,4 +1,4 @@
-"""Topics about whole worlds: genealogy, regimes, and what they say of the paper's claims."""
+"""Topics about whole worlds: genealogy and regimes."""
 
 from dataclasses import asdict
 
@@ -10,7 +10,6 @@ from hedon.analysis.lineage import coalescence, lines_through_time
 from hedon.analysis.regime import REGIMES, regimes
 from hedon.analysis.topic.life import Conditions
 from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
-from hedon.analysis.verdict import verdicts
 
 _TIMES = 20  # at which the coalescence is told
 _LINE_TIMES = 100  # at which lines are counted
@@ -80,17 +79,3 @@ def regime(conditions: Conditions) -> list[ResultTable]:
     )
     summary = over_worlds(shares, (), {name: name for name in REGIMES})
     return [table("regime", "Share of the run in each regime, means over worlds", summary, note), over_time]
-
-
-def verdict(conditions: Conditions) -> list[ResultTable]:
-    """The paper's claims."""
-    found = verdicts(world for worlds in conditions.values() for world in worlds)
-    rows = [asdict(row) for row in found]
-    note = (
-        "verdict: the 95 % interval over worlds lies within the region in which the claim holds, outside of it, or "
-        "across its border. Fewer than three worlds, or shorter ones than the paper's, decide nothing. against_paper "
-        "is another question: whether our share differs from the paper's count, by p_paper (mid-p Fisher). That no "
-        "difference is shown does not mean that there is none. Means cannot be compared, since the paper gives no "
-        "spread. Lifetimes and food are read as unweighted means over agents; the paper does not say."
-    )
-    return [table("verdict", "The paper's claims", rows, note)]

@@ -1,0 +1,81 @@
+"""Items from the settings alone: the laws of death, birth and mutation."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hedon.analysis.topic.result import SEED
+from hedon.analysis.walk import mutation_law
+from hedon.config import Config
+from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
+from hedon.figure.law import draw_birth, draw_hazard
+from hedon.figure.named import NamedFigure
+from hedon.figure.walk import draw_walks
+from hedon.replication.item.condition import BASELINE
+from hedon.replication.item.item import Item, Material
+
+
+def window_births(config: Config) -> int:
+    """The births that an arena full of agents without energy tries in a window of learning."""
+    chance = float(birth_rate(config.birth, 0.0))
+    return max(round(config.population.capacity * chance * config.learning.rollout_steps), 1)
+
+
+def _hazard(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
+    caption = (
+        f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
+        "agent can hold."
+    )
+    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(config.hazard), caption)
+
+
+def _birth(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    children = float(reproduction_number(config.hazard, config.birth, 0.0))
+    caption = (
+        f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
+        "at 1, if all of them find a place."
+    )
+    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(config), caption)
+
+
+def _walk(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    law, births = mutation_law(config), window_births(config)
+    question, caption = "Where do mutations alone carry a weight that nothing selects?", ""
+    if law.frozen:
+        caption = (
+            f"The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
+            f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
+            "without energy tries in a window."
+        )
+    yield NamedFigure("walk", question, draw_walks(law, births, np.random.default_rng(SEED)), caption)
+
+
+LAWS: tuple[Item, ...] = (
+    Item(
+        "hazard",
+        "The chance of death",
+        "figure",
+        "The hazard by energy and by age, and survival at constant energy. "
+        "The formula is that of the released code: as printed, it gives a mean life of 209 steps at an energy of 20.",
+        _hazard,
+    ),
+    Item(
+        "birth",
+        "The chance of a birth",
+        "figure",
+        "The chance of a birth by energy. The sign of its exponent is that of the released code: "
+        "as printed, the chance would fall with energy.",
+        _birth,
+    ),
+    Item(
+        "walk",
+        "The random walk of mutations",
+        "figure",
+        "Weights that mutate 100 and 1000 times without selection.",
+        _walk,
+    ),
+)

@@ -1,0 +1,55 @@
+"""The list of topics, by the names that `hedon analyze --only` takes."""
+
+import difflib
+from collections.abc import Callable, Sequence
+
+from hedon.analysis.topic import evolution, fate, life, stability
+from hedon.analysis.topic.life import Conditions
+from hedon.analysis.topic.result import ResultTable
+from hedon.error import HedonError
+from hedon.replication.claim.table import verdict
+
+TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
+    "verdict": verdict,
+    "regime": fate.regime,
+    "lifetime": life.lifetime,
+    "food": life.food,
+    "energy": life.energy,
+    "reproduction": life.reproductive_success,
+    "generation": life.generation,
+    "genealogy": fate.genealogy_topic,
+    "genome": evolution.genome,
+    "selection": evolution.selection_topic,
+    "price": evolution.price_topic,
+    "curvature": stability.curvature_topic,
+    "drift": evolution.drift,
+    "reversion": stability.reversion_topic,
+    "mode": evolution.mode,
+}
+
+
+class TopicError(HedonError):
+    """There is no topic of that name."""
+
+
+def choose_topics(names: str | None) -> tuple[str, ...]:
+    """The topics of a list such as "lifetime,selection", in their order; all of them for None.
+
+    Raises:
+        TopicError: one of them is none.
+    """
+    if names is None:
+        return tuple(TOPICS)
+    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    for name in wanted:
+        if name not in TOPICS:
+            near = difflib.get_close_matches(name, TOPICS, n=1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise TopicError(f"--only: there is no topic {name!r}{hint} There are: {', '.join(TOPICS)}")
+    return tuple(name for name in TOPICS if name in wanted)
+
+
+def run_topics(conditions: Conditions, names: Sequence[str] = tuple(TOPICS)) -> list[ResultTable]:
+    """The tables of some topics; those without rows are left out."""
+    tables = [table for name in names for table in TOPICS[name](conditions)]
+    return [table for table in tables if not table.rows.is_empty()]
