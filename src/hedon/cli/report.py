@@ -38,9 +38,9 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
 
-    from hedon.analysis.report import write_report
     from hedon.analysis.summary_table import summary_table
     from hedon.record.reader import open_run
+    from hedon.report.run import write_report
 
     runs = [open_run(path) for path in (run, *others)]
     files = write_report(*runs, folder=out)

@@ -7,8 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.page import FigureFile
-from hedon.analysis.summary import plain
 from hedon.analysis.topic.fate import regime
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.analysis.world import WorldRecord, by_condition
@@ -21,7 +19,9 @@ from hedon.record.lock import one_writer
 from hedon.replication.claim.table import verdict
 from hedon.replication.gather import Gathered
 from hedon.replication.item.item import Item, Material
+from hedon.report.page import FigureFile
 from hedon.report.replication_page import Made, html_page, markdown_page
+from hedon.report.summary import plain
 
 TABLES = "tables"
 """Folder of the tables within that of a reproduction."""

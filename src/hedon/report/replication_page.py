@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hedon.analysis.page import FigureFile, condition_context, render, runs_context, table_context
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import by_condition
 from hedon.replication.gather import Gathered
 from hedon.replication.item.item import Item
+from hedon.report.page import FigureFile, condition_context, render, runs_context, table_context
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,12 @@ class Made:
 
 def html_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
     """The page as HTML that needs no other file."""
-    return render("reproduction.html.j2", _context(gathered, made, overall))
+    return render("replication.html.j2", _context(gathered, made, overall))
 
 
 def markdown_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
     """The page as Markdown, with the figures as files beside it."""
-    return render("reproduction.md.j2", _context(gathered, made, overall))
+    return render("replication.md.j2", _context(gathered, made, overall))
 
 
 def _context(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
 from hedon.analysis.population import history
-from hedon.analysis.report import write_report
 from hedon.figure.history import draw_history
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
@@ -21,6 +20,7 @@ from hedon.figure.world import draw_world, ray_segments, telling_agent
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.record.snapshot import Snapshot
+from hedon.report.run import write_report
 
 FIGURES = ["weights", "history", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
 NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.png" for name in FIGURES)]

@@ -6,7 +6,6 @@ import pytest
 from matplotlib.figure import Figure
 from synthetic_run import write_run
 
-from hedon.analysis.analyze import Analysis, analyze
 from hedon.config import load_config
 from hedon.figure.demography import draw_demography
 from hedon.figure.law import draw_birth
@@ -14,6 +13,7 @@ from hedon.figure.lineage import draw_lineages
 from hedon.figure.population import draw_population
 from hedon.figure.survival import draw_survival
 from hedon.record.reader import open_run
+from hedon.report.analysis import Analysis, analyze
 
 BASELINE = load_config("baseline")
 

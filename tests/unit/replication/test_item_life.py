@@ -8,13 +8,13 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.analysis_table import cells
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, read_worlds
 from hedon.record.reader import open_run
 from hedon.replication.item.item import Material
 from hedon.replication.item.life import LIVES
 from hedon.replication.paper import STEPS
+from hedon.report.table import cells
 
 ITEMS = {item.name: item for item in LIVES}
 LIFE, RESTRICTED, MEDIAN = (

@@ -1,6 +1,5 @@
 import pytest
 
-from hedon.analysis.analysis_table import markdown_table
 from hedon.analysis.topic.result import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
 from hedon.config.dump import flatten
@@ -8,6 +7,7 @@ from hedon.config.field import leaves, sections
 from hedon.config.problem import format_value
 from hedon.replication.item.item import Material
 from hedon.replication.item.parameter import CONCERNS, PARAMETERS
+from hedon.report.table import markdown_table
 
 
 def tables(fidelity: str) -> dict[str, ResultTable]:

@@ -8,7 +8,6 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.analysis_table import cells
 from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
 from hedon.analysis.response import RESPONSES, common_to, figures
@@ -19,6 +18,7 @@ from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 from hedon.replication.item.item import Item, Material
 from hedon.replication.study import acting, entropy, fault, noise, released, supply
+from hedon.report.table import cells
 
 ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY, *acting.ACTING]
 

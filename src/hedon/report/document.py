@@ -1,4 +1,4 @@
-"""Makes `docs/records.md` from the schema: `python -m hedon.analysis.document > docs/records.md`.
+"""Makes `docs/records.md` from the schema: `python -m hedon.report.document > docs/records.md`.
 
 Also the table of `docs/figures.md`, which a test compares.
 """
@@ -7,17 +7,17 @@ import sys
 from collections.abc import Mapping
 from dataclasses import fields
 
-from hedon.analysis.report_figure import FIGURES
-from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 from hedon.record.column import Table
 from hedon.record.manifest import Manifest, Session
 from hedon.record.schema import FORMAT_VERSION, run_tables
 from hedon.record.snapshot import Snapshot
+from hedon.report.figure import FIGURES
+from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 
 _HEAD = f"""\
 # What a run leaves behind
 
-This page is made from the schema by `uv run python -m hedon.analysis.document > docs/records.md`.
+This page is made from the schema by `uv run python -m hedon.report.document > docs/records.md`.
 Format {FORMAT_VERSION}.
 
 ```

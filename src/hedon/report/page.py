@@ -8,10 +8,6 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from hedon.analysis.analysis_table import cells, is_numeric
-from hedon.analysis.analyze import Analysis
-from hedon.analysis.markdown import escape_markdown, pipe_table
-from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
 from hedon.config import dump_toml, load_config
@@ -20,6 +16,10 @@ from hedon.config.load import PRESETS
 from hedon.config.problem import format_value
 from hedon.demography.forecast import setting_warnings
 from hedon.record.reader import Run
+from hedon.report.analysis import Analysis
+from hedon.report.markdown import escape_markdown, pipe_table
+from hedon.report.summary import plain
+from hedon.report.table import cells, is_numeric
 
 
 class Markdown(str):
@@ -60,7 +60,7 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     """A page from one of the templates; whatever a template prints is escaped, but for what it calls `verbatim`."""
     is_html = template.endswith(".html.j2")
     environment = Environment(
-        loader=PackageLoader("hedon.analysis", "template"),
+        loader=PackageLoader("hedon.report", "template"),
         autoescape=is_html,
         finalize=None if is_html else _markdown,
         undefined=StrictUndefined,

@@ -10,10 +10,6 @@ import pytest
 from markdown_it import MarkdownIt
 from synthetic_run import write_run
 
-from hedon.analysis.analyze import Analysis, analyze
-from hedon.analysis.page import FigureFile, report_pages
-from hedon.analysis.report import write_report
-from hedon.analysis.report_figure import FIGURES
 from hedon.figure.lineage import draw_lineages
 from hedon.figure.regime import REGIME_COLORS, draw_regimes
 from hedon.figure.selection import draw_selection
@@ -21,6 +17,10 @@ from hedon.figure.style import svg_bytes, weight_colors, weight_titles
 from hedon.figure.survival import draw_survival
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
+from hedon.report.analysis import Analysis, analyze
+from hedon.report.figure import FIGURES
+from hedon.report.page import FigureFile, report_pages
+from hedon.report.run import write_report
 
 # Both give the same name to their pictures, and hold what means something in Markdown or in HTML.
 FOLDERS = ["a|b *c* <i>d `e` [f](g) &lt; #", "_a_ ~~b~~ \\| $c$\n# <i>d e f g lt"]

@@ -7,11 +7,11 @@ import pytest
 from rich.console import Console
 from synthetic_run import write_run
 
-from hedon.analysis.document import figure_table, records_page
-from hedon.analysis.summary import plain, summarize
-from hedon.analysis.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 from hedon.analysis.summary_table import format_number, summary_table
 from hedon.record.reader import open_run
+from hedon.report.document import figure_table, records_page
+from hedon.report.summary import plain, summarize
+from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 
 ROOT = Path(__file__).parents[3]
 
@@ -131,12 +131,12 @@ def test_plain_values() -> None:
 
 def test_the_page_of_the_records_is_current() -> None:
     page = (ROOT / "docs/records.md").read_text(encoding="utf-8")
-    assert page == records_page(), "run: uv run python -m hedon.analysis.document > docs/records.md"
+    assert page == records_page(), "run: uv run python -m hedon.report.document > docs/records.md"
 
 
 def test_the_page_of_the_figures_has_their_captions() -> None:
     page = (ROOT / "docs/figures.md").read_text(encoding="utf-8")
-    assert figure_table() in page, "put there what hedon.analysis.document.figure_table() gives"
+    assert figure_table() in page, "put there what hedon.report.document.figure_table() gives"
 
 
 def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:

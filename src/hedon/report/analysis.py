@@ -7,13 +7,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
+from hedon.report.summary import plain
 from hedon.report.topic import TOPICS, run_topics
 
 ANALYSIS = "analysis"

@@ -8,12 +8,12 @@ import pytest
 from rich.console import Console
 from synthetic_run import write_run
 
-from hedon.analysis.analysis_table import analysis_group, cells
-from hedon.analysis.analyze import Analysis, analyze, write_analysis
 from hedon.analysis.lifetime import mean_lifetime
-from hedon.analysis.markdown import escape_markdown, pipe_table
 from hedon.analysis.topic.result import table
 from hedon.record.reader import open_run
+from hedon.report.analysis import Analysis, analyze, write_analysis
+from hedon.report.markdown import escape_markdown, pipe_table
+from hedon.report.table import analysis_group, cells
 from hedon.report.topic import TOPICS, TopicError, choose_topics
 
 

@@ -6,10 +6,10 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.markdown import pipe_table
 from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
 from hedon.printed_table import PrintedTable
+from hedon.report.markdown import pipe_table
 from hedon.statistic.interval import SHOWN_FROM
 
 HIDDEN = ("source", "region_low", "region_high", "window")

@@ -11,11 +11,6 @@ from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
 
-from hedon.analysis.analyze import ANALYSIS, Analysis, analyze, write_analysis
-from hedon.analysis.condition_figure import condition_figures
-from hedon.analysis.page import FigureFile, report_pages
-from hedon.analysis.report_figure import WORLD
-from hedon.analysis.summary import summarize
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import food_colors, save_figure, svg_bytes
 from hedon.figure.world import draw_world, telling_agent
@@ -25,6 +20,11 @@ from hedon.record.folder import FIGURES, SUMMARY
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.record.snapshot import load_snapshot
+from hedon.report.analysis import ANALYSIS, Analysis, analyze, write_analysis
+from hedon.report.condition import condition_figures
+from hedon.report.figure import WORLD
+from hedon.report.page import FigureFile, report_pages
+from hedon.report.summary import summarize
 
 HTML, MARKDOWN = "report.html", "report.md"
 

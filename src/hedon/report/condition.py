@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import polars as pl
 
-from hedon.analysis import report_figure
 from hedon.analysis.topic.result import ResultTable
 from hedon.analysis.world import WorldRecord
 from hedon.figure.demography import draw_demography
@@ -17,6 +16,7 @@ from hedon.figure.selection import draw_selection
 from hedon.figure.style import food_colors, weight_colors, weight_titles
 from hedon.figure.survival import draw_survival
 from hedon.figure.weight import draw_weights
+from hedon.report import figure
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:
@@ -38,16 +38,16 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
         return mine.get(name, pl.DataFrame())
 
     kinds, neutral = first.food_kinds, first.neutral_names
-    yield report_figure.WEIGHTS.drawn(draw_weights(agents, kinds, neutral))
-    yield report_figure.HISTORY.drawn(draw_history(population, kinds, neutral, colors))
-    yield report_figure.POPULATION.drawn(draw_population(population, kinds, colors))
-    yield report_figure.REGIME.drawn(draw_regimes(rows("regime_time")))
-    yield report_figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))
+    yield figure.WEIGHTS.drawn(draw_weights(agents, kinds, neutral))
+    yield figure.HISTORY.drawn(draw_history(population, kinds, neutral, colors))
+    yield figure.POPULATION.drawn(draw_population(population, kinds, colors))
+    yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
+    yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))
     selected = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
-    yield report_figure.SELECTION.drawn(selected)
-    yield report_figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
+    yield figure.SELECTION.drawn(selected)
+    yield figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
     energies = draw_demography(first.config, [world.population for world in worlds])
-    yield report_figure.DEMOGRAPHY.drawn(energies)
+    yield figure.DEMOGRAPHY.drawn(energies)
 
 
 def _of_condition(rows: pl.DataFrame, condition: str) -> pl.DataFrame:
