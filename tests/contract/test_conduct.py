@@ -9,13 +9,13 @@ import pytest
 from resumed_run import SMALL, assert_same_run, small_run
 from rich.console import Console
 
+from hedon.cli.display.plan import PlanDisplay
 from hedon.config import load_config
 from hedon.experiment.plan import Moment
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
 from hedon.replication.run.conduct import conduct, next_share
 from hedon.replication.run.plan import Job
-from hedon.replication.run.progress import PlanDisplay
 from hedon.replication.run.work import Outcome
 
 STEPS = 640

@@ -15,7 +15,7 @@ STAGES = ("interpreter", "imports", "config", "world", "first_step")
 PROGRAM = """
 import sys, time
 seen = [time.monotonic()]
-import hedon.cli.main, hedon.experiment.progress, hedon.experiment.run
+import hedon.cli.main, hedon.cli.display.run, hedon.experiment.run
 from hedon.config.load import load_config
 from hedon.experiment.simulation import Simulation
 seen.append(time.monotonic())

@@ -41,10 +41,10 @@ def analyze(
       hedon analyze runs/a runs/b --only lifetime,selection --out answers
     """
     # Imported here because this takes seconds: other commands must not wait for it.
+    from hedon.cli.display.analysis import analysis_group
     from hedon.record.reader import open_run
     from hedon.report.analysis import ANALYSIS, write_analysis
     from hedon.report.analysis import analyze as answer
-    from hedon.report.table import analysis_group
     from hedon.report.topic import choose_topics
 
     topics = choose_topics(only)

@@ -96,7 +96,7 @@ def _print_machine(console: "Console", measured: "Bench") -> None:
 
 
 def _print_table(console: "Console", table: "Table", caption: str) -> None:
-    from hedon.printed_table import PrintedTable
+    from hedon.cli.display.table import PrintedTable
 
     text = [i for i, heading in enumerate(table.headings) if heading == "kernel"]
     console.print()

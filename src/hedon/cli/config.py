@@ -23,8 +23,8 @@ Overrides = Annotated[
 
 def presets() -> None:
     """List the presets, and the fidelities that can be combined with them."""
+    from hedon.cli.display.table import PrintedTable
     from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
-    from hedon.printed_table import PrintedTable
 
     rows = []
     for name in PRESETS:

@@ -17,7 +17,7 @@ def demography(source: Source, fidelity: Fidelity = None, overrides: Overrides =
       hedon demography baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
       hedon demography my.toml --fidelity text
     """
-    from hedon.analysis.forecast_table import forecast_group
+    from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config
     from hedon.demography.forecast import forecast
 

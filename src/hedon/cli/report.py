@@ -38,7 +38,7 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
 
-    from hedon.analysis.summary_table import summary_table
+    from hedon.cli.display.summary import summary_table
     from hedon.record.reader import open_run
     from hedon.report.run import write_report
 

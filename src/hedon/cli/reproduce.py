@@ -82,18 +82,19 @@ def reproduce(
 
 
 def _list(request: "Request", runs: Path, threads: int, console: "Console") -> None:
-    from hedon.replication.run.listing import listing
+    from hedon.cli.display.listing import listing
+    from hedon.replication.run.cost import request_cost
 
-    console.print(listing(request, runs, threads))
+    console.print(listing(request, request_cost(request, runs, threads)))
 
 
 def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
+    from hedon.cli.display.plan import PlanDisplay
     from hedon.record.provenance import usable_cpus
     from hedon.replication.gather import find_runs, gather
     from hedon.replication.request import needs
     from hedon.replication.run.conduct import conduct
     from hedon.replication.run.plan import plan_jobs
-    from hedon.replication.run.progress import PlanDisplay
     from hedon.report.replication import write_items
 
     wanted = needs(request)

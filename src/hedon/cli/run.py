@@ -75,7 +75,7 @@ def run(
 
 def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
     """Prints what will be run, shows progress while `go` runs it, and reports; `begun` says where the run continues."""
-    from hedon.experiment.progress import duration, make_display
+    from hedon.cli.display.run import duration, make_display
 
     config, console = plan.config, make_console()
     worlds, out = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}", printable(str(plan.out))

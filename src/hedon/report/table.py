@@ -1,17 +1,13 @@
-"""Tables of an analysis for the terminal, for Markdown and for HTML: the same cells everywhere."""
+"""The cells of a table: the same on a terminal, in Markdown and in HTML."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rich.console import Group
-from rich.text import Text
-
-from hedon.analysis.summary_table import format_number
 from hedon.analysis.topic.result import ResultTable
-from hedon.printed_table import PrintedTable
-from hedon.report.markdown import pipe_table
 from hedon.statistic.interval import SHOWN_FROM
 
+NOTHING = "-"
+"""Stands for a number that there is not."""
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that only the files hold."""
 _INTERVAL = ("low", "high")
@@ -46,21 +42,13 @@ def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
     return all(not row[column] or row[column][0] in "0123456789-" for row in rows)
 
 
-def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
-    """What `hedon analyze` prints: the short tables with their notes."""
-    parts: list[PrintedTable | Text] = []
-    for table in tables.values():
-        if table.shown:
-            parts.append(_printed(table))
-            if table.note:
-                parts += [Text(table.note, style="dim"), Text()]
-    return Group(*parts)
-
-
-def _printed(table: ResultTable) -> PrintedTable:
-    headers, rows = cells(table, (*HIDDEN, "text"))  # a terminal is too narrow for a claim in full
-    text = [i for i in range(len(headers)) if not is_numeric(rows, i)]
-    return PrintedTable(headers, rows, title=table.title, text=text)
+def format_number(value: float | None) -> str:
+    """A number as a reader wants it: whole from 1000 on, else three figures; a dash for None."""
+    if value is None:
+        return NOTHING
+    if isinstance(value, int) or abs(value) >= 1000:
+        return f"{value:,.0f}"
+    return f"{value:#.3g}".rstrip(".") if abs(value) >= 0.01 or value == 0 else f"{value:.2g}"
 
 
 def _cell(row: Mapping[str, Any], column: str, merged: bool) -> str:
@@ -81,9 +69,3 @@ def _format(value: Any) -> str:
     if isinstance(value, float) and 0 < abs(value) < 1e-12:
         return "0"  # rounding
     return format_number(value) if isinstance(value, (int, float)) else str(value)
-
-
-def markdown_table(table: ResultTable) -> str:
-    """The cells as a Markdown table."""
-    headers, rows = cells(table)
-    return pipe_table(headers, rows)

@@ -7,7 +7,7 @@ from hedon.config.field import leaves, sections
 from hedon.config.problem import format_value
 from hedon.replication.item.item import Material
 from hedon.replication.item.parameter import CONCERNS, PARAMETERS
-from hedon.report.table import markdown_table
+from hedon.report.table import cells
 
 
 def tables(fidelity: str) -> dict[str, ResultTable]:
@@ -68,5 +68,6 @@ def test_conditions_tell_what_presets_change() -> None:
 
 
 def test_nothing_that_a_reader_needs_is_hidden_on_a_page() -> None:
-    head = markdown_table(tables("corrected")["parameters_food"]).splitlines()[0]
-    assert head == "| setting | meaning | value | unit | origin | in corrected | in released | in text |"
+    headers, _ = cells(tables("corrected")["parameters_food"])
+    columns = ["setting", "meaning", "value", "unit", "origin", "in corrected", "in released", "in text"]
+    assert headers == columns

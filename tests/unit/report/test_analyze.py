@@ -10,10 +10,11 @@ from synthetic_run import write_run
 
 from hedon.analysis.lifetime import mean_lifetime
 from hedon.analysis.topic.result import table
+from hedon.cli.display.analysis import analysis_group
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze, write_analysis
 from hedon.report.markdown import escape_markdown, pipe_table
-from hedon.report.table import analysis_group, cells
+from hedon.report.table import cells
 from hedon.report.topic import TOPICS, TopicError, choose_topics
 
 

@@ -7,11 +7,12 @@ import pytest
 from rich.console import Console
 from synthetic_run import write_run
 
-from hedon.analysis.summary_table import format_number, summary_table
+from hedon.cli.display.summary import summary_table
 from hedon.record.reader import open_run
 from hedon.report.document import figure_table, records_page
 from hedon.report.summary import plain, summarize
 from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
+from hedon.report.table import format_number
 
 ROOT = Path(__file__).parents[3]
 

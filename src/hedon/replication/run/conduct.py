@@ -9,11 +9,11 @@ from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Protocol
 
 from hedon.experiment.interrupt import SIGNALS, count_interrupts
 from hedon.experiment.plan import Moment
 from hedon.replication.run.plan import Job
-from hedon.replication.run.progress import PlanDisplay
 from hedon.replication.run.work import Outcome, work
 
 _LOOK_SECONDS = 0.2
@@ -41,7 +41,19 @@ class _Worker:
     ready: bool = False
 
 
-def conduct(jobs: Sequence[Job], threads: int, display: PlanDisplay) -> dict[Path, Outcome]:
+class Display(Protocol):
+    """A progress display of several runs."""
+
+    def update(self, job: Job, moment: Moment) -> None:
+        """Shows a moment of a run; called about five times a second for each."""
+        ...
+
+    def end(self, job: Job, outcome: Outcome) -> None:
+        """Shows how a run ended."""
+        ...
+
+
+def conduct(jobs: Sequence[Job], threads: int, display: Display) -> dict[Path, Outcome]:
     """Makes the runs, each in its own process.
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
@@ -122,7 +134,7 @@ def _blocked_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _hear(worker: _Worker, display: PlanDisplay) -> Outcome | None:
+def _hear(worker: _Worker, display: Display) -> Outcome | None:
     """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
     try:
         said = worker.link.recv()

@@ -9,8 +9,8 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
+from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.printed_table import PrintedTable
 from hedon.record.schema import weight_names
 
 FIRST_LINE_SECONDS = 1.0

@@ -5,9 +5,9 @@ import io
 import pytest
 from rich.console import Console
 
+from hedon.cli.display.run import LiveDisplay
+from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.experiment.progress import LiveDisplay
-from hedon.printed_table import PrintedTable
 
 HEADERS = ("item", "what it is", "steps of a world", "95 % interval", "needs")
 ROWS = [

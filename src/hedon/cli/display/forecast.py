@@ -6,9 +6,9 @@ from rich.console import Group
 from rich.text import Text
 
 from hedon.analysis.topic.result import ResultTable, table
+from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast
-from hedon.report.table import analysis_group
 
 
 def forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:

@@ -11,9 +11,9 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
+from hedon.cli.display.run import duration
+from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.experiment.progress import duration
-from hedon.printed_table import PrintedTable
 from hedon.replication.run.plan import Job
 from hedon.replication.run.work import Outcome
 

@@ -2,8 +2,8 @@
 
 import io
 
+from hedon.cli.display.run import LineDisplay
 from hedon.experiment.plan import Moment
-from hedon.experiment.progress import LineDisplay
 
 WINDOW = 1000
 ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean": 0.0, "w_action_mean": 0.0}

@@ -7,11 +7,11 @@ from rich.console import Group
 from rich.text import Text
 
 from hedon.analysis.weight import LAST_AGENTS
-from hedon.printed_table import PrintedTable
+from hedon.cli.display.table import PrintedTable
 from hedon.replication.paper import STEPS
+from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
 
-_NOTHING = "-"
 _QUANTITIES = {  # key of the summary: name, key among the paper's figures
     "mean_lifetime": ("mean lifetime of the dead [step]", "mean_lifetime"),
     "food_per_step": ("food per step, mean over agents [1/step]", "food_per_step"),
@@ -54,15 +54,6 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
         _weights(summary),
         *(Text(note, style="dim") for note in notes),
     )
-
-
-def format_number(value: float | None) -> str:
-    """A number as a reader wants it: whole from 1000 on, else three figures; a dash for None."""
-    if value is None:
-        return _NOTHING
-    if isinstance(value, int) or abs(value) >= 1000:
-        return f"{value:,.0f}"
-    return f"{value:#.3g}".rstrip(".") if abs(value) >= 0.01 or value == 0 else f"{value:.2g}"
 
 
 def _over_worlds(summary: Mapping[str, Any]) -> list[PrintedTable | Text]:
@@ -113,11 +104,11 @@ def _extinct(summary: Mapping[str, Any]) -> list[int]:
 
 
 def _weight(value: float | None) -> str:
-    return _NOTHING if value is None else f"{value:.2f}"
+    return NOTHING if value is None else f"{value:.2f}"
 
 
 def _interval(interval: Mapping[str, Any]) -> tuple[str, str]:
-    both = _NOTHING
+    both = NOTHING
     if interval["worlds"] >= SHOWN_FROM:
         both = f"{format_number(interval['low'])} … {format_number(interval['high'])}"
     return format_number(interval["mean"]), both

@@ -1,0 +1,42 @@
+"""The items of a request as a table: what each needs, and how long that takes."""
+
+from rich.console import Group
+from rich.text import Text
+
+from hedon.cli.display.run import duration
+from hedon.cli.display.table import PrintedTable
+from hedon.replication.item.item import Item
+from hedon.replication.request import Request
+from hedon.replication.run.cost import RequestCost
+
+
+def listing(request: Request, cost: RequestCost) -> Group:
+    """What `hedon reproduce list` prints."""
+    rows = [
+        (item.name, item.kind, item.title, _needs(request, item), _time(its.total), _time(its.left))
+        for item, its in zip(request.items, cost.items, strict=True)
+    ]
+    together = _time(cost.together.total), _time(cost.together.left)
+    rows.append(("together", "", "shared worlds are counted once", "", *together))
+    headers = ("item", "kind", "what it is", "needs", "total", "still to run")
+    table = PrintedTable(headers, rows, text=range(4), total=True)
+    notes = [
+        f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
+        f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"
+        " worlds with more agents take longer, worlds with fewer take less time."
+        for kinds, speed in cost.speeds.items()
+    ]
+    return Group(table, *(Text(note, style="dim") for note in notes))
+
+
+def _needs(request: Request, item: Item) -> str:
+    if not item.arms:
+        return "only settings"
+    scale = request.scale(item)
+    settings, worlds = len(item.arms), len(scale.seeds)
+    parts = [f"{settings} setting{'s' if settings > 1 else ''}", f"{worlds} world{'s' if worlds > 1 else ''}"]
+    return ", ".join([*parts, f"{scale.steps:,} steps"])
+
+
+def _time(seconds: float) -> str:
+    return duration(seconds) if seconds >= 1 else "-"
