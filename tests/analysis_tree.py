@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hedon.analysis.genealogy import ALIVE, Genealogy
+from hedon.analysis.descent.genealogy import ALIVE, Genealogy
 
 
 def random_tree(rng: np.random.Generator, count: int, founders: int) -> Genealogy:

@@ -1,1 +1,1 @@
-"""From tables to numbers to figures: one question per file, functions first."""
+"""What is computed from the records of runs: of worlds, agents, descent and genes; `topic` makes tables of it."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.lifetime import durations, mean_lifetime
-from hedon.analysis.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.weight import last_mean
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.lifetime import durations, mean_lifetime
+from hedon.analysis.gene.weight import last_mean
+from hedon.analysis.world.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
+from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_curve
 
 _NEGLIGIBLE = 0.01

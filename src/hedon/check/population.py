@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.ledger import interval_residuals
+from hedon.analysis.world.ledger import interval_residuals
 from hedon.check.finding import Finding, break_rules
 from hedon.check.genealogy import first_step, world_rules
 from hedon.record.manifest import Manifest

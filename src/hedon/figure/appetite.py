@@ -7,7 +7,7 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.appetite import AppetiteBin
+from hedon.analysis.agent.appetite import AppetiteBin
 from hedon.figure.style import BLUE, PALE, VERMILION, new_figure, say_empty, styled
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from hedon.analysis.population import run_tail
+from hedon.analysis.world.population import run_tail
 from hedon.config import Config
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled

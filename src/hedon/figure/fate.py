@@ -6,9 +6,9 @@ import polars as pl
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.decline import EXTINCT, HEADING, STANDING, Fate
-from hedon.analysis.population import history
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.world.fate import EXTINCT, HEADING, STANDING, Fate
+from hedon.analysis.world.population import history
+from hedon.analysis.world.record import WorldRecord
 from hedon.figure.style import BLUE, ORANGE, VERMILION, new_figure, step_unit, styled
 from hedon.figure.trace import draw_time_axis, draw_zero_line, last_step
 

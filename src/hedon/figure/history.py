@@ -8,7 +8,7 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.population import history
+from hedon.analysis.world.population import history
 from hedon.figure.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, styled
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 

@@ -6,7 +6,7 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.population import history
+from hedon.analysis.world.population import history
 from hedon.figure.style import BLUE, INK, ORANGE, VERMILION, VIOLET, legend_above, new_figure, say_empty, styled
 from hedon.figure.trace import draw_time_axis, draw_traces
 

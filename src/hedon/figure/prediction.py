@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.table_drift import COMPARISONS, GeneDrift
+from hedon.analysis.gene.bias import COMPARISONS, GeneDrift
 from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, PALE, VERMILION, new_figure, say_empty, styled
 
 _COLORS = (VERMILION, BLUE, GREEN, ORANGE)

@@ -4,7 +4,7 @@ import polars as pl
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from hedon.analysis.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, ROOM
+from hedon.analysis.world.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, ROOM
 from hedon.figure.style import GREEN, INK, ORANGE, PALE, VIOLET, draw_message, new_figure, step_unit, styled
 
 REGIME_COLORS = {ROOM: ORANGE, FOOD: GREEN, IDLE: VIOLET, BETWEEN: PALE, EXTINCT: INK}

@@ -7,7 +7,7 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.analysis.cohort import COMPLETE
+from hedon.analysis.agent.cohort import COMPLETE
 from hedon.figure.style import draw_message, new_figure, say_empty, step_unit, styled
 from hedon.figure.trace import draw_zero_line
 from hedon.statistic.interval import SHOWN_FROM

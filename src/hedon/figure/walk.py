@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.special import voigt_profile
 
-from hedon.analysis.walk import MutationLaw, lineages
+from hedon.analysis.descent.walk import MutationLaw, lineages
 from hedon.figure.style import INK, MUTED, new_figure, seed_color, styled
 from hedon.figure.trace import draw_zero_line
 

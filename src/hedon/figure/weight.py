@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from hedon.analysis.weight import LAST_AGENTS, last_agents
+from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
 from hedon.figure.style import (
     MUTED,
     NEUTRAL_COLOR,

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import ConfigError, digest, load_config
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, MANIFEST

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord, by_condition, read_worlds
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.lock import one_writer

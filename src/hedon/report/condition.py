@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import polars as pl
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord
 from hedon.figure.demography import draw_demography
 from hedon.figure.history import draw_history
 from hedon.figure.lineage import draw_lineages

@@ -8,8 +8,8 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord
 from hedon.config import dump_toml, load_config
 from hedon.config.dump import diff
 from hedon.config.load import PRESETS

@@ -7,9 +7,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.topic.fate import regime
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord, by_condition
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.topic.world import regime
+from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure, svg_bytes
 from hedon.record.atomic import write_atomically

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import by_condition
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import by_condition
 from hedon.replication.gather import Gathered
 from hedon.replication.item.item import Item
 from hedon.report.page import FigureFile, condition_context, render, runs_context, table_context

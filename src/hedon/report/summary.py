@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.ledger import world_ledger
-from hedon.analysis.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.population import extinct_step, last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.weight import LAST_AGENTS, world_weights
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
+from hedon.analysis.gene.weight import LAST_AGENTS, world_weights
+from hedon.analysis.world.ledger import world_ledger
+from hedon.analysis.world.population import extinct_step, last_generation, mean_alive, mean_energy, run_tail
 from hedon.record.reader import Run
 from hedon.replication.paper import paper_figures
 from hedon.statistic.interval import mean_interval

@@ -3,28 +3,28 @@
 import difflib
 from collections.abc import Callable, Sequence
 
-from hedon.analysis.topic import evolution, fate, life, stability
-from hedon.analysis.topic.life import Conditions
-from hedon.analysis.topic.result import ResultTable
+from hedon.analysis.table import ResultTable
+from hedon.analysis.topic import drift, life, selection, world
+from hedon.analysis.world.record import Conditions
 from hedon.error import HedonError
 from hedon.replication.claim.table import verdict
 
 TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "verdict": verdict,
-    "regime": fate.regime,
+    "regime": world.regime,
     "lifetime": life.lifetime,
     "food": life.food,
     "energy": life.energy,
     "reproduction": life.reproductive_success,
     "generation": life.generation,
-    "genealogy": fate.genealogy_topic,
-    "genome": evolution.genome,
-    "selection": evolution.selection_topic,
-    "price": evolution.price_topic,
-    "curvature": stability.curvature_topic,
-    "drift": evolution.drift,
-    "reversion": stability.reversion_topic,
-    "mode": evolution.mode,
+    "genealogy": world.genealogy_topic,
+    "genome": selection.genome,
+    "selection": selection.selection_topic,
+    "price": selection.price_topic,
+    "curvature": selection.curvature_topic,
+    "drift": drift.drift,
+    "reversion": drift.reversion_topic,
+    "mode": drift.mode,
 }
 
 

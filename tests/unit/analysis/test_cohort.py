@@ -5,10 +5,10 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.budget import energy_budget
-from hedon.analysis.cohort import complete_share, genome_distribution, window_bounds, with_cohorts
-from hedon.analysis.reproduction import reproduction
-from hedon.analysis.world import by_condition, read_worlds
+from hedon.analysis.agent.cohort import complete_share, genome_distribution, window_bounds, with_cohorts
+from hedon.analysis.agent.reproduction import reproduction
+from hedon.analysis.world.budget import energy_budget
+from hedon.analysis.world.record import by_condition, read_worlds
 from hedon.record.reader import open_run
 
 AGENTS = pl.DataFrame(

@@ -3,9 +3,9 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.selection import curvature
-from hedon.analysis.topic.stability import curvature_topic
-from hedon.analysis.world import by_condition, read_worlds
+from hedon.analysis.gene.selection import curvature
+from hedon.analysis.topic.selection import curvature_topic
+from hedon.analysis.world.record import by_condition, read_worlds
 from hedon.record.reader import open_run
 from hedon.statistic.selection import REACH, standardized
 

@@ -6,10 +6,10 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.drift import WorldDrift, drift_tests, world_drift
-from hedon.analysis.genealogy import Genealogy
-from hedon.analysis.walk import MutationLaw, mutation_law, neutral_means
-from hedon.analysis.world import read_worlds
+from hedon.analysis.descent.genealogy import Genealogy
+from hedon.analysis.descent.walk import MutationLaw, mutation_law, neutral_means
+from hedon.analysis.gene.drift import WorldDrift, drift_tests, world_drift
+from hedon.analysis.world.record import read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
 from hedon.statistic.correction import holm

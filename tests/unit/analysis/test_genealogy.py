@@ -6,7 +6,7 @@ import pytest
 from analysis_tree import lines, random_tree
 from synthetic_run import write_run
 
-from hedon.analysis.genealogy import (
+from hedon.analysis.descent.genealogy import (
     Genealogy,
     ancestry,
     common_ancestor,
@@ -16,9 +16,9 @@ from hedon.analysis.genealogy import (
     genealogy,
     living_at,
 )
-from hedon.analysis.generation import generation_time
-from hedon.analysis.walk import birth_number
-from hedon.analysis.world import read_worlds
+from hedon.analysis.descent.generation import generation_time
+from hedon.analysis.descent.walk import birth_number
+from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
 from hedon.statistic.price import price
 

@@ -6,9 +6,9 @@ import pytest
 from analysis_tree import lines, random_tree
 from synthetic_run import write_run
 
-from hedon.analysis.genealogy import ALIVE, Genealogy, genealogy
-from hedon.analysis.lineage import coalescence, lines_through_time, survivors
-from hedon.analysis.world import read_worlds
+from hedon.analysis.descent.genealogy import ALIVE, Genealogy, genealogy
+from hedon.analysis.descent.lineage import coalescence, lines_through_time, survivors
+from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.noise_table import mutations, noise_table
-from hedon.analysis.table_drift import compare, gene_drift
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.gene.bias import compare, gene_drift
+from hedon.analysis.gene.noise import mutations, noise_table
+from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
 from hedon.statistic.prediction import prediction
 

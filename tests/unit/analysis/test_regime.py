@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.regime import BETWEEN, EXTINCT, FOOD, IDLE, ROOM, interval_regime, regimes
+from hedon.analysis.world.regime import BETWEEN, EXTINCT, FOOD, IDLE, ROOM, interval_regime, regimes
 from hedon.config import load_config
 from hedon.record.reader import open_run
 

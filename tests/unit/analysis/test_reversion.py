@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.course import WorldCourse, world_course
-from hedon.analysis.genealogy import genealogy, living_at
-from hedon.analysis.topic.stability import reversion_topic
-from hedon.analysis.walk import MutationLaw, neutral_courses
-from hedon.analysis.world import WorldRecord, by_condition, read_worlds
+from hedon.analysis.descent.genealogy import genealogy, living_at
+from hedon.analysis.descent.walk import MutationLaw, neutral_courses
+from hedon.analysis.gene.course import WorldCourse, world_course
+from hedon.analysis.topic.drift import reversion_topic
+from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
 from hedon.record.reader import open_run
 from hedon.statistic.reversion import reversion
 

@@ -2,7 +2,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.selection import selection
+from hedon.analysis.gene.selection import selection
 from hedon.statistic.bootstrap import percentile_interval, resampled_sums
 from hedon.statistic.selection import STRATUM, differential_and_gradient
 

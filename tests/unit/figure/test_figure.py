@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
-from hedon.analysis.population import history
+from hedon.analysis.world.population import history
 from hedon.figure.history import draw_history
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population

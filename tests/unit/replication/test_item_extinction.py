@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.extinction import world_extinction
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.extinction import world_extinction
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
 from hedon.replication.item.extinction import ARMS, EXTINCTIONS

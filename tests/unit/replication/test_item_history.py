@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from synthetic_run import write_run
 
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
 from hedon.record.reader import open_run

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from scipy.integrate import trapezoid
 
-from hedon.analysis.walk import MutationLaw, lineages, mutation_law
+from hedon.analysis.descent.walk import MutationLaw, lineages, mutation_law
 from hedon.config import load_config
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import svg_bytes

@@ -1,6 +1,6 @@
 import pytest
 
-from hedon.analysis.topic.result import ResultTable
+from hedon.analysis.table import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
 from hedon.config.dump import flatten
 from hedon.config.field import leaves, sections

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from synthetic_run import write_run
 
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
 from hedon.record.reader import open_run

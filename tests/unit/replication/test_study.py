@@ -8,11 +8,11 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.appetite import AppetiteBin, appetite, half_way_weight
-from hedon.analysis.decline import EXTINCT, HEADING, STANDING, fate
+from hedon.analysis.agent.appetite import AppetiteBin, appetite, half_way_weight
 from hedon.analysis.response import RESPONSES, common_to, figures
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.fate import EXTINCT, HEADING, STANDING, fate
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run

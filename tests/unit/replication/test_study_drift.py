@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import PRESETS
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run

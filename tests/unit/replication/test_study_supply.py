@@ -5,8 +5,8 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.figure.supply import draw_supply
 from hedon.record.reader import open_run

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.drift import WorldDrift
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.gene.drift import WorldDrift
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
 from hedon.replication.claim.claim import CLAIMS, SAME_FACTOR, Claim, OverWorlds

@@ -2,7 +2,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.lifetime import durations
+from hedon.analysis.agent.lifetime import durations
 from hedon.statistic.survival import exposure_mean, restricted_mean, survival_curve
 
 # Remission times of the 6-MP group of Freireich et al. (1963), the textbooks' example.

@@ -1,33 +1,24 @@
 """Topics about single lives: lifetime, food, reproduction, generation, energy."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
 import polars as pl
 
-from hedon.analysis.budget import energy_budget
-from hedon.analysis.cohort import COMPLETE, window_bounds, with_cohorts
-from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.generation import generation_time
-from hedon.analysis.lifetime import durations
-from hedon.analysis.population import run_tail
-from hedon.analysis.reproduction import reproduction
-from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.agent.cohort import COMPLETE
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.lifetime import durations
+from hedon.analysis.agent.reproduction import reproduction
+from hedon.analysis.descent.generation import generation_time
+from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, world_means
+from hedon.analysis.world.budget import energy_budget
+from hedon.analysis.world.population import run_tail
+from hedon.analysis.world.record import Conditions, WorldRecord, labels
 from hedon.statistic.survival import SurvivalCurve, exposure_mean, restricted_mean, survival_curve
 
-Conditions = Mapping[str, Sequence[WorldRecord]]
-
 _AGES = 200  # points of a survival curve in the records of the analysis
-_PER_WINDOW = 200  # agents that a window of births should hold
-_WINDOWS = 10  # of a run, at most
-
-
-def window_count(worlds: Sequence[WorldRecord]) -> int:
-    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records."""
-    smallest = min((world.agents.height for world in worlds), default=0)
-    return max(1, min(_WINDOWS, smallest // _PER_WINDOW))
 
 
 def lifetime(conditions: Conditions) -> list[ResultTable]:
@@ -84,32 +75,15 @@ def food(conditions: Conditions) -> list[ResultTable]:
 
 def reproductive_success(conditions: Conditions) -> list[ResultTable]:
     """Children per life, by birth cohort."""
-    rows = []
-    for worlds in conditions.values():
-        windows = window_count(worlds)
-        for world in worlds:
-            bounds = window_bounds(world.last_step, windows)
-            cohorts = with_cohorts(world.agents, world.last_step, windows)
-            for window in range(windows):
-                found = asdict(reproduction(cohorts.filter(pl.col("window") == window)))
-                counts = found.pop("counts")
-                rows.append(
-                    labels(world)
-                    | {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}
-                    | found
-                    | {f"with_{i}{'_or_more' if i == len(counts) - 1 else ''}": n for i, n in enumerate(counts)}
-                )
+    rows = cohort_rows(conditions, lambda _world, cohort, _rng: [_reproduction_row(cohort)])
     worlds_table = table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
-    whole = worlds_table.rows.filter(pl.col("complete") >= COMPLETE) if rows else worlds_table.rows
     quantities = {
         "mean": "children per life",
         "opportunity": "opportunity for selection",
         "childless": "share without children",
         "top_tenth": "share of children of the top tenth",
     }
-    by_world = (
-        whole.group_by("condition", "seed", maintain_order=True).agg(pl.col(*quantities).mean()) if rows else whole
-    )
+    by_world = world_means(complete_cohorts(worlds_table.rows), (), tuple(quantities))
     note = (
         f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, in "
         "lives of exponential length, the opportunity would be 1 + 1 / mean."
@@ -158,6 +132,13 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     )
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
     return [table("energy", title, summary, note), worlds_table]
+
+
+def _reproduction_row(cohort: pl.DataFrame) -> dict:
+    """Children per life in a cohort, and how many agents had each number of children."""
+    found = asdict(reproduction(cohort))
+    counts = found.pop("counts")
+    return found | {f"with_{i}{'_or_more' if i == len(counts) - 1 else ''}": n for i, n in enumerate(counts)}
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:

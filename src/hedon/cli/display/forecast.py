@@ -5,7 +5,7 @@ import math
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast

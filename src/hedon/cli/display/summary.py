@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.weight import LAST_AGENTS
+from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
 from hedon.replication.paper import STEPS
 from hedon.report.table import NOTHING, format_number

@@ -15,12 +15,12 @@ from typing import Literal
 
 from scipy import optimize
 
-from hedon.analysis.drift import standard_drift
-from hedon.analysis.food import food_per_step
-from hedon.analysis.lifetime import mean_lifetime
-from hedon.analysis.population import last_generation, mean_alive, run_tail
-from hedon.analysis.weight import last_mean
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.agent.food import food_per_step
+from hedon.analysis.agent.lifetime import mean_lifetime
+from hedon.analysis.gene.drift import standard_drift
+from hedon.analysis.gene.weight import last_mean
+from hedon.analysis.world.population import last_generation, mean_alive, run_tail
+from hedon.analysis.world.record import WorldRecord
 from hedon.demography.life import cumulative_hazard
 from hedon.replication.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP, LIFESPAN, PAPER, SEEDS, STEPS
 

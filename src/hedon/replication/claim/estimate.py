@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.drift import standard_drift
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.gene.drift import standard_drift
+from hedon.analysis.world.record import WorldRecord
 from hedon.replication.claim.claim import Claim
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import score_tests

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.weight import last_mean
+from hedon.analysis.gene.weight import last_mean
 from hedon.replication.claim.claim import Measure, lifetime_of_dead
 from hedon.replication.paper import PAPER, STEPS
 from hedon.statistic.contrast import difference_interval, spread_ratio_interval

@@ -2,8 +2,8 @@
 
 from dataclasses import asdict
 
-from hedon.analysis.topic.life import Conditions
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import Conditions
 from hedon.replication.claim.verdict import verdicts
 
 

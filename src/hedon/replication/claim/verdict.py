@@ -12,8 +12,8 @@ from functools import cache
 
 import numpy as np
 
-from hedon.analysis.extinction import world_extinction
-from hedon.analysis.world import WorldRecord, by_condition
+from hedon.analysis.world.extinction import world_extinction
+from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.config import Config, digest, load_config
 from hedon.replication.claim.claim import CLAIMS, SOURCE, Claim
 from hedon.replication.claim.estimate import Estimate, estimate

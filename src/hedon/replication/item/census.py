@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import polars as pl
 
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.world.record import WorldRecord
 from hedon.replication.item.item import Arm, Material
 
 _NAMED = 3  # seeds that died out are named up to so many

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.analysis.weight import LAST_AGENTS, last_agents
+from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import draw_message
 from hedon.figure.weight import WeightGroup, draw_weight_groups

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.extinction import world_extinction
-from hedon.analysis.population import mean_alive, mean_energy, run_tail
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.extinction import world_extinction
+from hedon.analysis.world.population import mean_alive, mean_energy, run_tail
+from hedon.analysis.world.record import WorldRecord
 from hedon.replication.item.census import missing, present, sentences
 from hedon.replication.item.item import Arm, Item, Material, Scale
 from hedon.replication.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP

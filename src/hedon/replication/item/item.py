@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Literal
 
-from hedon.analysis.topic.result import ResultTable
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable
+from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config, load_config
 from hedon.figure.named import NamedFigure
 from hedon.record.snapshot import Snapshot

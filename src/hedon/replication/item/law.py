@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hedon.analysis.topic.result import SEED
-from hedon.analysis.walk import mutation_law
+from hedon.analysis.descent.walk import mutation_law
+from hedon.analysis.world.record import SEED
 from hedon.config import Config
 from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
 from hedon.figure.law import draw_birth, draw_hazard

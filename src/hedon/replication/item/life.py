@@ -7,10 +7,10 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.table import ResultTable, table
 from hedon.analysis.topic.life import lifetime
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.world.record import WorldRecord
 from hedon.replication.item.census import count_extinct, missing, present, sentences, steps_reached
 from hedon.replication.item.condition import PAPER_SCALE, PLACES, SIZES
 from hedon.replication.item.item import Arm, Item, Material

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.config import FIDELITIES, PRESETS
 from hedon.config.config import PROVENANCE
 from hedon.config.dump import flatten

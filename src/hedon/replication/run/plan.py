@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hedon.analysis.world import read_worlds
+from hedon.analysis.world.record import read_worlds
 from hedon.config import Config, digest
 from hedon.experiment.plan import free_folder, seed_span
 from hedon.record.reader import Run

@@ -7,9 +7,9 @@ says that it does not matter; one that reaches beyond leaves it open.
 
 from collections.abc import Iterator
 
-from hedon.analysis.population import history
 from hedon.analysis.response import RESPONSES
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.population import history
 from hedon.figure.course import draw_courses
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.census import present, sentences, stack, steps_reached, world_indices

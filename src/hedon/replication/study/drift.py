@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.drift import WorldDrift, drift_tests, standard_drift
-from hedon.analysis.topic.result import SEED, ResultTable, table
+from hedon.analysis.gene.drift import WorldDrift, drift_tests, standard_drift
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import SEED
 from hedon.figure.drift import draw_scores
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.census import present, sentences

@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from hedon.analysis.appetite import WINDOWS, appetite, half_way_weight
-from hedon.analysis.population import history
+from hedon.analysis.agent.appetite import WINDOWS, appetite, half_way_weight
 from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.population import history
+from hedon.analysis.world.record import WorldRecord
 from hedon.figure.appetite import draw_appetite
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.census import present, sentences, stack, world_indices

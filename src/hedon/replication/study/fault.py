@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.figure.factorial import draw_cells, draw_effects
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.census import sentences

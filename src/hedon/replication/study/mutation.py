@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hedon.analysis.table_drift import COMPARISONS, GeneDrift, compare, gene_drift
-from hedon.analysis.topic.result import ResultTable, generator, table
+from hedon.analysis.gene.bias import COMPARISONS, GeneDrift, compare, gene_drift
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import generator
 from hedon.figure.named import NamedFigure
 from hedon.figure.prediction import draw_predictions
 from hedon.replication.item.census import sentences

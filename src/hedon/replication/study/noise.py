@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from hedon.analysis.topic.result import ResultTable
+from hedon.analysis.table import ResultTable
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.item import Arm, Item, Material, Scale
 from hedon.replication.study.fault import FACTORS

@@ -5,10 +5,10 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis.decline import EXTINCT, FATES, HEADING, STANDING, Fate, fate
 from hedon.analysis.response import RESPONSES
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
+from hedon.analysis.world.record import WorldRecord
 from hedon.figure.fate import draw_fates
 from hedon.figure.named import NamedFigure
 from hedon.figure.weight import draw_weights

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from hedon.analysis.food import food_per_agent_step
-from hedon.analysis.population import run_tail
+from hedon.analysis.agent.food import food_per_agent_step
 from hedon.analysis.response import RESPONSES, Common, Response
-from hedon.analysis.topic.result import ResultTable, table
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.population import run_tail
+from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config
 from hedon.figure.named import NamedFigure
 from hedon.figure.supply import Eater, draw_supply

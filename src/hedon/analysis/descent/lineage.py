@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.genealogy import Genealogy, ancestry, common_ancestor, families, founder, living_at
+from hedon.analysis.descent.genealogy import Genealogy, ancestry, common_ancestor, families, founder, living_at
 
 
 @dataclass(frozen=True)

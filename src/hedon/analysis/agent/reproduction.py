@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from hedon.analysis.cohort import complete_share
+from hedon.analysis.agent.cohort import complete_share
 
 _MANY = 10  # children from which on the distribution is not told apart
 

@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.genealogy import Genealogy, ancestry, depth
+from hedon.analysis.descent.genealogy import Genealogy, ancestry, depth
 from hedon.config import Config
 
 WALKS = 2000

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.extinction import ExtinctShare, extinct_share
 
 

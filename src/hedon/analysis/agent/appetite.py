@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 import polars as pl
 
-from hedon.analysis.lifetime import dead_agents
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.agent.lifetime import dead_agents
+from hedon.analysis.world.record import WorldRecord
 
 WINDOWS = 5
 EDGES = (-10.0, -3.0, -1.0, -0.3, -0.1, 0.0, 0.1, 0.3, 1.0, 3.0, 10.0)

@@ -5,11 +5,11 @@ from dataclasses import asdict
 import numpy as np
 import polars as pl
 
-from hedon.analysis.genealogy import genealogy
-from hedon.analysis.lineage import coalescence, lines_through_time
-from hedon.analysis.regime import REGIMES, regimes
-from hedon.analysis.topic.life import Conditions
-from hedon.analysis.topic.result import ResultTable, labels, over_worlds, table
+from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.descent.lineage import coalescence, lines_through_time
+from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.world.record import Conditions, labels
+from hedon.analysis.world.regime import REGIMES, regimes
 
 _TIMES = 20  # at which the coalescence is told
 _LINE_TIMES = 100  # at which lines are counted

@@ -3,10 +3,11 @@ import math
 import polars as pl
 import pytest
 
-from hedon.analysis.food import food_per_agent_step, food_per_step
-from hedon.analysis.ledger import world_ledger
-from hedon.analysis.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.population import (
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
+from hedon.analysis.gene.weight import last_agents, world_weights
+from hedon.analysis.world.ledger import world_ledger
+from hedon.analysis.world.population import (
     extinct_step,
     history,
     last_generation,
@@ -14,7 +15,6 @@ from hedon.analysis.population import (
     mean_energy,
     run_tail,
 )
-from hedon.analysis.weight import last_agents, world_weights
 from hedon.replication.paper import EXTINCTION, PAPER, paper_figures
 from hedon.statistic.interval import mean_interval
 

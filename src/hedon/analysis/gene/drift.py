@@ -16,11 +16,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from scipy import stats
 
-from hedon.analysis.genealogy import genealogy
-from hedon.analysis.topic.result import generator
-from hedon.analysis.walk import WALKS, mutation_law, neutral_means
-from hedon.analysis.weight import LAST_AGENTS
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
+from hedon.analysis.gene.weight import LAST_AGENTS
+from hedon.analysis.world.record import WorldRecord, generator
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds

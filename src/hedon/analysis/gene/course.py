@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.drift import start_of
-from hedon.analysis.genealogy import depth, genealogy, living_at
-from hedon.analysis.walk import mutation_law, neutral_courses
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.descent.genealogy import depth, genealogy, living_at
+from hedon.analysis.descent.walk import mutation_law, neutral_courses
+from hedon.analysis.gene.drift import start_of
+from hedon.analysis.world.record import WorldRecord
 
 WALKS = 500
 """Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""

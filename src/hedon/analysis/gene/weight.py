@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.world.record import WorldRecord
 
 LAST_AGENTS = 5000  # whose weights the paper shows
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from hedon.analysis.genealogy import genealogy
+from hedon.analysis.descent.genealogy import genealogy
 
 
 @dataclass(frozen=True)

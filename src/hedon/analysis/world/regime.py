@@ -33,7 +33,7 @@ from itertools import pairwise
 import numpy as np
 import polars as pl
 
-from hedon.analysis.population import whole_window
+from hedon.analysis.world.population import whole_window
 from hedon.config import Config
 from hedon.demography.life import hazard
 

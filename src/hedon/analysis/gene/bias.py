@@ -18,10 +18,10 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.drift import start_of
-from hedon.analysis.noise_table import Mutations, NoiseTable, mutations, noise_table
-from hedon.analysis.weight import last_agents
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.gene.drift import start_of
+from hedon.analysis.gene.noise import Mutations, NoiseTable, mutations, noise_table
+from hedon.analysis.gene.weight import last_agents
+from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.interval import LEVEL
 from hedon.statistic.prediction import Prediction, prediction
 

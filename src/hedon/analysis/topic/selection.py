@@ -1,18 +1,16 @@
-"""Topics about what evolves: genomes, selection, Price's equation, drift, modes."""
+"""Topics about genomes and what selects them, by birth cohort: distributions, gradients, curvature, Price's terms."""
 
 from dataclasses import asdict
 
 import numpy as np
 import polars as pl
 
-from hedon.analysis.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
-from hedon.analysis.drift import drift_tests, standard_drift
-from hedon.analysis.genealogy import genealogy
-from hedon.analysis.selection import selection
-from hedon.analysis.topic.life import Conditions, window_count
-from hedon.analysis.topic.result import SEED, ResultTable, generator, labels, over_worlds, table
-from hedon.analysis.weight import last_mean
-from hedon.statistic.mode import ENOUGH_WORLDS, modes
+from hedon.analysis.agent.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
+from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.gene.selection import curvature, selection
+from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, window_count, world_means
+from hedon.analysis.world.record import Conditions, labels
 from hedon.statistic.price import price
 
 
@@ -41,18 +39,10 @@ def genome(conditions: Conditions) -> list[ResultTable]:
 
 def selection_topic(conditions: Conditions) -> list[ResultTable]:
     """Selection differentials and gradients by birth cohort."""
-    rows = []
-    for worlds in conditions.values():
-        windows = window_count(worlds)
-        for world in worlds:
-            bounds = window_bounds(world.last_step, windows)
-            cohorts = with_cohorts(world.agents, world.last_step, windows)
-            rng = generator(world)
-            for window in range(windows):
-                span = {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}
-                cohort = cohorts.filter(pl.col("window") == window)
-                found = selection(cohort, world.weight_names, world.last_step, rng)
-                rows += [labels(world) | span | asdict(row) for row in found]
+    rows = cohort_rows(
+        conditions,
+        lambda world, cohort, rng: map(asdict, selection(cohort, world.weight_names, world.last_step, rng)),
+    )
     worlds_table = table(
         "selection_world",
         "Selection by world and birth cohort",
@@ -60,13 +50,9 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         "Bounds are percentiles of a bootstrap over sibships within a world.",
         shown=False,
     )
-    whole = worlds_table.rows
+    whole = complete_cohorts(worlds_table.rows)
     quantities = {"standard_gradient": "standardized gradient", "intensity": "standardized differential"}
-    by_world = whole
-    if rows:
-        whole = whole.filter(pl.col("complete") >= COMPLETE)
-        groups = whole.group_by("condition", "seed", "fitness", "weight", maintain_order=True)
-        by_world = groups.agg(pl.col(*quantities).drop_nulls().mean())
+    by_world = world_means(whole, ("fitness", "weight"), tuple(quantities))
     by_window = over_worlds(
         whole, ("fitness", "weight", "window", "to_step"), {"standard_gradient": "standardized gradient"}
     )
@@ -80,6 +66,36 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         table("selection_window", "Standardized gradient over time, means over worlds", by_window, shown=False),
         worlds_table,
     ]
+
+
+def curvature_topic(conditions: Conditions) -> list[ResultTable]:
+    """Curvature of fitness along each weight, over birth cohorts and worlds."""
+    rows = cohort_rows(
+        conditions,
+        lambda world, cohort, rng: map(asdict, curvature(cohort, world.weight_names, world.last_step, rng)),
+    )
+    worlds_table = table(
+        "curvature_world",
+        "Curvature of fitness by world and birth cohort",
+        rows,
+        "Bounds are percentiles of a bootstrap over sibships within a world.",
+        shown=False,
+    )
+    by_world = world_means(complete_cohorts(worlds_table.rows), ("fitness", "weight"), ("curvature",))
+    if rows:
+        by_world = _with_excess(by_world, conditions)
+    note = (
+        "Quadratic selection gradient, per variance of the weight, with the linear parts of all weights held fixed: "
+        "below 0 selection is stabilizing, above 0 disruptive. Means over cohorts of which at least "
+        f"{100 * COMPLETE:.0f} % have died, then over worlds. Neutral markers are curved too where agents far out have "
+        "few children for another reason, such as being born later: read what is left without their mean."
+    )
+    quantities = {
+        "curvature": "standardized quadratic gradient",
+        "excess": "the same, less the mean of the other neutral markers",
+    }
+    summary = over_worlds(by_world, ("fitness", "weight"), quantities)
+    return [table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
 
 
 def price_topic(conditions: Conditions) -> list[ResultTable]:
@@ -99,11 +115,8 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
                     for name, z in weights.items()
                 ]
     worlds_table = table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)
-    by_world = worlds_table.rows
     terms = ("change", "selection", "transmission", "residual")
-    if rows:
-        groups = by_world.group_by("condition", "seed", "weight", maintain_order=True)
-        by_world = groups.agg(pl.col(*terms).drop_nulls().mean())
+    by_world = world_means(worlds_table.rows, ("weight",), terms)
     note = (
         "Change of the mean weight from parents to their children, mean over cohorts and worlds: the part by unequal "
         "numbers of children, and the part by mutation. The residual is rounding."
@@ -112,42 +125,15 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
     return [table("price", "Price's equation", summary, note), worlds_table]
 
 
-def drift(conditions: Conditions) -> list[ResultTable]:
-    """Each weight against drift."""
-    world_rows, rows = [], []
-    for condition, worlds in conditions.items():
-        found = [standard_drift(world) for world in worlds]
-        for world, results in zip(worlds, found, strict=True):
-            world_rows += [labels(world) | asdict(result) for result in results]
-        names = worlds[0].reward_names, worlds[0].neutral_names
-        tests = drift_tests(found, *names, np.random.default_rng(SEED))
-        rows += [{"condition": condition} | asdict(test) for test in tests]
-    note = (
-        "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
-        "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
-        "held: root mean square score, 1 under drift, with the chance of a larger one (distance) or of a smaller one "
-        "(held). marker: how much further than the neutral markers the weight moved. p_holm is corrected for all "
-        "reward weights and tests of one control; neutral markers are there as a check."
-    )
-    return [
-        table("drift", "Weights of the agents born last against drift", rows, note),
-        table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
-    ]
-
-
-def mode(conditions: Conditions) -> list[ResultTable]:
-    """One mode or two, over worlds."""
-    rows = []
-    for condition, worlds in conditions.items():
-        for name in worlds[0].weight_names:
-            means = [last_mean(name, world) for world in worlds if world.extinct_step is None]
-            found = modes(np.array([mean for mean in means if mean is not None], np.float64))
-            rows.append({"condition": condition, "weight": name} | asdict(found))
-    note = (
-        "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
-        f"worlds; below 0.8, so with fewer than {ENOUGH_WORLDS} worlds, a single mode is not called."
-    )
-    return [table("mode", "Modes of the worlds' mean weights", rows, note)]
+def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:
+    """Adds what a weight's curvature exceeds the mean of the neutral markers of its world by, itself not among them."""
+    neutral = {name for worlds in conditions.values() for world in worlds for name in world.neutral_names}
+    of_marker = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
+    group = ("condition", "seed", "fitness")
+    own = pl.when(pl.col("weight").is_in(sorted(neutral))).then(pl.col("curvature")).otherwise(0.0)
+    others = of_marker.count().over(group) - pl.col("weight").is_in(sorted(neutral)).cast(pl.Int64)
+    mean = (of_marker.sum().over(group) - own) / others
+    return by_world.with_columns(excess=pl.when(others > 0).then(pl.col("curvature") - mean))
 
 
 def _ends(last_step: int, windows: int, window: pl.Series) -> pl.Series:

@@ -1,17 +1,12 @@
-"""What a topic gives: tables with a title and a note, as they are printed, written and drawn."""
+"""Tables of results, with a title and a note, as they are printed, written and drawn."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import polars as pl
 
-from hedon.analysis.world import WorldRecord
 from hedon.statistic.interval import mean_interval
-
-SEED = 20240717
-"""Of the bootstrap and the neutral walks, so that the same records give the same numbers."""
 
 
 @dataclass(frozen=True)
@@ -39,16 +34,6 @@ def table(
     """A table from one mapping per row; NaN becomes null. A table without rows has no columns either."""
     frame = pl.DataFrame(list(rows), infer_schema_length=None).fill_nan(None)
     return ResultTable(name, title, frame, note, shown)
-
-
-def labels(world: WorldRecord) -> dict[str, Any]:
-    """The columns that name a world."""
-    return {"condition": world.condition, "seed": world.seed}
-
-
-def generator(world: WorldRecord) -> np.random.Generator:
-    """The source of chance for one world, the same in each analysis."""
-    return np.random.default_rng([SEED, world.seed])
 
 
 def over_worlds(rows: pl.DataFrame, by: Sequence[str], quantities: Mapping[str, str]) -> list[dict[str, Any]]:

@@ -1,15 +1,19 @@
 """The worlds of some runs, one by one, with the condition that each of them repeats."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import polars as pl
 
-from hedon.analysis.population import extinct_step
+from hedon.analysis.world.population import extinct_step
 from hedon.config import Config, load_config
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
+
+SEED = 20240717
+"""Of the bootstrap and the neutral walks, so that the same records give the same numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +83,10 @@ class WorldRecord:
         )
 
 
+Conditions = Mapping[str, Sequence[WorldRecord]]
+"""Worlds by condition, at least one of each."""
+
+
 def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
     """Reads the worlds of some runs; damaged parts are left out.
 
@@ -106,6 +114,16 @@ def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
     for world in worlds:
         groups.setdefault(world.condition, []).append(world)
     return groups
+
+
+def labels(world: WorldRecord) -> dict[str, Any]:
+    """The columns that name a world."""
+    return {"condition": world.condition, "seed": world.seed}
+
+
+def generator(world: WorldRecord) -> np.random.Generator:
+    """The source of chance for one world, the same in each analysis."""
+    return np.random.default_rng([SEED, world.seed])
 
 
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
-from hedon.analysis.lifetime import dead_agents
+from hedon.analysis.agent.lifetime import dead_agents
 
 
 def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None) -> float | None:

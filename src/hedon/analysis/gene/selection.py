@@ -7,8 +7,8 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.cohort import complete_share
-from hedon.analysis.lifetime import durations
+from hedon.analysis.agent.cohort import complete_share
+from hedon.analysis.agent.lifetime import durations
 from hedon.statistic.bootstrap import REPLICATES
 from hedon.statistic.selection import (
     FEWEST,

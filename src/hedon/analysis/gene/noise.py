@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.genealogy import genealogy
-from hedon.analysis.walk import birth_number, mutation_law
-from hedon.analysis.world import WorldRecord
+from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.descent.walk import birth_number, mutation_law
+from hedon.analysis.world.record import WorldRecord
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

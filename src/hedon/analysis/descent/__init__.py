@@ -1,0 +1,1 @@
+"""Who descends from whom, and what a gene does that only follows the pedigree."""

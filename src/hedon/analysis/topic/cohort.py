@@ -1,0 +1,57 @@
+"""What topics share that ask the same of each birth cohort of each world."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.agent.cohort import COMPLETE, window_bounds, with_cohorts
+from hedon.analysis.world.record import Conditions, WorldRecord, generator, labels
+
+_PER_WINDOW = 200  # agents that a window of births should hold
+_WINDOWS = 10  # of a run, at most
+
+
+def window_count(worlds: Sequence[WorldRecord]) -> int:
+    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records."""
+    smallest = min((world.agents.height for world in worlds), default=0)
+    return max(1, min(_WINDOWS, smallest // _PER_WINDOW))
+
+
+def cohort_rows(
+    conditions: Conditions,
+    measure: Callable[[WorldRecord, pl.DataFrame, np.random.Generator], Iterable[dict[str, Any]]],
+) -> list[dict[str, Any]]:
+    """Rows of every birth cohort of every world, each with its world, window and steps.
+
+    Args:
+        conditions: the worlds.
+        measure: gives the rows of one cohort, from its world, its rows of the table `agents` and the world's source of
+            chance.
+    """
+    rows = []
+    for worlds in conditions.values():
+        windows = window_count(worlds)
+        for world in worlds:
+            bounds = window_bounds(world.last_step, windows)
+            cohorts = with_cohorts(world.agents, world.last_step, windows)
+            rng = generator(world)
+            for window in range(windows):
+                span = {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}
+                cohort = cohorts.filter(pl.col("window") == window)
+                rows += [labels(world) | span | row for row in measure(world, cohort, rng)]
+    return rows
+
+
+def complete_cohorts(rows: pl.DataFrame) -> pl.DataFrame:
+    """The rows of cohorts of which nearly all have died, so that their lives are known."""
+    return rows if rows.is_empty() else rows.filter(pl.col("complete") >= COMPLETE)
+
+
+def world_means(rows: pl.DataFrame, by: Sequence[str], quantities: Sequence[str]) -> pl.DataFrame:
+    """Means over the cohorts of each world, for each group of rows."""
+    if rows.is_empty():
+        return rows
+    groups = rows.group_by("condition", "seed", *by, maintain_order=True)
+    return groups.agg(pl.col(*quantities).drop_nulls().mean())

@@ -1,0 +1,107 @@
+"""Topics about drift: weights against neutral genes, mean reversion along a run, modes over worlds."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from hedon.analysis.gene.course import WorldCourse, world_course
+from hedon.analysis.gene.drift import drift_tests, standard_drift
+from hedon.analysis.gene.weight import last_mean
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import SEED, Conditions, generator, labels
+from hedon.statistic.correction import holm
+from hedon.statistic.mode import ENOUGH_WORLDS, modes
+from hedon.statistic.reversion import Reversion, reversion
+
+_INTERVALS = 100  # into which the longest world of a condition is cut
+
+
+def drift(conditions: Conditions) -> list[ResultTable]:
+    """Each weight against drift."""
+    world_rows, rows = [], []
+    for condition, worlds in conditions.items():
+        found = [standard_drift(world) for world in worlds]
+        for world, results in zip(worlds, found, strict=True):
+            world_rows += [labels(world) | asdict(result) for result in results]
+        names = worlds[0].reward_names, worlds[0].neutral_names
+        tests = drift_tests(found, *names, np.random.default_rng(SEED))
+        rows += [{"condition": condition} | asdict(test) for test in tests]
+    note = (
+        "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
+        "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
+        "held: root mean square score, 1 under drift, with the chance of a larger one (distance) or of a smaller one "
+        "(held). marker: how much further than the neutral markers the weight moved. p_holm is corrected for all "
+        "reward weights and tests of one control; neutral markers are there as a check."
+    )
+    return [
+        table("drift", "Weights of the agents born last against drift", rows, note),
+        table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
+    ]
+
+
+def reversion_topic(conditions: Conditions) -> list[ResultTable]:
+    """Mean reversion of each weight, over the worlds of a condition and in each of them."""
+    rows, world_rows = [], []
+    for condition, worlds in conditions.items():
+        interval = max(max(world.last_step for world in worlds) / _INTERVALS, 1.0)
+        known = {world: world_course(world, interval, generator(world)) for world in worlds}
+        courses = {world: course for world, course in known.items() if course is not None}
+        for world, course in courses.items():
+            world_rows += [labels(world) | row for row in _rows([course], world.weight_names)]
+        found = _rows(list(courses.values()), worlds[0].weight_names)
+        neutral = worlds[0].neutral_names
+        corrected = holm([float("nan") if row["weight"] in neutral else row["p"] for row in found])
+        rows += [{"condition": condition} | row | {"p_holm": p} for row, p in zip(found, corrected, strict=True)]
+    note = (
+        "An Ornstein-Uhlenbeck process with one optimum and one strength for all worlds, fitted to the mean weight of "
+        "the living at equal intervals. strength: share of the distance to the optimum that is gone after a "
+        "generation, for small numbers; 0 is Brownian motion. p: chance of so strong a pull among neutral genes "
+        "walked down the same pedigrees; p_holm is corrected for all reward weights. The optimum is told where p is at "
+        "most 0.05. Neutral markers are there as a check."
+    )
+    return [
+        table("reversion", "Is a weight held near a value?", rows, note),
+        table("reversion_world", "Mean reversion, world by world", world_rows, shown=False),
+    ]
+
+
+def mode(conditions: Conditions) -> list[ResultTable]:
+    """One mode or two, over worlds."""
+    rows = []
+    for condition, worlds in conditions.items():
+        for name in worlds[0].weight_names:
+            means = [last_mean(name, world) for world in worlds if world.extinct_step is None]
+            found = modes(np.array([mean for mean in means if mean is not None], np.float64))
+            rows.append({"condition": condition, "weight": name} | asdict(found))
+    note = (
+        "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
+        f"worlds; below 0.8, so with fewer than {ENOUGH_WORLDS} worlds, a single mode is not called."
+    )
+    return [table("mode", "Modes of the worlds' mean weights", rows, note)]
+
+
+def _rows(courses: Sequence[WorldCourse], weights: Sequence[str]) -> list[dict[str, Any]]:
+    """One row per weight, with strengths per generation."""
+    generations = sum(course.generations for course in courses)
+    rows = []
+    for weight in weights:
+        found = reversion([c.mean[weight] for c in courses], [c.neutral[weight] for c in courses])
+        if found is not None and generations > 0:
+            rows.append({"weight": weight} | _per_generation(found, generations))
+    return rows
+
+
+def _per_generation(found: Reversion, generations: float) -> dict[str, Any]:
+    factor = found.intervals / generations
+    strengths = {name: getattr(found, name) * factor for name in ("strength", "strength_low", "strength_high")}
+    return {
+        "worlds": found.worlds,
+        "generations": generations / found.worlds,
+        "optimum": found.optimum,
+        "optimum_low": found.optimum_low,
+        "optimum_high": found.optimum_high,
+        **strengths,
+        "p": found.p,
+    }

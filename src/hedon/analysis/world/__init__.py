@@ -1,0 +1,1 @@
+"""Whole worlds: their records, numbers, energy, regimes and ends."""
