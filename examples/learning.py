@@ -27,7 +27,8 @@ SETTING = (
     "hazard.kappa=0",
     "hazard.alpha_age=0",
     "birth.kappa=0",
-    "genome.initial_sd=0",
+    "food.normal.gene.initial_sd=0",
+    "genome.action.initial_sd=0",
     "food.normal.growth_rate=1.0",
 )
 
@@ -47,7 +48,7 @@ class Condition:
         """The settings that make this condition."""
         return (
             *SETTING,
-            f"genome.initial_mean_food={self.reward}",
+            f"food.normal.gene.initial_mean={self.reward}",
             f'sensor.scaling="{self.scaling}"',
             f'learning.critic_target="{self.critic}"',
             f'learning.acting_weights="{self.acting}"',

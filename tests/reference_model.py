@@ -186,10 +186,10 @@ class Model:
 
     def first_genome(self, of: int, purpose: str) -> np.ndarray:
         g = self.config["genome"]
-        means = [g["initial_mean_food"]] * len(self.config["food"]) + [g["initial_mean_action"]]
-        means += [0.0] * g["neutral_count"]
-        noise = [normals(*self.draw(purpose, of, 0, i)[:2])[0] for i in range(len(means))]
-        return np.clip(means + g["initial_sd"] * np.array(noise), -g["weight_limit"], g["weight_limit"])
+        genes = [*g["food"], g["action"], *[g["neutral"]] * g["neutral_count"]]
+        means, sds = (np.array([gene[name] for gene in genes]) for name in ("initial_mean", "initial_sd"))
+        noise = [normals(*self.draw(purpose, of, 0, i)[:2])[0] for i in range(len(genes))]
+        return np.clip(means + sds * np.array(noise), -g["weight_limit"], g["weight_limit"])
 
     # One step.
 

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -117,6 +118,22 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
   }
 }
 
+/// Gives the living of a world other genomes, in their order. Nothing else of an agent depends on its genome.
+void set_genomes(PythonSimulation& self, int index,
+                 nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> genomes) {
+  const World& from = self.slotted(index);
+  const size_t genes = static_cast<size_t>(from.shape->genome.size());
+  const float limit = from.config->genome.weight_limit;
+  if (genomes.shape(0) != static_cast<size_t>(from.clock().living_count) || genomes.shape(1) != genes)
+    throw nb::value_error("there must be one genome for each living agent, with all genes");
+  for (size_t i = 0; i < genomes.shape(0) * genes; ++i) {
+    if (!(std::fabs(genomes.data()[i]) <= limit)) throw nb::value_error("genes must be within ± weight_limit");
+  }
+  for (size_t i = 0; i < genomes.shape(0); ++i) {
+    std::copy_n(genomes.data() + i * genes, genes, from.genome(from.state.living[static_cast<int64_t>(i)]));
+  }
+}
+
 /// `FloatMode` as a context manager.
 class PythonFloatMode {
  public:
@@ -182,6 +199,9 @@ void bind_simulation(nb::module_& module) {
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")
+      .def("set_genomes", &set_genomes, nb::arg("world"), nb::arg("genomes"),
+           nb::sig("def set_genomes(self, world: int, genomes: numpy.typing.NDArray[numpy.float32]) -> None"),
+           "Replaces the genomes of the living: (living, genes). ValueError: wrong shape, or a gene out of bounds.")
       .def(
           "view", [](nb::handle self, int world, const std::string& path) { return view_state(self, world, path); },
           nb::arg("world"), nb::arg("path"),

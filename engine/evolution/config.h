@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "base/array.h"
 #include "base/fields.h"
 
 namespace hedon {
@@ -10,17 +11,26 @@ namespace hedon {
 enum class MutationNoise : int32_t { independent, frozen };
 inline constexpr const char* MUTATION_NOISE_NAMES[] = {"independent", "frozen"};
 
+inline constexpr int MAX_FOOD_KINDS = 8;
+
+/// The law from which founders draw one gene.
+struct GeneConfig {
+  float initial_mean;
+  float initial_sd;
+
+  HEDON_FIELDS(GeneConfig, initial_mean, initial_sd)
+};
+
 struct GenomeConfig {
   int32_t neutral_count;
-  float initial_mean_food;
-  float initial_mean_action;
-  float initial_sd;
   float mutation_scale;
   float weight_limit;
   MutationNoise mutation_noise;
+  GeneConfig action;
+  GeneConfig neutral;                          ///< of every neutral marker
+  FixedList<GeneConfig, MAX_FOOD_KINDS> food;  ///< of each kind's weight
 
-  HEDON_FIELDS(GenomeConfig, neutral_count, initial_mean_food, initial_mean_action, initial_sd, mutation_scale,
-               weight_limit, mutation_noise)
+  HEDON_FIELDS(GenomeConfig, neutral_count, mutation_scale, weight_limit, mutation_noise, action, neutral, food)
 };
 
 enum class ActionNorm : int32_t { max_force, none };

@@ -20,16 +20,19 @@ struct GenomeShape {
 
 HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
+/// The law from which founders draw gene `g`.
+HEDON_FN const GeneConfig& initial_gene(const GenomeShape& shape, const GenomeConfig& config, int32_t g) {
+  return g < shape.kinds ? config.food[g] : g == shape.action() ? config.action : config.neutral;
+}
+
 /// A founder's genome: independent normals around the configured means.
 HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, const RandomStream& random,
                           float* genome) {
   for (int32_t g = 0; g < shape.size(); ++g) {
-    const float mean = g < shape.kinds       ? config.initial_mean_food
-                       : g == shape.action() ? config.initial_mean_action
-                                             : 0.0f;
+    const GeneConfig& gene = initial_gene(shape, config, g);
     const Random4 bits = random.draw(static_cast<uint32_t>(g));
-    genome[g] = clip(mean + config.initial_sd * to_normal(bits.word[0], bits.word[1]).first, -config.weight_limit,
-                     config.weight_limit);
+    genome[g] = clip(gene.initial_mean + gene.initial_sd * to_normal(bits.word[0], bits.word[1]).first,
+                     -config.weight_limit, config.weight_limit);
   }
 }
 

@@ -111,6 +111,8 @@ void visit(Complaint& complaint, const std::string& path, const std::string& nam
 
 void check_food(Complaint& complaint, const WorldConfig& config) {
   complaint.need(config.food.count >= 1, "food", config.food.count, "at least one kind");
+  complaint.need(config.genome.food.count == config.food.count, "genome.food", config.genome.food.count,
+                 "one gene for each kind of food");
   for (int32_t k = 0; k < config.food.count; ++k) {
     const FoodConfig& food = config.food[k];
     const PlacementConfig& place = food.placement;

@@ -12,7 +12,6 @@
 
 namespace hedon {
 
-inline constexpr int MAX_FOOD_KINDS = 8;
 inline constexpr int MAX_FOOD_CENTERS = 16;
 inline constexpr int MAX_RAYS = 32;
 inline constexpr int MAX_TYPES = MAX_FOOD_KINDS + 2;  ///< agent, each food kind, wall

@@ -103,7 +103,7 @@ def test_float32_reads_the_parameters_themselves():
 
 
 def test_actions_move_by_far_less_than_their_noise():
-    simulation = make_simulation(*QUICK, "genome.initial_mean_food=1", *("hazard.kappa=0", "hazard.alpha_age=0"))
+    simulation = make_simulation(*QUICK, "food.normal.gene.initial_mean=1", *("hazard.kappa=0", "hazard.alpha_age=0"))
     world = simulation.worlds[0]
     simulation.run(20 * 64)
     moved = []

@@ -41,7 +41,7 @@ LIVELY = (
     "hazard.kappa=0.4",
     "hazard.alpha_age=2e-4",
     "hazard.beta_age=0.01",
-    "genome.initial_mean_food=1",
+    'food."*".gene.initial_mean=1',
     "motor.max_force=160",
     "genome.mutation_scale=0.5",
 )

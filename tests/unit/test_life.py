@@ -74,7 +74,12 @@ def test_energy_above_the_capacity_is_destroyed():
 
 def test_food_in_the_mouth_is_eaten_and_gone():
     simulation = make_simulation(
-        *STILL, *SAFE, "food.normal.growth_rate=0", "genome.initial_mean_food=2", "genome.initial_sd=0"
+        *STILL,
+        *SAFE,
+        "food.normal.growth_rate=0",
+        "food.normal.gene.initial_mean=2",
+        "food.normal.gene.initial_sd=0",
+        "genome.action.initial_sd=0",
     )
     set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
     simulation.run(1)
@@ -318,7 +323,7 @@ def test_a_body_that_slips_through_a_wall_is_named():
 
 def test_an_agent_whose_numbers_are_not_finite_is_named():
     wild = ("learning.learning_rate=1", "learning.value_coef=1000", "learning.adam_epsilon=1e-30")
-    reward = ("reward.action_coef=1000", "genome.weight_limit=1000", "genome.initial_mean_action=1000")
+    reward = ("reward.action_coef=1000", "genome.weight_limit=1000", "genome.action.initial_mean=1000")
     simulation = make_simulation(*QUICK, *SAFE, *wild, *reward, "learning.update_epochs=50")
     with pytest.raises(EngineError, match=r"not_finite.*agent \d+"):
         simulation.run(2000)

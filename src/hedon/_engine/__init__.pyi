@@ -64,6 +64,11 @@ class Simulation:
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Empties a world and puts these agents and foods into it."""
 
+    def set_genomes(self, world: int, genomes: numpy.typing.NDArray[numpy.float32]) -> None:
+        """
+        Replaces the genomes of the living: (living, genes). ValueError: wrong shape, or a gene out of bounds.
+        """
+
     def view(self, world: int, path: str) -> numpy.typing.NDArray[Any]:
         """One array of a world's state, by slot."""
 

@@ -139,9 +139,13 @@ def _life(config: Config) -> Iterator[Problem]:
             "learning.minibatch_size",
             f"must divide learning.rollout_steps = {learning.rollout_steps}",
         )
-    for name in ("initial_mean_food", "initial_mean_action"):
-        if abs(getattr(genome, name)) > genome.weight_limit:
-            yield _problem(config, f"genome.{name}", f"must be within ± genome.weight_limit = {genome.weight_limit:g}")
+    for path, _, value in leaves(config):
+        if path.endswith(".initial_mean") and abs(value) > genome.weight_limit:
+            rule = f"must be within ± genome.weight_limit = {genome.weight_limit:g}"
+            yield Problem(path, rule, format_value(value))
+    if not re.fullmatch(r"([0-9a-f]{64})?", genome.founders):
+        message = "must be empty, or the digest of a table of founders, which `--founders` sets"
+        yield Problem("genome.founders", message, format_value(genome.founders))
 
 
 def _problem(config: Config, path: str, message: str) -> Problem:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
+from hedon.config.earlier import GENE_SETTINGS, old_rows
 from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
@@ -21,6 +22,7 @@ EARLIER = {
     "birth.inheritance": "at_birth",
     "birth.parents": "all",
     "birth.heading": "own",
+    "genome.founders": "",
 }
 """Settings that older versions did not have, with what those versions did. A complete file without such a setting is
 older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""
@@ -71,6 +73,11 @@ def digest(config: Config) -> str:
         for path, value in flatten(config).items()
         if not path.endswith(".color") and (path, value) not in EARLIER.items()
     ]
+    genes = old_rows(config)
+    if genes is not None:
+        seen = [row for row in seen if not row[0].endswith(GENE_SETTINGS)]
+        at = next(i for i, row in enumerate(seen) if row[0] == "genome.neutral_count")
+        seen[at + 1 : at + 1] = genes
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
 
 

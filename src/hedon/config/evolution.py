@@ -1,14 +1,32 @@
 """Evolution: the genome, how it mutates, and the reward that it defines."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 
 @dataclass(frozen=True, slots=True)
+class GeneConfig:
+    """How founders draw one gene: from a normal law, then clipped to ± `genome.weight_limit`."""
+
+    initial_mean: Annotated[
+        float,
+        Doc("mean of the founders' gene", "", EITHER, Range(ge=-1e3, le=1e3)),
+    ] = 0.0
+    initial_sd: Annotated[
+        float,
+        Doc("standard deviation of the founders' gene", "", EITHER, Range(ge=0, le=1e3)),
+    ] = 0.1
+
+
+@dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """One weight per food kind, one for action, then neutral markers that have no effect on rewards."""
+    """One weight per food kind, one for action, then neutral markers that have no effect on rewards.
+
+    `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, and
+    `[genome.neutral]` each neutral marker.
+    """
 
     neutral_count: Annotated[
         int,
@@ -19,18 +37,16 @@ class GenomeConfig:
             Range(ge=0, le=16),
         ),
     ] = 16
-    initial_mean_food: Annotated[
-        float,
-        Doc("mean of the founders' food weights", "", EITHER, Range(ge=-1e3, le=1e3)),
-    ] = 0.0
-    initial_mean_action: Annotated[
-        float,
-        Doc("mean of the founders' action weight", "", EITHER, Range(ge=-1e3, le=1e3)),
-    ] = 0.0
-    initial_sd: Annotated[
-        float,
-        Doc("standard deviation of every founder's weights", "", EITHER, Range(ge=0, le=1e3)),
-    ] = 0.1
+    founders: Annotated[
+        str,
+        Doc(
+            "digest of the table that the founders' genes come from, `founders.csv` in the run's folder; set by "
+            "`--founders`. Genes that the table does not have are drawn as below",
+            "",
+            OURS,
+            Range(form="64 hexadecimal digits"),
+        ),
+    ] = ""
     mutation_scale: Annotated[
         float,
         Doc("scale of the Cauchy noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
@@ -48,6 +64,8 @@ class GenomeConfig:
             PAPER + '; the code has "frozen"',
         ),
     ] = "independent"
+    action: GeneConfig = field(default_factory=GeneConfig)
+    neutral: GeneConfig = field(default_factory=GeneConfig)
 
 
 @dataclass(frozen=True, slots=True)

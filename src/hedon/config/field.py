@@ -165,6 +165,15 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
     return here
 
 
+def places(section: type, name: str, path: str = "") -> Iterator[str]:
+    """The paths of all settings of this name in a section and its inner sections, in order."""
+    for inner_name, inner in sections(section).items():
+        below = f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
+        if name in settings(inner.type):
+            yield below + name
+        yield from places(inner.type, name, below)
+
+
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
     """Every setting in a section and its inner sections by its path, in order, with its value."""
     for name, setting in settings(type(section)).items():

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from hedon.config.evolution import GeneConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 MAX_KINDS = 8
@@ -80,3 +81,4 @@ class FoodConfig:
         Doc("color in figures; agents do not see it", "", OURS, Range(form="#rrggbb")),
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)
+    gene: GeneConfig = field(default_factory=GeneConfig)

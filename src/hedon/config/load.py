@@ -9,6 +9,7 @@ from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.dump import EARLIER, digest
+from hedon.config.earlier import with_genes
 from hedon.config.layer import Table, settle_food, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
@@ -53,6 +54,8 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     below = _layers_below(own, fidelity, problems)
     if problems:
         raise ConfigError(origin, problems)
+    if own.get("complete") is True:
+        own = with_genes(own)
     name = {"name": str(source) if path is None else _name_of(path)}
     merged = _settled([name, *below, own, *tables], origin)
     return from_tables(merged, origin + " with --set" if tables else origin)
@@ -64,7 +67,7 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Something in it is wrong or missing.
     """
-    return from_tables(_settled([_earlier(), parse_toml(text, origin)], origin), origin)
+    return from_tables(_settled([_earlier(), with_genes(parse_toml(text, origin))], origin), origin)
 
 
 def is_modified(config: Config) -> bool:

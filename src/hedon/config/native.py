@@ -11,6 +11,7 @@ PYTHON_ONLY = (
     "arena.corner_chords",
     "arena.inner_walls",
     "food.color",
+    "genome.founders",
     "birth.distance_unit",
 )
 """Settings that the engine does not get: names, colors, and what it gets as walls or as lengths in u."""
@@ -20,11 +21,14 @@ def engine_config(config: Config) -> dict[str, Any]:
     """The nested dict that the engine's structs are filled from.
 
     Names are those of the dataclasses, with these differences: `arena` has only its size (see `arena.walls`
-    for the rest); `food` is a list in the order of the kinds; `birth.distance_sd` is (x, y) in u.
+    for the rest); `food` is a list in the order of the kinds, and
+    `genome.food` has their genes in this order; `birth.distance_sd` is (x, y) in u.
     """
     native = {name: section for name, section in asdict(config).items() if name not in PROVENANCE}
     native["arena"] = {"width": config.arena.width, "height": config.arena.height}
-    native["food"] = [_without(food, "color") for food in native["food"].values()]
+    foods = native["food"].values()
+    native["genome"] = _without(native["genome"], "founders") | {"food": [food["gene"] for food in foods]}
+    native["food"] = [_without(_without(food, "color"), "gene") for food in foods]
     native["birth"] = _without(native["birth"], "distance_unit")
     native["birth"]["distance_sd"] = distance_sd(config)
     return native

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from hedon.config.check import contradictions
 from hedon.config.config import Config
-from hedon.config.field import Setting, find, sections, settings
+from hedon.config.field import Setting, find, places, sections, settings
 from hedon.config.problem import ConfigError, Problem, format_path, format_value, nearest
 from hedon.config.toml import require_plain
 from hedon.error import ArgumentError
@@ -125,5 +125,4 @@ def _nearest_name(location: Sequence[str | int]) -> str | None:
     if not isinstance(section, type):
         return None
     beside = nearest(name, [*settings(section), *sections(section)])
-    elsewhere = [f"{place}.{name}" for place, inner in sections(Config).items() if name in settings(inner.type)]
-    return beside or " or ".join(elsewhere) or None
+    return beside or " or ".join(places(Config, name)) or None

@@ -71,12 +71,12 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
             'birth.distance_sd = 100.0: must be at most 1 with birth.distance_unit = "arena_width"',
         ),
         (
-            ["genome.initial_mean_food=-11"],
-            "genome.initial_mean_food = -11.0: must be within ± genome.weight_limit = 10",
+            ["food.normal.gene.initial_mean=-11"],
+            "food.normal.gene.initial_mean = -11.0: must be within ± genome.weight_limit = 10",
         ),
         (
-            ["genome.initial_mean_action=11"],
-            "genome.initial_mean_action = 11.0: must be within ± genome.weight_limit = 10",
+            ["genome.action.initial_mean=11"],
+            "genome.action.initial_mean = 11.0: must be within ± genome.weight_limit = 10",
         ),
         (
             ["food.normal.color=green"],

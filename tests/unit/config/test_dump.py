@@ -1,4 +1,5 @@
 import dataclasses
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_to
 from hedon.config import field as doc
 from hedon.config.config import Config
 from hedon.config.dump import EARLIER, flatten, section_paths
+from hedon.config.evolution import GeneConfig
 from hedon.config.load import parse_config
 
 
@@ -99,11 +101,20 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
 
 def test_a_file_of_an_earlier_version_means_what_was_done_then(tmp_path: Path) -> None:
     text = dump_toml(load_config("baseline", overrides=["genome.neutral_count=1"]))
+    genes = r"\n\n\[(genome\.action|genome\.neutral|food\.normal\.gene)\]\ninitial_mean.*\ninitial_sd.*"
+    text, count = re.subn(genes, "", text)
+    assert count == 3
+    old = "neutral_count = 1\ninitial_mean_food = 0.0\ninitial_mean_action = {action}\ninitial_sd = 0.1"
     later = tuple(f"{path.rpartition('.')[2]} = " for path in EARLIER)
     lines = [line for line in text.splitlines() if not line.startswith(later)]
     assert len(lines) == len(text.splitlines()) - len(EARLIER)
+    lines = [old if line.startswith("neutral_count") else line for line in lines]
     path = tmp_path / "config.toml"
-    path.write_text("\n".join(lines))
+    path.write_text("\n".join(lines).replace("{action}", "2.0"))
+    moved = load_config(path)
+    assert moved.genome.action == GeneConfig(2.0, 0.1)
+    assert moved.genome.neutral == moved.food["normal"].gene == GeneConfig(0.0, 0.1)
+    path.write_text("\n".join(lines).replace("{action}", "0.0"))
     then = load_config(path)
     assert then.physics.solver == "sequential"
     assert then.learning.acting_weights == parse_config(path.read_text(), "text").learning.acting_weights == "float32"

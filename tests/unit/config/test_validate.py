@@ -63,7 +63,7 @@ def test_each_error_says_what_is_allowed(tables: dict[str, Any], line: str) -> N
 
 
 def test_all_errors_come_at_once() -> None:
-    found = lines({"energy": {"initial": -1, "nme": 0}, "genome": {"initial_sd": "x"}, "birht": {}})
+    found = lines({"energy": {"initial": -1, "nme": 0}, "genome": {"mutation_scale": "x"}, "birht": {}})
     assert len(found) == 4
 
 

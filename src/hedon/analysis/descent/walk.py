@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import Genealogy, ancestry, depth
 from hedon.config import Config
+from hedon.config.evolution import GeneConfig
 
 WALKS = 2000
 """Per world: the smallest chance that they tell from zero is 1 in 2000."""
@@ -43,12 +44,13 @@ class MutationLaw:
     late: bool
 
 
-def mutation_law(config: Config, mean: float = 0.0) -> MutationLaw:
-    """The law of a run; `mean` is that of the founders' gene."""
+def mutation_law(config: Config, gene: GeneConfig | None = None) -> MutationLaw:
+    """The law of one gene of a run; by default that of a neutral marker."""
     genome = config.genome
+    gene = gene or genome.neutral
     return MutationLaw(
-        mean=mean,
-        sd=genome.initial_sd,
+        mean=gene.initial_mean,
+        sd=gene.initial_sd,
         scale=genome.mutation_scale,
         limit=genome.weight_limit,
         frozen=genome.mutation_noise == "frozen",

@@ -24,6 +24,7 @@ from hedon.analysis.gene.weight import last_agents
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.interval import LEVEL
 from hedon.statistic.prediction import Prediction, prediction
+from hedon.config.gene import gene_config
 
 NAN = math.nan
 _LINES = 4000
@@ -90,7 +91,7 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
     newest = last_agents(world.agents)
     generations = float(newest["generation"].to_numpy().mean())
     start, genome = start_of(world, weight), world.config.genome
-    lines = rng.normal(start, genome.initial_sd, _LINES)
+    lines = rng.normal(start, gene_config(world.config, weight).initial_sd, _LINES)
     pool = _pool(found, table)
     for _ in range(round(generations)):
         lines = np.clip(lines + rng.choice(pool, _LINES), -genome.weight_limit, genome.weight_limit)

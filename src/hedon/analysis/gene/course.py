@@ -10,6 +10,7 @@ from hedon.analysis.descent.genealogy import depth, genealogy, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
 from hedon.analysis.gene.drift import start_of
 from hedon.analysis.world.record import WorldRecord
+from hedon.config.gene import gene_config
 
 WALKS = 500
 """Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
@@ -62,8 +63,9 @@ def world_course(
     if len(living) < 2:
         return None
     generation = depth(tree)
-    starts = {start_of(world, name) for name in world.weight_names}
-    null = {start: neutral_courses(tree, living, mutation_law(world.config, start), rng, walks) for start in starts}
+    genes = {name: gene_config(world.config, name) for name in world.weight_names}
+    laws = {gene: mutation_law(world.config, gene) for gene in genes.values()}
+    null = {gene: neutral_courses(tree, living, law, rng, walks) for gene, law in laws.items()}
     means = {}
     for name in world.weight_names:
         values = world.agents[name].to_numpy().astype(np.float64)
@@ -71,5 +73,5 @@ def world_course(
     return WorldCourse(
         float(generation[living[-1]].mean() - generation[living[0]].mean()),
         means,
-        {name: null[start_of(world, name)] for name in world.weight_names},
+        {name: null[gene] for name, gene in genes.items()},
     )

@@ -23,6 +23,7 @@ from hedon.analysis.world.record import WorldRecord, generator
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
+from hedon.config.gene import gene_config
 
 NAN = math.nan
 
@@ -88,10 +89,7 @@ class DriftTest:
 
 def start_of(world: WorldRecord, weight: str) -> float:
     """Mean of the law from which founders draw a weight."""
-    genome = world.config.genome
-    if weight in world.neutral_names:
-        return 0.0
-    return genome.initial_mean_action if weight == "w_action" else genome.initial_mean_food
+    return gene_config(world.config, weight).initial_mean
 
 
 def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
@@ -104,14 +102,15 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
     if tree.gaps or not tree.size:
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
-    starts = {start_of(world, name) for name in world.weight_names}
-    null = {start: neutral_means(tree, last, mutation_law(world.config, start), rng, walks) for start in starts}
+    genes = {name: gene_config(world.config, name) for name in world.weight_names}
+    laws = {gene: mutation_law(world.config, gene) for gene in genes.values()}
+    null = {gene: neutral_means(tree, last, law, rng, walks) for gene, law in laws.items()}
     results = []
-    for name in world.weight_names:
-        start = start_of(world, name)
+    for name, gene in genes.items():
+        start = gene.initial_mean
         mean = float(world.agents[name].to_numpy()[last].mean(dtype=np.float64))
-        low, median, high = np.quantile(null[start], (0.025, 0.5, 0.975))
-        score = rank_score(mean, null[start])
+        low, median, high = np.quantile(null[gene], (0.025, 0.5, 0.975))
+        score = rank_score(mean, null[gene])
         p = float(2.0 * stats.norm.sf(abs(score)))
         results.append(WorldDrift(name, start, mean, float(low), float(median), float(high), score, p))
     return results
