@@ -7,6 +7,7 @@ from pathlib import Path
 import polars as pl
 
 from hedon.check.finding import Finding, Verdict
+from hedon.check.founder import check_founders
 from hedon.check.genealogy import check_agents
 from hedon.check.population import check_population
 from hedon.check.table import check_digests, check_numbering, read_parts
@@ -82,6 +83,7 @@ def check_run(path: Path | str) -> Verdict:
     _check_checkpoints(folder)
     _check_tables(folder)
     _check_rows(folder)
+    folder.add(check_founders(folder.path, folder.config, folder.manifest, folder.tables.get("agents")))
     _check_end(folder)
     return Verdict(tuple(dict.fromkeys(folder.findings)), tuple(folder.notes), tuple(_usable(folder)))
 

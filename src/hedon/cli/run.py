@@ -46,6 +46,12 @@ def run(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
+    founders: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SOURCE[:SHARE],…", help="Begin with these genomes: a table (.csv), RUN@STEP, or a point."
+        ),
+    ] = None,
 ) -> None:
     """Run a condition, then write its report.
 
@@ -58,18 +64,21 @@ def run(
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
       hedon run baseline --fidelity released --set population.capacity=100
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
+      hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
     HEDON_KERNEL forces an instruction set: avx512, avx2 or portable.
     """
     from hedon.config.load import load_config
     from hedon.experiment.plan import RunPlan, default_folder
     from hedon.experiment.run import run as run_plan
+    from hedon.record.founder_source import read_founders
 
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
     require_no_run(folder)
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint)
+    begin_with = read_founders(founders, config) if founders else None
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with)
     conduct(plan, lambda display: run_plan(plan, display))
 
 

@@ -18,6 +18,7 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
+from hedon.record.founder import load_founders
 from hedon.record.manifest import Manifest, Parent
 from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
@@ -29,9 +30,11 @@ SHAPE = (
     "sensor.touch_sectors",
     "sensor.scaling",
     "genome.neutral_count",
+    "genome.founders",
     "learning.rollout_steps",
 )
-"""Settings and sections that fix the shapes of a world's arrays. The kinds of food and their capacities do so too."""
+"""Settings and sections that fix the shapes of a world's arrays, or how it began. The kinds of food and their
+capacities do so too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,8 @@ def plan_branch(
     parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
     place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
-    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds)
+    founders = load_founders(folder, config)
+    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders)
     return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
 
 

@@ -1,12 +1,13 @@
 """The plan of a run: what to compute, where its records go, and what its progress display shows."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
 from hedon.config.config import Config
 from hedon.config.validate import validated
+from hedon.error import ArgumentError
 from hedon.experiment.argument import (
     MAX_SECONDS,
     MAX_STEPS,
@@ -19,6 +20,7 @@ from hedon.experiment.argument import (
 )
 from hedon.experiment.sample import Rows
 from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.record.founder import Founders
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -33,9 +35,12 @@ class RunPlan:
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; 0 for none.
         checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
+        founders: Genomes that the worlds begin with; None where they are drawn as the config says. The plan's config
+            gets the table's digest.
 
     Raises:
         ConfigError: A setting is wrong.
+        FounderError: The founders do not fit the config.
         ArgumentError: Another value is wrong.
     """
 
@@ -46,6 +51,7 @@ class RunPlan:
     threads: int
     frames: int
     checkpoint_seconds: float
+    founders: Founders | None
 
     def __init__(
         self,
@@ -56,15 +62,17 @@ class RunPlan:
         threads: int = 0,
         frames: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
+        founders: Founders | None = None,
     ) -> None:
         checked = {
-            "config": validated(config),
+            "config": _with_founders(validated(config), founders),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),
             "threads": integer("threads", threads, 0, MAX_THREADS),
             "frames": integer("frames", frames, 0, MAX_STEPS),
             "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds, 0.0, MAX_SECONDS),
+            "founders": founders,
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -99,6 +107,19 @@ class Display(Protocol):
     def update(self, moment: Moment) -> None:
         """Shows a moment; called about five times a second."""
         ...
+
+
+def _with_founders(config: Config, founders: Founders | None) -> Config:
+    """The config with the digest of its founders' table."""
+    if founders is not None:
+        founders.require(config)
+        return replace(config, genome=replace(config.genome, founders=founders.digest))
+    if config.genome.founders:
+        raise ArgumentError(
+            "founders: the config names a table of founders, so give it, as in --founders RUN/founders.csv, or leave "
+            'it out with --set genome.founders=""'
+        )
+    return config
 
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:

@@ -18,6 +18,7 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
+from hedon.record.founder import load_founders
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.provenance import git_revision
@@ -64,6 +65,7 @@ def hold(
         RecordError: It is not a run, is in use, has no steps left, or its checkpoint does not fit; the message says
             why.
         ConfigError: Its config cannot be read.
+        FounderError: Its table of founders cannot be read.
         ArgumentError: A number is out of bounds.
     """
     folder = argument.folder("folder", folder)
@@ -76,7 +78,8 @@ def hold(
             check_head(checkpoint.head, config, manifest.seeds, f"the checkpoint of {folder}")
             verify_parts(folder, checkpoint.head.parts)
         total = manifest.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
-        plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds)
+        founders = load_founders(folder, config)
+        plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds, founders)
         notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
         found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
         _check_steps(found)
@@ -119,6 +122,8 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads, same_kernel(found.manifest.kernel))
         start = Start()
+        if checkpoint is None and plan.founders is not None:
+            simulation.set_founders(plan.founders)
         if checkpoint is not None:
             start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
         parts = checkpoint.head.parts if checkpoint else {}

@@ -44,6 +44,8 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads)
+        if plan.founders is not None:
+            simulation.set_founders(plan.founders)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 
 
@@ -56,7 +58,7 @@ def begin(
     interrupted: Interrupts,
 ) -> Manifest:
     """Makes a new folder for a simulation that is at `start`, and runs it; see `run`."""
-    with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest) as writer:
+    with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, founders=plan.founders) as writer:
         return drive(simulation, plan, manifest, writer, start, display, interrupted)
 
 

@@ -12,6 +12,8 @@ from hedon.config.config import Config
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.native import engine_input
+from hedon.record.founder import Founders
+from hedon.record.schema import weight_names
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
@@ -76,6 +78,19 @@ class Simulation:
             KeyboardInterrupt: Ctrl-C was pressed; the worlds have done fewer steps than `steps`.
         """
         self.engine.run(integer("steps", steps, 0, MAX_RUN_STEPS))
+
+    def set_founders(self, founders: Founders) -> None:
+        """Gives the founders of every world the genes of a table; call it before the first step.
+
+        Raises:
+            FounderError: The table does not fit the config.
+        """
+        founders.require(self.config)
+        names = weight_names(tuple(self.config.food), self.config.genome.neutral_count)
+        for world in self.worlds:
+            drawn = world.agents()["genome"]
+            given = founders.genomes(world.seed, len(drawn), names)
+            self.engine.set_genomes(world.index, np.where(np.isnan(given), drawn, given).astype(np.float32))
 
     @property
     def extinct(self) -> bool:

@@ -1,0 +1,44 @@
+"""Checks the founders of a run against the table that they were to come from."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hedon.check.finding import Finding
+from hedon.config.config import Config
+from hedon.record.founder import FOUNDERS, FounderError, load_founders
+from hedon.record.manifest import Manifest
+
+
+def check_founders(
+    folder: Path, config: Config | None, manifest: Manifest | None, agents: pl.DataFrame | None
+) -> Iterator[Finding]:
+    """What is wrong with the table of founders, and with the founders among the agents.
+
+    Args:
+        folder: Of the run.
+        config: Of the run; None if it cannot be read, as all that follow. Then less is checked.
+        manifest: Of the run.
+        agents: The table, as far as it can be read.
+    """
+    if config is None:
+        return
+    try:
+        founders = load_founders(folder, config)
+    except FounderError as error:
+        yield Finding(FOUNDERS, f"cannot be used: {str(error).removeprefix(str(folder / FOUNDERS) + ': ')}")
+        return
+    if founders is None or manifest is None or agents is None:
+        return
+    count = config.population.initial_count
+    for world, seed in enumerate(manifest.seeds):
+        mine = agents.filter((pl.col("world") == world) & (pl.col("generation") == 0))
+        ids = mine["agent_id"].to_numpy()
+        mine, ids = mine.filter((ids >= 0) & (ids < count)), ids[(ids >= 0) & (ids < count)]
+        given = founders.genomes(seed, count, founders.genes)[ids]
+        wrong = (~np.isnan(given) & (given != mine.select(founders.genes).to_numpy())).any(axis=1)
+        if wrong.any():
+            what = f"world {world}: the genes of {wrong.sum():,} founders are not those of {FOUNDERS}"
+            yield Finding("agents", f"{what}, the first is agent {ids[wrong][0]}")

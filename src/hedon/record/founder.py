@@ -1,0 +1,267 @@
+"""Tables of founders: whose genes the worlds of a run begin with, and which founder gets which row.
+
+A table has one row per genome and a column for each gene that it gives; other genes are drawn as the config says. The
+column `group` tells competitors apart, and `share` is the part of the founders that comes from a group. The run's
+folder holds the table as `founders.csv`, and the config its digest, so that a run can be repeated and checked.
+"""
+
+import csv
+import hashlib
+import io
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config.config import Config
+from hedon.config.problem import nearest
+from hedon.error import HedonError
+from hedon.record.schema import weight_names
+from hedon.text import brief
+
+FOUNDERS = "founders.csv"
+GROUP, SHARE = "group", "share"
+MAX_ROWS = 100_000
+"""Most rows of a table."""
+MAX_BYTES = 100_000_000
+
+
+class FounderError(HedonError):
+    """Founders that cannot be used."""
+
+
+@dataclass(frozen=True, eq=False)
+class Founders:
+    """Genomes to begin with.
+
+    Attributes:
+        genes: columns of the genome that the table gives.
+        values: (rows, genes) float32; NaN where a gene is drawn as the config says.
+        group: of each row.
+        share: of each group among the founders of a world; they sum to 1. The groups are in the order of the table.
+    """
+
+    genes: tuple[str, ...]
+    values: NDArray[np.float32]
+    group: tuple[str, ...]
+    share: Mapping[str, float]
+
+    @cached_property
+    def content(self) -> bytes:
+        """The table as CSV."""
+        file = io.StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([GROUP, SHARE, *self.genes])
+        for group, row in zip(self.group, self.values, strict=True):
+            cells = ["" if math.isnan(value) else str(value) for value in row]
+            writer.writerow([group, repr(self.share[group]), *cells])
+        return file.getvalue().encode()
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the table, 64 hexadecimal digits."""
+        return hashlib.sha256(self.content).hexdigest()
+
+    def draw(self, seed: int, count: int) -> NDArray[np.int64]:
+        """Which row each founder of a world gets, (count,).
+
+        Each group gets its share of the founders, rounded so that the sum is right. Within a group rows are taken in an
+        order that depends on the seed; a group with fewer rows than founders gives each row several times.
+        """
+        exact = {group: share * count for group, share in self.share.items()}
+        number = {group: math.floor(part) for group, part in exact.items()}
+        left = sorted(exact, key=lambda group: number[group] - exact[group])
+        for group in left[: count - sum(number.values())]:
+            number[group] += 1
+        rows: dict[str, list[int]] = {group: [] for group in self.share}
+        for row, group in enumerate(self.group):
+            rows[group].append(row)
+        chosen = [np.resize(_shuffled(rows[group], f"row {seed}"), number[group]) for group in self.share]
+        founders = np.concatenate(chosen).tolist()
+        order = _shuffled(range(count), f"founder {seed}")
+        return np.array([founders[i] for i in order], np.int64)
+
+    def groups(self, seed: int, count: int) -> list[str]:
+        """The group of each founder of a world, by agent_id."""
+        return [self.group[row] for row in self.draw(seed, count)]
+
+    def genomes(self, seed: int, count: int, names: Sequence[str]) -> NDArray[np.float32]:
+        """The genes of each founder of a world, (count, names); NaN where a gene is not given.
+
+        Args:
+            seed: of the world.
+            count: founders.
+            names: the genome's columns.
+        """
+        found = np.full((count, len(names)), np.nan, np.float32)
+        rows = self.draw(seed, count)
+        for i, gene in enumerate(self.genes):
+            found[:, list(names).index(gene)] = self.values[rows, i]
+        return found
+
+    def changed(self, gene: str, value: float) -> "Founders":
+        """The same table with one gene, which it must have, at one value."""
+        values = self.values.copy()
+        values[:, self.genes.index(gene)] = value
+        return replace(self, values=values)
+
+    def require(self, config: Config, origin: str = "founders") -> None:
+        """Checks that the genes are those of a config, and within its limit.
+
+        Raises:
+            FounderError: One is not.
+        """
+        for gene in self.genes:
+            if column_of(config, gene) != gene:
+                raise FounderError(f"{brief(origin)}: {unknown_gene(config, gene)}")
+        limit = np.float32(config.genome.weight_limit)
+        wrong = np.argwhere(np.abs(self.values) > limit)
+        if len(wrong):
+            row, column = wrong[0]
+            raise FounderError(
+                f"{brief(origin)}: row {row + 1}, {self.genes[column]} = {self.values[row, column]:g}: must be within "
+                f"± genome.weight_limit = {limit:g}"
+            )
+
+
+def make_founders(
+    genes: Sequence[str], values: NDArray[np.floating], group: Sequence[str], share: Mapping[str, float] | None = None
+) -> Founders:
+    """A table from genomes, (rows, genes); without shares each row counts equally."""
+    weights = dict(share) if share is not None else dict(Counter(group))
+    total = math.fsum(weights.values())
+    parts = {name: weight / total for name, weight in weights.items()}
+    return Founders(tuple(genes), np.asarray(values, np.float32), tuple(group), parts)
+
+
+def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[float]) -> Founders:
+    """One table from several, each of which becomes one group; a gene that one lacks is drawn as the config says."""
+    genes = tuple(dict.fromkeys(gene for table in tables for gene in table.genes))
+    values, group = [], []
+    for table, label in zip(tables, labels, strict=True):
+        block = np.full((len(table.values), len(genes)), np.nan, np.float32)
+        for i, gene in enumerate(table.genes):
+            block[:, genes.index(gene)] = table.values[:, i]
+        values.append(block)
+        group += [label] * len(block)
+    return make_founders(genes, np.concatenate(values), group, dict(zip(labels, shares, strict=True)))
+
+
+def column_of(config: Config, name: str) -> str | None:
+    """The column of a gene that is named by its column, its kind of food, or `action`; None if there is no such gene.
+
+    `food` is the first kind, unless a kind has this name.
+    """
+    columns = weight_names(tuple(config.food), config.genome.neutral_count)
+    return next((column for column in (name, f"w_{name}") if column in columns), columns[0] if name == "food" else None)
+
+
+def unknown_gene(config: Config, name: str) -> str:
+    """Says that there is no such gene, which there are, and which is near."""
+    columns = weight_names(tuple(config.food), config.genome.neutral_count)
+    shown = [column.removeprefix("w_") for column in columns[: len(config.food) + 1]]
+    neutral = f", neutral_1 to neutral_{config.genome.neutral_count}" if config.genome.neutral_count else ""
+    near = nearest(name, [*columns, *shown, "food"])
+    hint = f"; did you mean {near}?" if near else ""
+    return f"there is no gene {brief(repr(name))} (there are {', '.join(shown)}{neutral}){hint}"
+
+
+def read_table(path: Path, config: Config) -> Founders:
+    """Reads a table of founders from a CSV file.
+
+    Args:
+        path: Of the file. Its first line names the columns: genes, by their column in the records or by their short
+            name, and `group` and `share` if there are any. An empty cell is a gene that is drawn as the config says.
+        config: Whose genes they are.
+
+    Raises:
+        FounderError: The table cannot be used; the message gives the place, the value and what is allowed.
+    """
+    origin = brief(str(path))
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+        if len(content) > MAX_BYTES:
+            raise FounderError(f"{origin}: is too large for a table of founders (at most {MAX_BYTES:,} bytes)")
+        rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig"), newline=""), strict=True))
+    except OSError as error:
+        raise FounderError(f"{origin}: cannot be read: {error.strerror}") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        what = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"it is not CSV: {error}"
+        raise FounderError(f"{origin}: cannot be read: {what}") from None
+    head = [cell.strip() for cell in rows[0]] if rows else []
+    genes = _columns(head, config, origin)
+    lines = [(number, row) for number, row in enumerate(rows[1:], 2) if row]
+    if not 1 <= len(lines) <= MAX_ROWS:
+        raise FounderError(f"{origin}: must have from 1 to {MAX_ROWS:,} rows below its first line, not {len(lines):,}")
+    values, groups, shares = [], [], {}
+    for number, row in lines:
+        place = f"{origin}: line {number}"
+        if len(row) != len(head):
+            raise FounderError(f"{place}: has {len(row)} cells, but there are {len(head)} columns")
+        cells = dict(zip(head, map(str.strip, row), strict=True))
+        group = cells.get(GROUP) or path.stem
+        if SHARE in head:
+            share = _number(cells[SHARE], f"{place}, {SHARE}", 0.0, 1e9)
+            if not share > 0 or shares.setdefault(group, share) != share:
+                rule = "must be above 0, and the same in all rows of a group"
+                raise FounderError(f"{place}, {SHARE} = {brief(cells[SHARE])}: {rule}")
+        limit = config.genome.weight_limit
+        values.append([_number(cells[name], f"{place}, {name}", -limit, limit, empty=True) for name in genes])
+        groups.append(group)
+    return make_founders(tuple(genes.values()), np.array(values, np.float32), groups, shares or None)
+
+
+def load_founders(folder: Path, config: Config) -> Founders | None:
+    """The table of a run, from its folder; None if its founders are drawn as the config says.
+
+    Raises:
+        FounderError: The table is missing or was changed.
+    """
+    if not config.genome.founders:
+        return None
+    founders = read_table(folder / FOUNDERS, config)
+    if founders.digest != config.genome.founders:
+        raise FounderError(f"{folder / FOUNDERS}: was changed: its digest differs from the one in the config")
+    return founders
+
+
+def _columns(head: Sequence[str], config: Config, origin: str) -> dict[str, str]:
+    """The column of the genome for each column of genes in a table."""
+    genes: dict[str, str] = {}
+    for name in head:
+        if name in (GROUP, SHARE):
+            continue
+        column = column_of(config, name)
+        if column is None:
+            raise FounderError(f"{origin}: line 1: {unknown_gene(config, name)}")
+        if column in genes.values():
+            raise FounderError(f"{origin}: line 1: the gene {name!r} appears twice")
+        genes[name] = column
+    if not genes:
+        raise FounderError(f"{origin}: line 1: must name at least one gene, such as food or action, besides {GROUP}")
+    if len(set(head)) < len(head):
+        raise FounderError(f"{origin}: line 1: a column appears twice")
+    return genes
+
+
+def _number(text: str, place: str, low: float, high: float, *, empty: bool = False) -> float:
+    if empty and not text:
+        return math.nan
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise FounderError(f"{place} = {brief(repr(text))}: must be a number from {low:g} to {high:g}")
+    return value
+
+
+def _shuffled(items: Sequence[int], what: str) -> list[int]:
+    """Items in an order that depends on a text alone, the same with every version of every library."""
+    return sorted(items, key=lambda item: hashlib.sha256(f"{what} {item}".encode()).digest())

@@ -1,0 +1,148 @@
+"""Where founders come from: a table, those alive at some step of a run, a point, or a mixture of these."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hedon.config.config import Config
+from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, read_table, unknown_gene
+from hedon.record.reader import open_run
+from hedon.text import brief
+
+_SHARE = re.compile(r":([0-9.eE+-]+)$")
+_HELP = "give a table (.csv), RUN@STEP, the folder of a run, or a point such as food=5,action=0"
+
+
+def read_founders(text: str, config: Config) -> Founders:
+    """Founders from a source, or from several with shares.
+
+    Args:
+        text: `table.csv`; `RUN@STEP` for those alive at a step of a run; `RUN` for those alive at its end;
+            `food=5,action=0` for a point. Several are joined by commas, each with `:SHARE` or none with it.
+        config: Of the run that begins with them.
+
+    Raises:
+        FounderError: A source is none, or cannot be used; the message says why.
+        RecordError: A run cannot be read.
+    """
+    parts = _parts(text)
+    if len(parts) == 1 and parts[0][1] is None:
+        return read_source(parts[0][0], config)
+    shares = [share for _, share in parts if share is not None]
+    if len(shares) not in (0, len(parts)):
+        raise FounderError(f"--founders {brief(text)}: give every source a share, as in A:0.5,B:0.5, or none")
+    labels: list[str] = []
+    tables = [read_source(source, config) for source, _ in parts]
+    for source, _ in parts:
+        label = source_label(source)
+        labels.append(label if label not in labels else f"{label} ({len(labels) + 1})")
+    return join(tables, labels, shares or [1.0] * len(parts))
+
+
+def read_source(text: str, config: Config) -> Founders:
+    """Founders from one source; see `read_founders`."""
+    if text.endswith(".csv"):
+        return read_table(Path(text), config)
+    if "=" in text:
+        return _point(text, config)
+    folder, at, step = text.rpartition("@")
+    if not at or Path(text).is_dir():
+        return living(Path(text), None, config)
+    if not step.isdecimal() or len(step) > 12:
+        raise FounderError(f"founders {brief(text)!r}: {brief(step)!r} is not a step: {_HELP}")
+    return living(Path(folder), int(step), config)
+
+
+def living(folder: Path, step: int | None, config: Config) -> Founders:
+    """The genomes of those alive after a step of a run, or at its end, from its table of agents.
+
+    Neutral markers that the config has no room for are left out; those that the run lacks are drawn as it says.
+
+    Raises:
+        FounderError: Nobody lived then, the run has not come so far, or it has a gene that the config lacks.
+        RecordError: It is not a run, or cannot be read.
+    """
+    if not folder.exists():
+        raise FounderError(f"founders {brief(str(folder))!r}: there is no such file or folder: {_HELP}")
+    run = open_run(folder)
+    for gene in run.reward_names:
+        if column_of(config, gene) != gene:
+            raise FounderError(f"founders {brief(str(folder))!r}: {unknown_gene(config, gene)}")
+    genes = [*run.reward_names, *run.neutral_names[: config.genome.neutral_count]]
+    agents = run.agents()
+    last = max([*run.manifest.steps_done, 0])
+    if step is None:
+        now = agents.filter(pl.col("death_step").is_null())
+    elif step > last:
+        raise FounderError(f"founders {brief(str(folder))}@{step}: the run has only {last:,} steps")
+    else:
+        died_later = pl.col("death_step").is_null() | (pl.col("death_step") > step)
+        now = agents.filter((pl.col("birth_step") <= step) & died_later)
+    if now.is_empty():
+        raise FounderError(f"founders {brief(str(folder))}: nobody is alive at step {last if step is None else step:,}")
+    label = folder.resolve().name if step is None else f"{folder.resolve().name}@{step}"
+    values = now.sort("world", "agent_id").select(genes).to_numpy()
+    founders = make_founders(genes, values, [label] * len(values))
+    founders.require(config, f"founders {folder}")
+    return founders
+
+
+def source_label(text: str) -> str:
+    """What a source's group is called: without the folders above it."""
+    return text if "=" in text else Path(text).name or text
+
+
+def parse_point(text: str, config: Config) -> dict[str, float]:
+    """Genes and their values from a text such as "food=5,action=0", by column.
+
+    Raises:
+        FounderError: A gene is unknown or given twice, or a value is not allowed.
+    """
+    point: dict[str, float] = {}
+    limit = config.genome.weight_limit
+    for item in text.split(","):
+        name, _, number = (part.strip() for part in item.partition("="))
+        column = column_of(config, name)
+        if column is None:
+            raise FounderError(f"{brief(text)}: {unknown_gene(config, name)}")
+        try:
+            value = float(number)
+        except ValueError:
+            value = float("nan")
+        if not abs(value) <= limit or column in point:
+            what = f"{brief(name)} = {brief(number)}"
+            raise FounderError(f"{brief(text)}: {what}: must be one number from {-limit:g} to {limit:g}")
+        point[column] = value
+    return point
+
+
+def _point(text: str, config: Config) -> Founders:
+    point = parse_point(text, config)
+    values = np.array([list(point.values())], np.float32)
+    return make_founders(tuple(point), values, [source_label(text)])
+
+
+def _parts(text: str) -> list[tuple[str, float | None]]:
+    """Sources with their shares. Commas join sources, and the genes of a point."""
+    found: list[tuple[str, float | None]] = []
+    for item in map(str.strip, text.split(",")):
+        share = _SHARE.search(item)
+        source = item[: share.start()] if share else item
+        if not source or (share and not _is_positive(share[1])):
+            raise FounderError(
+                f"--founders {brief(text)!r}: {brief(item)!r} is no source with a share above 0: {_HELP}"
+            )
+        is_gene = "=" in source and not source.endswith(".csv")
+        if is_gene and found and found[-1][1] is None and "=" in found[-1][0]:
+            source = f"{found.pop()[0]},{source}"
+        found.append((source, float(share[1]) if share else None))
+    return found
+
+
+def _is_positive(text: str) -> bool:
+    try:
+        return 0 < float(text) <= 1e9
+    except ValueError:
+        return False
