@@ -8,7 +8,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import config
+from hedon.cli import assay, config
 from hedon.cli.analyze import analyze
 from hedon.cli.bench import bench
 from hedon.cli.branch import branch
@@ -49,6 +49,7 @@ app.command()(check)
 app.command()(replay_fault)
 app.command()(config.presets)
 app.command()(bench)
+app.add_typer(assay.app, name="assay")
 app.add_typer(config.app, name="config")
 
 
@@ -77,6 +78,7 @@ def _hedon(
       hedon report runs/poison
       hedon analyze runs/poison --only selection,drift
       hedon reproduce list
+      hedon assay landscape baseline
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
       hedon bench

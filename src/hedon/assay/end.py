@@ -1,0 +1,112 @@
+"""Where evolution ended: the mean weights of the worlds of some runs, to be drawn on a landscape."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hedon.analysis.weight import world_weights
+from hedon.assay.landscape import AssayError
+from hedon.config.config import Config
+from hedon.record.founder_source import parse_point
+from hedon.record.reader import open_run
+from hedon.text import brief
+
+PAPER_ENDS = ("food=5,action=5", "food=5,action=-0.5")
+"""Our reading of where the paper's baseline ends: food "mostly above 4", action "largely positive or slightly
+negative". It prints no numbers (docs/model.md, section 13)."""
+
+
+@dataclass(frozen=True)
+class End:
+    """The mean weights of one world at its end.
+
+    Attributes:
+        source: file or run, and the world's seed.
+        weights: by column of the genome.
+        of_paper: whether it is our reading of the paper.
+    """
+
+    source: str
+    weights: Mapping[str, float]
+    of_paper: bool = False
+
+
+def read_ends(path: Path, config: Config) -> list[End]:
+    """The ends of the worlds that a run's folder, its `summary.json`, or a `reproduction.json` tells of.
+
+    Of a reproduction with several conditions only the rows of the config's own condition count, if there are any.
+
+    Raises:
+        AssayError: There are none, or the file cannot be read.
+        RecordError: A run cannot be read.
+    """
+    name = brief(str(path))
+    if path.is_dir():
+        run = open_run(path)
+        found = world_weights(run.agents(), run.reward_names)
+        seeds = run.manifest.seeds
+        ends = [
+            End(f"{path.name}, seed {seeds[world]}", {gene: spread.mean or 0.0 for gene, spread in weights.items()})
+            for world, weights in found.items()
+        ]
+    else:
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise AssayError(f"--ends {name}: cannot be read: {error}") from None
+        if not isinstance(content, dict):
+            raise AssayError(f"--ends {name}: is no summary.json and no reproduction.json")
+        ends = _summary_ends(content, path) if "worlds" in content and "tables" not in content else []
+        ends = ends or _reproduction_ends(content, path, config)
+    if not ends:
+        raise AssayError(f"--ends {name}: tells of no world's mean weights")
+    return ends
+
+
+def _summary_ends(content: Mapping[str, Any], path: Path) -> list[End]:
+    ends = []
+    for world in content["worlds"]:
+        weights = {gene: spread.get("mean") for gene, spread in world.get("weights", {}).items()}
+        if weights and all(isinstance(mean, float) for mean in weights.values()):
+            ends.append(End(f"{path.parent.name}, seed {world['seed']}", weights))
+    return ends
+
+
+def _reproduction_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
+    """From tables with a row per world and weight (`drift_world`), else from those with a row per world."""
+    tables = content.get("tables", {})
+    rows = [row for table in tables.values() for row in table.get("rows", [])]
+    points: dict[tuple[str, int], dict[str, float]] = {}
+    tall = [row for row in rows if {"weight", "mean", "seed", "score"} <= row.keys()]
+    wide = [row for row in rows if {"w_food", "w_action", "seed"} <= row.keys()]
+    kinds = list(config.food)
+    for row in _own(tall, config) or _own(wide, config):
+        point = points.setdefault((str(row.get("arm", "")), row["seed"]), {})
+        if "weight" in row:
+            point[row["weight"]] = row["mean"]
+        else:
+            point |= {f"w_{kinds[0]}": row["w_food"], "w_action": row["w_action"]}
+    found = ((key, {gene: value for gene, value in point.items() if _known(value)}) for key, point in points.items())
+    return [End(f"{path.parent.name}, {arm}, seed {seed}", point) for (arm, seed), point in found if point]
+
+
+def _own(rows: Sequence[dict[str, Any]], config: Config) -> Sequence[dict[str, Any]]:
+    own = [row for row in rows if str(row.get("arm", "")).split(" ")[0] in (config.name, config.preset)]
+    return own or rows
+
+
+def _known(value: Any) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def paper_ends(config: Config) -> list[End]:
+    """Where the paper's baseline ends, in the genes of a config."""
+    return [End(f"paper: {text}", parse_point(text, config), of_paper=True) for text in PAPER_ENDS]
+
+
+def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:
+    """The ends that have both genes, with their points."""
+    return [(end, (end.weights[genes[0]], end.weights[genes[1]])) for end in ends if set(genes) <= end.weights.keys()]

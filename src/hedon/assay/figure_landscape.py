@@ -1,0 +1,66 @@
+"""The figure of a landscape assay: relative fitness over two genes, with its optimum and the ends of evolved runs."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from hedon.analysis.style import INK, MUTED, VERMILION, head, new_figure, styled
+from hedon.assay.end import End, on_surface
+from hedon.assay.landscape import Landscape, MeasureSurface
+
+_TITLES = {
+    "descendants": "living descendants",
+    "offspring": "children",
+    "food": "food per step",
+    "lifespan": "lifespan",
+}
+
+
+def draw_landscape(landscape: Landscape, ends: Sequence[End]) -> Figure:
+    """One panel per measure: the smooth surface, its optimum with intervals, the ends, and the paper's region."""
+    with styled():
+        figure = new_figure(9.0, 8.0)
+        axes = figure.subplots(2, 2, squeeze=False).ravel()
+        for panel, surface in zip(axes, landscape.surfaces.values(), strict=False):
+            _draw(figure, panel, landscape, surface, ends)
+        for panel in axes[len(landscape.surfaces) :]:
+            panel.axis("off")
+        axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, -0.16), ncols=2)
+    return figure
+
+
+def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurface, ends: Sequence[End]) -> None:
+    smooth = surface.smooth
+    x, y = smooth.axes
+    low, high = float(smooth.value.min()), float(smooth.value.max())
+    norm = Normalize(low, max(high, low + 1e-9))
+    axes.contourf(x, y, smooth.value.T, levels=np.linspace(norm.vmin or 0.0, norm.vmax or 1.0, 15), cmap="viridis")
+    lines = axes.contour(x, y, smooth.value.T, levels=7, colors="white", linewidths=0.6)
+    axes.clabel(lines, fontsize=7, fmt="%.2f")
+    figure.colorbar(ScalarMappable(norm, "viridis"), ax=axes, label="relative fitness")
+    best = [estimate.value for estimate in smooth.optimum]
+    bars = [
+        [[estimate.value - estimate.low], [estimate.high - estimate.value]]
+        if np.isfinite(estimate.low)
+        else [[0.0], [0.0]]
+        for estimate in smooth.optimum
+    ]
+    axes.errorbar(*best, xerr=bars[0], yerr=bars[1], fmt="*", color=VERMILION, ms=13, mec="white", label="optimum")
+    found = on_surface(ends, landscape.genes)
+    for paper, marker, label in ((True, "D", "the paper's baseline"), (False, "o", "ends of runs")):
+        points = [point for end, point in found if end.of_paper == paper]
+        if points:
+            axes.scatter(
+                *zip(*points, strict=True), s=26, marker=marker, color="white", edgecolor=INK, zorder=3, label=label
+            )
+    axes.plot(0, 0, "+", color=INK, ms=9, label="start of evolution")
+    axes.set_xlim(x[0], x[-1])
+    axes.set_ylim(y[0], y[-1])
+    axes.grid(visible=False)
+    axes.set_xlabel(f"weight of {landscape.genes[0].removeprefix('w_')}", color=MUTED)
+    axes.set_ylabel(f"weight of {landscape.genes[1].removeprefix('w_')}", color=MUTED)
+    head(axes, _TITLES[surface.measure], f"chance of such a surface without effects: p = {surface.flat_p:.3g}")

@@ -1,0 +1,80 @@
+"""Each gene by itself: does fitness depend on it? Neutral markers show what chance alone gives."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hedon.assay.resample import Floats, Ints, chance, permuted, within, world_draws, world_interval
+
+
+@dataclass(frozen=True)
+class GeneEffect:
+    """The quadratic dependence of relative fitness on one gene, others left free.
+
+    Attributes:
+        gene: column of the genome.
+        slope: at 0, per unit of the gene.
+        slope_low, slope_high: its 95 % interval over worlds.
+        slope_p: two-sided chance of such a slope if genes do nothing: fitness exchanged among founders of a world.
+        curvature: second derivative.
+        curvature_low, curvature_high, curvature_p: likewise.
+    """
+
+    gene: str
+    slope: float
+    slope_low: float
+    slope_high: float
+    slope_p: float
+    curvature: float
+    curvature_low: float
+    curvature_high: float
+    curvature_p: float
+
+
+def gene_effects(
+    genes: Sequence[str], z: Floats, fitness: Floats, world: Ints, rng: np.random.Generator
+) -> list[GeneEffect]:
+    """The effect of each gene.
+
+    Args:
+        genes: names.
+        z: genes of each founder, (n, genes).
+        fitness: relative to the mean of the own world, (n,).
+        world: of each founder, from 0 on, (n,).
+        rng: source of chance.
+    """
+    deviation = within(fitness, world)
+    null = within(permuted(fitness, world, rng), world)
+    indices = np.unique(world)
+    draws = world_draws(len(indices), rng)
+    found = []
+    for i, gene in enumerate(genes):
+        terms = within(np.stack([z[:, i], z[:, i] ** 2 / 2], axis=1), world)
+        inverse = np.linalg.pinv(terms.T @ terms)
+        value = inverse @ (terms.T @ deviation)
+        p = chance(value, inverse @ (terms.T @ null))
+        parts = [terms[world == index] for index in indices]
+        left = np.stack([x.T @ x for x in parts])
+        right = np.stack([x.T @ deviation[world == index] for x, index in zip(parts, indices, strict=True)])
+        sums = np.linalg.pinv((draws @ left.reshape(len(left), 4)).reshape(-1, 2, 2))
+        low, high = world_interval((sums @ (draws @ right)[..., None])[..., 0], len(indices))
+        slope, curvature = ((float(value[k]), float(low[k]), float(high[k]), float(p[k])) for k in range(2))
+        found.append(GeneEffect(gene, *slope, *curvature))
+    return found
+
+
+def flatness(terms: Floats, fitness: Floats, world: Ints, rng: np.random.Generator) -> float:
+    """The chance that terms explain so much of fitness if genes do nothing.
+
+    Args:
+        terms: of the regression, (n, p).
+        fitness: as for `gene_effects`.
+        world: as for `gene_effects`.
+        rng: source of chance.
+    """
+    x, _ = np.linalg.qr(within(terms, world))
+    deviation = within(fitness, world)
+    null = within(permuted(fitness, world, rng), world)
+    explained = ((x.T @ deviation) ** 2).sum()
+    return float(chance(np.array(explained), ((x.T @ null) ** 2).sum(axis=0)))

@@ -1,0 +1,188 @@
+"""The landscape assay: founders spread over the genes, no mutation, and fitness as a surface over two of them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.assay.gene_test import GeneEffect, flatness, gene_effects
+from hedon.assay.outcome import MEASURES, founder_outcomes
+from hedon.assay.resample import FEWEST_WORLDS, Floats, relative
+from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
+from hedon.config.config import Config
+from hedon.error import HedonError
+from hedon.record.founder import Founders, make_founders
+from hedon.record.reader import Run
+from hedon.record.schema import weight_names
+
+NEUTRAL = 16
+"""Neutral markers of an assay: so many genes of which it is known that they do nothing."""
+ROWS = 2000
+"""Genomes in the table that founders are taken from."""
+_SEED = 20260801
+_TAIL = 0.01  # of the founders' genes that lies beyond each bound of the surface
+
+
+class AssayError(HedonError):
+    """An assay that cannot be made or read."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How founders are spread over each gene: evenly between two bounds, or normally around 0.
+
+    Attributes:
+        low, high: bounds.
+        sd: standard deviation; None for an even spread.
+    """
+
+    low: float
+    high: float
+    sd: float | None = None
+
+    def __str__(self) -> str:
+        return f"uniform from {self.low:g} to {self.high:g}" if self.sd is None else f"normal, sd {self.sd:g}"
+
+
+@dataclass(frozen=True, eq=False)
+class MeasureSurface:
+    """Relative fitness by one measure.
+
+    Attributes:
+        measure: one of `MEASURES`.
+        mean: of the measure over founders, before it is made relative.
+        worlds: that enter; a world in which the measure's mean is 0 does not.
+        flat_p: chance that two genes explain so much if genes do nothing.
+        quadratic, smooth: the surfaces.
+        effects: of each gene by itself, neutral markers too.
+    """
+
+    measure: str
+    mean: float
+    worlds: int
+    flat_p: float
+    quadratic: Quadratic
+    smooth: Smooth
+    effects: tuple[GeneEffect, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Landscape:
+    """What a landscape assay found.
+
+    Attributes:
+        config: of its run.
+        steps: of each world [step].
+        seeds: of its worlds.
+        extinct: seeds of worlds that died out.
+        founders: of each world.
+        genes: the two columns of the surface.
+        surfaces: by measure.
+        outcomes: a row per founder: seed, agent_id, genes, measures.
+    """
+
+    config: Config
+    steps: int
+    seeds: tuple[int, ...]
+    extinct: tuple[int, ...]
+    founders: int
+    genes: tuple[str, str]
+    surfaces: Mapping[str, MeasureSurface]
+    outcomes: pl.DataFrame
+
+
+def assay_config(config: Config) -> Config:
+    """The condition without mutation, and with the assay's neutral markers."""
+    return replace(config, genome=replace(config.genome, mutation_scale=0.0, neutral_count=NEUTRAL))
+
+
+def spread_founders(config: Config, spread: Spread, rows: int = ROWS) -> Founders:
+    """A table of genomes spread over all genes, independently; the same for the same arguments."""
+    names = weight_names(tuple(config.food), config.genome.neutral_count)
+    rng = np.random.default_rng(_SEED)
+    limit = config.genome.weight_limit
+    if spread.sd is None:
+        values = rng.uniform(spread.low, spread.high, (rows, len(names)))
+    else:
+        values = np.clip(rng.normal(0.0, spread.sd, (rows, len(names))), -limit, limit)
+    return make_founders(names, values, ["spread"] * rows)
+
+
+def read_outcomes(runs: Sequence[Run]) -> tuple[list[WorldRecord], pl.DataFrame]:
+    """The worlds of an assay, and a row per founder: world (from 0 on), seed, agent_id, genes, measures."""
+    worlds = read_worlds(runs)
+    tables = [
+        founder_outcomes(world.agents, world.weight_names, world.last_step).select(
+            pl.lit(i, pl.Int64).alias("world"), pl.lit(world.seed, pl.Int64).alias("seed"), pl.all()
+        )
+        for i, world in enumerate(worlds)
+    ]
+    return worlds, pl.concat(tables)
+
+
+def measure_landscape(run: Run, genes: tuple[str, str]) -> Landscape:
+    """Fits the surfaces to a finished run.
+
+    Args:
+        run: of the assay.
+        genes: the two columns of the surface.
+
+    Raises:
+        AssayError: all worlds died out before anything could be measured.
+    """
+    worlds, outcomes = read_outcomes([run])
+    names = worlds[0].weight_names
+    surfaces = {}
+    for measure in MEASURES:
+        found = _measure(outcomes, measure, genes, names)
+        if found is not None:
+            surfaces[measure] = found
+    if not surfaces:
+        raise AssayError(f"{run.path}: nothing can be measured: no founder has living descendants, children or food")
+    return Landscape(
+        config=worlds[0].config,
+        steps=max(run.manifest.steps_done, default=0),
+        seeds=run.manifest.seeds,
+        extinct=tuple(world.seed for world in worlds if world.extinct_step is not None),
+        founders=worlds[0].config.population.initial_count,
+        genes=genes,
+        surfaces=surfaces,
+        outcomes=outcomes.drop("world"),
+    )
+
+
+def _measure(
+    outcomes: pl.DataFrame, measure: str, genes: tuple[str, str], names: Sequence[str]
+) -> MeasureSurface | None:
+    values = outcomes[measure].to_numpy().astype(np.float64)
+    fitness = relative(values, outcomes["world"].to_numpy())
+    known = np.isfinite(fitness)
+    if not known.any():
+        return None
+    fitness = fitness[known]
+    _, world = np.unique(outcomes["world"].to_numpy()[known], return_inverse=True)
+    z = outcomes.select(names).to_numpy().astype(np.float64)[known]
+    pair = z[:, [list(names).index(gene) for gene in genes]]
+    rng = np.random.default_rng([_SEED, list(MEASURES).index(measure)])
+    return MeasureSurface(
+        measure=measure,
+        mean=float(values.mean()),
+        worlds=int(world.max()) + 1,
+        flat_p=flatness(quadratic_terms(pair), fitness, world, rng),
+        quadratic=fit_quadratic(pair, fitness, world, rng),
+        smooth=fit_smooth(pair, fitness, world, _bounds(pair), rng),
+        effects=tuple(gene_effects(names, z, fitness, world, rng)),
+    )
+
+
+def _bounds(pair: Floats) -> tuple[Floats, Floats]:
+    """Within which the surface is told: beyond are too few founders."""
+    low, high = np.quantile(pair, (_TAIL, 1.0 - _TAIL), axis=0)
+    return low, high
+
+
+def enough_worlds(count: int) -> bool:
+    """Whether an interval over worlds can be given."""
+    return count >= FEWEST_WORLDS

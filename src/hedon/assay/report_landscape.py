@@ -1,0 +1,206 @@
+"""The tables, the JSON summary and the page of a landscape assay."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hedon.analysis.analysis_table import markdown_table
+from hedon.analysis.style import save_figure
+from hedon.analysis.summary import plain
+from hedon.analysis.topic.result import ResultTable, table
+from hedon.assay.end import End, on_surface
+from hedon.assay.figure_landscape import draw_landscape
+from hedon.assay.landscape import Landscape
+from hedon.assay.outcome import MEASURES
+from hedon.assay.surface import Estimate
+from hedon.config.dump import digest
+from hedon.record.atomic import write_atomically
+
+SUMMARY, PAGE, FIGURE, OUTCOMES = "landscape.json", "landscape.md", "landscape.png", "founders-outcome.csv"
+
+
+def landscape_tables(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
+    """What is printed: the surfaces, each gene by itself, and fitness at the ends of runs."""
+    return [_surfaces(landscape), _effects(landscape), *_ends(landscape, ends)]
+
+
+def write_landscape(landscape: Landscape, ends: Sequence[End], folder: Path) -> list[Path]:
+    """Writes the summary, the page, the figure and the founders' outcomes into a folder.
+
+    Raises:
+        OSError: As the file system raises it.
+    """
+    tables = landscape_tables(landscape, ends)
+    files = {
+        SUMMARY: json.dumps(landscape_json(landscape, tables), indent=1, allow_nan=False).encode() + b"\n",
+        PAGE: _page(landscape, tables).encode(),
+        OUTCOMES: landscape.outcomes.write_csv().encode(),
+    }
+    for name, content in files.items():
+        write_atomically(folder / name, lambda file, content=content: file.write(content))
+    return [*(folder / name for name in files), save_figure(draw_landscape(landscape, ends), folder / FIGURE)]
+
+
+def landscape_json(landscape: Landscape, tables: Sequence[ResultTable]) -> dict[str, Any]:
+    """The content of the summary."""
+    config = landscape.config
+    surfaces = {}
+    for name, found in landscape.surfaces.items():
+        smooth, quadratic = found.smooth, found.quadratic
+        surfaces[name] = {
+            "mean": found.mean,
+            "worlds": found.worlds,
+            "flat_p": found.flat_p,
+            "quadratic": {
+                "slope": [asdict(each) for each in quadratic.slope],
+                "curvature": [asdict(each) for each in quadratic.curvature],
+                "interaction": asdict(quadratic.interaction),
+                "optimum": [asdict(each) for each in quadratic.optimum],
+            },
+            "smooth": {
+                "slope": [asdict(each) for each in smooth.slope],
+                "optimum": [asdict(each) for each in smooth.optimum],
+                "at_edge": smooth.at_edge,
+                "freedom": smooth.freedom,
+                "axes": smooth.axes.tolist(),
+                "value": smooth.value.tolist(),
+                "low": smooth.low.tolist(),
+                "high": smooth.high.tolist(),
+            },
+        }
+    return plain(
+        {
+            "assay": "landscape",
+            "condition": config.name,
+            "fidelity": config.fidelity,
+            "config_digest": digest(config),
+            "seeds": list(landscape.seeds),
+            "steps": landscape.steps,
+            "founders": landscape.founders,
+            "extinct": list(landscape.extinct),
+            "genes": list(landscape.genes),
+            "measures": dict(MEASURES),
+            "surfaces": surfaces,
+            "tables": {each.name: {"title": each.title, "rows": each.rows.to_dicts()} for each in tables},
+        }
+    )
+
+
+def _surfaces(landscape: Landscape) -> ResultTable:
+    rows = []
+    for measure, found in landscape.surfaces.items():
+        pairs = (
+            ("optimum, smooth surface", found.smooth.optimum),
+            ("slope at 0, smooth surface", found.smooth.slope),
+            ("slope at 0, quadratic", found.quadratic.slope),
+            ("curvature, quadratic", found.quadratic.curvature),
+            ("optimum, quadratic", found.quadratic.optimum),
+        )
+        for what, estimates in pairs:
+            for gene, estimate in zip(landscape.genes, estimates, strict=True):
+                rows.append(_row({"fitness": measure, "quantity": what, "gene": _short(gene)}, estimate))
+        rows.append(
+            _row(
+                {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"}, found.quadratic.interaction
+            )
+        )
+    edges = [name for name, found in landscape.surfaces.items() if found.smooth.at_edge]
+    note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. "
+    note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
+    flat = ", ".join(f"{name} {found.flat_p:.3g}" for name, found in landscape.surfaces.items())
+    note += f"Chance that two genes explain so much if they do nothing (permutation within worlds): {flat}."
+    return table("surface", "Fitness over two genes", rows, note)
+
+
+def _effects(landscape: Landscape) -> ResultTable:
+    rows = []
+    for measure, found in landscape.surfaces.items():
+        neutral = [effect for effect in found.effects if effect.gene.startswith("neutral_")]
+        slopes, curvatures = (
+            np.array([getattr(effect, name) for effect in neutral]) for name in ("slope", "curvature")
+        )
+        for effect in found.effects:
+            if effect in neutral:
+                continue
+            rows.append(
+                {
+                    "fitness": measure,
+                    "gene": _short(effect.gene),
+                    "slope at 0": effect.slope,
+                    "low": effect.slope_low,
+                    "high": effect.slope_high,
+                    "p slope": effect.slope_p,
+                    "z slope": _score(effect.slope, slopes),
+                    "curvature": effect.curvature,
+                    "p curvature": effect.curvature_p,
+                    "z curvature": _score(effect.curvature, curvatures),
+                }
+            )
+        if neutral:
+            false = [sum(getattr(effect, name) < 0.05 for effect in neutral) for name in ("slope_p", "curvature_p")]
+            rows.append(
+                {
+                    "fitness": measure,
+                    "gene": f"{len(neutral)} neutral: p < 0.05",
+                    "p slope": false[0] / len(neutral),
+                    "p curvature": false[1] / len(neutral),
+                }
+            )
+    note = (
+        "p: fitness exchanged among the founders of a world. z: by the spread of the neutral genes' values. In the "
+        "rows of the neutral genes stands the share with p below 0.05: about 0.05 if all is well."
+    )
+    return table("gene", "Fitness and each gene by itself", rows, note)
+
+
+def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
+    found = on_surface(ends, landscape.genes)
+    if not found:
+        return []
+    points = np.array([point for _, point in found])
+    rows = []
+    for measure, surface in landscape.surfaces.items():
+        low, high = surface.smooth.axes[:, 0], surface.smooth.axes[:, -1]
+        inside = np.clip(points, low, high)
+        top = float(surface.smooth.value.max())
+        for (end, point), estimate in zip(found, surface.smooth.at(inside), strict=True):
+            genes = {_short(gene): value for gene, value in zip(landscape.genes, point, strict=True)}
+            row = _row({"fitness": measure, "end": end.source, **genes}, estimate)
+            rows.append(row | {"of the highest": estimate.value / top if top > 0 else None})
+    note = "Relative fitness on the smooth surface; ends beyond its range count as at its edge."
+    return [table("end", "Fitness where evolution ended", rows, note)]
+
+
+def _row(labels: dict[str, Any], estimate: Estimate) -> dict[str, Any]:
+    return labels | {"value": estimate.value, "low": estimate.low, "high": estimate.high}
+
+
+def _score(value: float, neutral: np.ndarray) -> float | None:
+    spread = float(np.sqrt(np.mean(neutral**2))) if len(neutral) else 0.0
+    return value / spread if spread > 0 else None
+
+
+def _short(gene: str) -> str:
+    return gene.removeprefix("w_")
+
+
+def _page(landscape: Landscape, tables: Sequence[ResultTable]) -> str:
+    config = landscape.config
+    lines = [
+        f"# Fitness landscape: {config.name} ({config.fidelity})",
+        "",
+        f"{len(landscape.seeds)} worlds of {landscape.founders} founders, {landscape.steps:,} steps, no mutation. "
+        f"Seeds: {', '.join(map(str, landscape.seeds))}. Died out: {', '.join(map(str, landscape.extinct)) or 'none'}.",
+        "",
+        *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items()),
+        "",
+        f"![Relative fitness over {' and '.join(map(_short, landscape.genes))}]({FIGURE})",
+        "",
+    ]
+    for each in tables:
+        lines += [f"## {each.title}", "", markdown_table(each), "", each.note, ""]
+    return "\n".join(lines).rstrip() + "\n"

@@ -1,0 +1,225 @@
+"""Relative fitness as a function of two genes: a quadratic and a smooth surface, with intervals over worlds.
+
+The quadratic surface is ω = c + β·z + ½ zᵀΓz (Lande & Arnold 1983). The smooth one is a tensor product of cubic
+B-splines with a penalty on second differences of its coefficients (Eilers & Marx 1996): where the data say no more, it
+is a twisted plane. Its smoothness has the least generalized cross-validation. Both are fitted to deviations from the
+means of each world, so that worlds may differ, and are placed so that the mean over the founders is 1.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from hedon.assay.resample import Floats, Ints, within, world_draws, world_interval
+
+INTERVALS = 4
+"""Pieces of the spline along each gene."""
+GRID = 41
+"""Points along each gene at which the smooth surface is told."""
+_DEGREE = 3
+_PENALTIES = np.logspace(-2, 7, 28)
+_RIDGE = 1e-8  # makes up for the constant, which the means of worlds take away
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with the bounds of its 95 % interval over worlds; NaN where there is none."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Quadratic:
+    """The quadratic surface.
+
+    Attributes:
+        slope: at 0, of each gene.
+        curvature: second derivative along each gene; negative where fitness has a maximum.
+        interaction: mixed second derivative.
+        optimum: where the slope is 0, of each gene; NaN unless it is a maximum.
+        coefficients: β1, β2, Γ11, Γ22, Γ12.
+    """
+
+    slope: tuple[Estimate, Estimate]
+    curvature: tuple[Estimate, Estimate]
+    interaction: Estimate
+    optimum: tuple[Estimate, Estimate]
+    coefficients: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """The smooth surface on a grid.
+
+    Attributes:
+        axes: values of the two genes along the grid, (2, GRID).
+        value: relative fitness, (GRID, GRID): first gene along the rows.
+        low, high: bounds of its 95 % interval, pointwise, shape as `value`.
+        slope: at 0, of each gene.
+        optimum: where the surface is highest, of each gene.
+        at_edge: whether it is highest at the edge of the range, beyond which it may rise further.
+        freedom: effective number of parameters; 3 is a twisted plane.
+        coefficients, draws: of the spline, (K²,), and in each bootstrap sample, (replicates, K²).
+        shift: puts the mean over founders to 1; for the estimate and each sample, (1 + replicates,).
+        knots: of each gene.
+        worlds: that entered.
+    """
+
+    axes: Floats
+    value: Floats
+    low: Floats
+    high: Floats
+    slope: tuple[Estimate, Estimate]
+    optimum: tuple[Estimate, Estimate]
+    at_edge: bool
+    freedom: float
+    coefficients: Floats
+    draws: Floats
+    shift: Floats
+    knots: Floats
+    worlds: int
+
+    def at(self, points: Floats) -> list[Estimate]:
+        """Relative fitness at points within the range, (count, 2)."""
+        basis = _basis(points, self.knots)
+        return [
+            _estimate(values[0], values[1:], self.worlds)
+            for values in ((basis @ np.vstack([self.coefficients, self.draws]).T) + self.shift).tolist()
+        ]
+
+
+def quadratic_terms(z: Floats) -> Floats:
+    """The columns of the quadratic surface's design, (n, 5), so that their coefficients are derivatives at 0."""
+    x, y = z.T
+    return np.stack([x, y, x * x / 2, y * y / 2, x * y], axis=1)
+
+
+def fit_quadratic(z: Floats, fitness: Floats, world: Ints, rng: np.random.Generator) -> Quadratic:
+    """Fits the quadratic surface.
+
+    Args:
+        z: the two genes of each founder, (n, 2).
+        fitness: relative to the mean of the own world, (n,).
+        world: of each founder, from 0 on, (n,).
+        rng: source of chance.
+    """
+    terms, deviation = within(quadratic_terms(z), world), within(fitness, world)
+    scale = terms.std(axis=0)
+    worlds, left, right = _moments(terms / scale, deviation, world)
+    draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
+    found = _solve(draws, left, right, np.eye(5) * _RIDGE) / scale
+    low, high = world_interval(found[1:], worlds)
+    told = [Estimate(float(found[0, i]), float(low[i]), float(high[i])) for i in range(5)]
+    optima = np.array([_maximum(row) for row in found])
+    optimum = [_estimate(optima[0, i], optima[1:, i], worlds) for i in range(2)]
+    return Quadratic((told[0], told[1]), (told[2], told[3]), told[4], (optimum[0], optimum[1]), found[0])
+
+
+def fit_smooth(
+    z: Floats, fitness: Floats, world: Ints, bounds: tuple[Floats, Floats], rng: np.random.Generator
+) -> Smooth:
+    """Fits the smooth surface within bounds.
+
+    Args:
+        z: as for `fit_quadratic`, and so are the next two.
+        fitness: relative to the mean of the own world.
+        world: of each founder.
+        rng: source of chance.
+        bounds: lower and upper bound of the two genes, (2,) each; founders beyond count as if they were at the bound.
+    """
+    knots = np.stack([_knots(low, high) for low, high in zip(*bounds, strict=True)])
+    inside = np.clip(z, *bounds)
+    basis, deviation = within(_basis(inside, knots), world), within(fitness, world)
+    worlds, left, right = _moments(basis, deviation, world)
+    penalty = _penalty(knots.shape[1] - _DEGREE - 1)
+    smoothness, freedom = _choose(left.sum(axis=0), right.sum(axis=0), penalty, deviation)
+    draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
+    found = _solve(draws, left, right, smoothness * penalty + _RIDGE * np.eye(len(penalty)))
+    shift = 1.0 - found @ _basis(inside, knots).mean(axis=0)
+    axes = np.stack([np.linspace(low, high, GRID) for low, high in zip(*bounds, strict=True)])
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    surface = found @ _basis(points, knots).T + shift[:, None]
+    low, high = world_interval(surface[1:], worlds)
+    best = points[surface.argmax(axis=1)]
+    slopes = [found @ _basis(np.zeros((1, 2)), knots, gene)[0] for gene in range(2)]
+    top = np.unravel_index(surface[0].argmax(), (GRID, GRID))
+    shape = (GRID, GRID)
+    return Smooth(
+        axes=axes,
+        value=surface[0].reshape(shape),
+        low=low.reshape(shape),
+        high=high.reshape(shape),
+        slope=(_estimate(slopes[0][0], slopes[0][1:], worlds), _estimate(slopes[1][0], slopes[1][1:], worlds)),
+        optimum=(_estimate(best[0, 0], best[1:, 0], worlds), _estimate(best[0, 1], best[1:, 1], worlds)),
+        at_edge=any(i in (0, GRID - 1) for i in top),
+        freedom=freedom,
+        coefficients=found[0],
+        draws=found[1:],
+        shift=shift,
+        knots=knots,
+        worlds=worlds,
+    )
+
+
+def _estimate(value: float, replicates: Floats, worlds: int) -> Estimate:
+    low, high = world_interval(np.asarray(replicates), worlds)
+    return Estimate(float(value), float(low), float(high))
+
+
+def _moments(terms: Floats, deviation: Floats, world: Ints) -> tuple[int, Floats, Floats]:
+    """Number of worlds, and XᵀX and Xᵀy of each."""
+    indices = np.unique(world)
+    parts = [(terms[world == index], deviation[world == index]) for index in indices]
+    return len(indices), np.stack([x.T @ x for x, _ in parts]), np.stack([x.T @ y for x, y in parts])
+
+
+def _solve(draws: Floats, left: Floats, right: Floats, penalty: Floats) -> Floats:
+    """Coefficients in each sample of worlds, (samples, p)."""
+    size = left.shape[1]
+    sums = (draws @ left.reshape(len(left), -1)).reshape(-1, size, size) + penalty
+    return np.asarray(np.linalg.solve(sums, (draws @ right)[..., None])[..., 0], np.float64)
+
+
+def _maximum(row: Floats) -> Floats:
+    hessian = np.array([[row[2], row[4]], [row[4], row[3]]])
+    if np.linalg.eigvalsh(hessian).max() >= 0:
+        return np.full(2, np.nan)
+    return np.asarray(-np.linalg.solve(hessian, row[:2]), np.float64)
+
+
+def _knots(low: float, high: float) -> Floats:
+    inner = np.linspace(low, high, INTERVALS + 1)
+    step = inner[1] - inner[0]
+    outer = step * np.arange(1, _DEGREE + 1)
+    return np.concatenate([low - outer[::-1], inner, high + outer])
+
+
+def _basis(points: Floats, knots: Floats, slope: int | None = None) -> Floats:
+    """Tensor product of the two genes' bases at points, (count, K²), or its derivative along one gene."""
+    bases = []
+    for gene in range(2):
+        functions = np.eye(len(knots[gene]) - _DEGREE - 1)
+        bases.append(BSpline(knots[gene], functions, _DEGREE)(points[:, gene], nu=int(slope == gene)))
+    return (bases[0][:, :, None] * bases[1][:, None, :]).reshape(len(points), -1)
+
+
+def _penalty(size: int) -> Floats:
+    second = np.diff(np.eye(size), 2, axis=0)
+    along = second.T @ second
+    return np.kron(along, np.eye(size)) + np.kron(np.eye(size), along)
+
+
+def _choose(left: Floats, right: Floats, penalty: Floats, deviation: Floats) -> tuple[float, float]:
+    """The smoothness with the least generalized cross-validation, and the effective number of parameters."""
+    found = []
+    for smoothness in _PENALTIES:
+        inverse = np.linalg.inv(left + smoothness * penalty + _RIDGE * np.eye(len(left)))
+        coefficients, freedom = inverse @ right, float(np.trace(inverse @ left))
+        rest = float(deviation @ deviation - 2 * coefficients @ right + coefficients @ left @ coefficients)
+        score = rest / max(len(deviation) - freedom, 1.0) ** 2
+        found.append((score, -smoothness, freedom))
+    _, smoothness, freedom = min(found)
+    return -smoothness, freedom

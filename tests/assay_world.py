@@ -1,0 +1,62 @@
+"""Worlds of which the fitness of each genome is known: tables of agents from birth and death processes."""
+
+from collections.abc import Callable
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def birth_death_world(
+    genes: dict[str, Floats],
+    birth: Callable[[dict[str, Floats]], Floats],
+    rng: np.random.Generator,
+    *,
+    world: int = 0,
+    death: float = 1e-3,
+    steps: int = 2000,
+) -> pl.DataFrame:
+    """A table of agents of a world without mutation: each agent has children and dies at constant chances.
+
+    A founder expects exp((birth − death) · steps) living descendants, its offspring birth / death of a full life.
+
+    Args:
+        genes: of the founders, by column.
+        birth: chance of a birth per step for each founder's genes.
+        rng: source of chance.
+        world: its index.
+        death: chance of death per step.
+        steps: length of the run.
+    """
+    rates = birth(genes)
+    rows: list[tuple[int, int, int, int, int | None, int]] = []  # id, parent, founder, birth, death, generation
+    children: dict[int, int] = {}
+    waiting = [(-1, i, 0, 0) for i in range(len(rates))]
+    while waiting:
+        waiting.sort(key=lambda each: each[2])
+        parent, line, born, generation = waiting.pop(0)
+        agent = len(rows)
+        end = born + 1 + int(rng.exponential(1 / death))
+        until = min(end, steps)
+        rows.append((agent, parent, line, born, end if end <= steps else None, generation))
+        times = born + 1 + rng.uniform(0, max(until - born - 1, 0), rng.poisson(rates[line] * (until - born)))
+        children[agent] = len(times)
+        waiting += [(agent, line, int(time), generation + 1) for time in times if int(time) < steps]
+    agent_id, parent_id, line, born, died, generation = zip(*rows, strict=True)
+    lines = np.array(line)
+    lived = np.array([steps if end is None else end for end in died]) - np.array(born)
+    return pl.DataFrame(
+        {
+            "world": np.full(len(rows), world, np.int32),
+            "agent_id": np.array(agent_id, np.int64),
+            "parent_id": pl.Series([None if parent < 0 else parent for parent in parent_id], dtype=pl.Int64),
+            "generation": np.array(generation, np.int32),
+            "birth_step": np.array(born, np.int64),
+            "death_step": pl.Series(died, dtype=pl.Int64),
+            "children": np.array([children[agent] for agent in agent_id], np.int32),
+            "energy_gained": (lived * rates[lines]).astype(np.float32),
+            **{name: values[lines].astype(np.float32) for name, values in genes.items()},
+        }
+    )
