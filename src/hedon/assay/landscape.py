@@ -95,7 +95,7 @@ class Landscape:
 
 def assay_config(config: Config) -> Config:
     """The condition without mutation, and with the assay's neutral markers."""
-    return replace(config, genome=replace(config.genome, mutation_scale=0.0, neutral_count=NEUTRAL))
+    return replace(config, genome=replace(config.genome, mutation_scale=0.0, neutral_count=NEUTRAL, founders=""))
 
 
 def spread_founders(config: Config, spread: Spread, rows: int = ROWS) -> Founders:

@@ -1,13 +1,16 @@
 """The options of assays: which genes, how founders are spread, which runs."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from hedon.assay.landscape import AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.experiment.plan import RunPlan, seed_span
-from hedon.record.founder import Founders, column_of, unknown_gene
+from hedon.record.folder import CONFIG
+from hedon.record.founder import Founders, column_of, join, unknown_gene
+from hedon.record.founder_source import read_source, source_label
 from hedon.text import brief
 
 
@@ -77,3 +80,46 @@ def assay_plan(
     name = f"{kind}-{config.name}-{config.fidelity}-{seed_span(plan.seeds)}-{digest(plan.config)[:8]}"
     folder = (out or Path("assays") / name) / part
     return RunPlan(plan.config, seeds, steps, folder, threads, 0, checkpoint, founders)
+
+
+def competitors(sources: Sequence[str], shares: Sequence[float], config: Config) -> tuple[Founders, tuple[str, str]]:
+    """Founders from two sources, and the names of their groups.
+
+    Raises:
+        FounderError: A source cannot be used.
+        RecordError: A run cannot be read.
+    """
+    tables = [read_source(source, config) for source in sources]
+    first, second = (source_label(source) for source in sources)
+    names = (first, second if second != first else f"{second} (2)")
+    return join(tables, names, shares), names
+
+
+def knocked_out(source: str, gene: str, config: Config) -> tuple[Founders, tuple[str, str]]:
+    """The living of a run with one gene set to 0, against themselves, and the names of both groups.
+
+    Raises:
+        AssayError: The run has no such gene.
+        FounderError: Nobody lived then.
+        RecordError: It is not a run, or cannot be read.
+    """
+    column = column_of(config, gene)
+    wild = read_source(source, config)
+    if column is None or column not in wild.genes:
+        raise AssayError(f"knockout {brief(source)}: {unknown_gene(config, gene)}")
+    names = (f"{column.removeprefix('w_')} = 0", source_label(source))
+    return join([wild.changed(column, 0.0), wild], names, [1.0, 1.0]), names
+
+
+def condition_of(given: str | None, sources: Sequence[str]) -> str:
+    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline."""
+    if given is not None:
+        return given
+    folders = [Path(source.rpartition("@")[0] or source) for source in sources]
+    folders += [Path(source) for source in sources]
+    return next((str(folder / CONFIG) for folder in folders if (folder / CONFIG).is_file()), "baseline")
+
+
+def still(config: Config) -> Config:
+    """A config without mutation, whose founders are not those of another run."""
+    return replace(config, genome=replace(config.genome, mutation_scale=0.0, founders=""))

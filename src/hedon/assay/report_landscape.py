@@ -1,6 +1,5 @@
 """The tables, the JSON summary and the page of a landscape assay."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -8,19 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.analysis_table import markdown_table
-from hedon.analysis.style import save_figure
-from hedon.analysis.summary import plain
 from hedon.analysis.topic.result import ResultTable, table
 from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape
 from hedon.assay.outcome import MEASURES
-from hedon.assay.surface import Estimate
-from hedon.config.dump import digest
+from hedon.assay.report import estimate_row, world_line, write_assay
 from hedon.record.atomic import write_atomically
+from hedon.record.reader import Run
 
-SUMMARY, PAGE, FIGURE, OUTCOMES = "landscape.json", "landscape.md", "landscape.png", "founders-outcome.csv"
+OUTCOMES = "founders-outcome.csv"
 
 
 def landscape_tables(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
@@ -28,26 +24,29 @@ def landscape_tables(landscape: Landscape, ends: Sequence[End]) -> list[ResultTa
     return [_surfaces(landscape), _effects(landscape), *_ends(landscape, ends)]
 
 
-def write_landscape(landscape: Landscape, ends: Sequence[End], folder: Path) -> list[Path]:
+def write_landscape(landscape: Landscape, run: Run, ends: Sequence[End], folder: Path) -> list[Path]:
     """Writes the summary, the page, the figure and the founders' outcomes into a folder.
 
     Raises:
-        OSError: As the file system raises it.
+        RecordError: A file cannot be written.
     """
     tables = landscape_tables(landscape, ends)
-    files = {
-        SUMMARY: json.dumps(landscape_json(landscape, tables), indent=1, allow_nan=False).encode() + b"\n",
-        PAGE: _page(landscape, tables).encode(),
-        OUTCOMES: landscape.outcomes.write_csv().encode(),
-    }
-    for name, content in files.items():
-        write_atomically(folder / name, lambda file, content=content: file.write(content))
-    return [*(folder / name for name in files), save_figure(draw_landscape(landscape, ends), folder / FIGURE)]
+    intro = "\n".join(
+        [
+            f"{landscape.founders} founders in each world, no mutation. {world_line([run])}",
+            "",
+            *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items()),
+        ]
+    )
+    figure = draw_landscape(landscape, ends)
+    files = write_assay(folder, "landscape", [run], landscape.config, landscape_json(landscape), tables, intro, figure)
+    rows = landscape.outcomes.write_csv().encode()
+    write_atomically(folder / OUTCOMES, lambda file: file.write(rows))
+    return [*files, folder / OUTCOMES]
 
 
-def landscape_json(landscape: Landscape, tables: Sequence[ResultTable]) -> dict[str, Any]:
-    """The content of the summary."""
-    config = landscape.config
+def landscape_json(landscape: Landscape) -> dict[str, Any]:
+    """What the summary holds besides the tables."""
     surfaces = {}
     for name, found in landscape.surfaces.items():
         smooth, quadratic = found.smooth, found.quadratic
@@ -72,22 +71,13 @@ def landscape_json(landscape: Landscape, tables: Sequence[ResultTable]) -> dict[
                 "high": smooth.high.tolist(),
             },
         }
-    return plain(
-        {
-            "assay": "landscape",
-            "condition": config.name,
-            "fidelity": config.fidelity,
-            "config_digest": digest(config),
-            "seeds": list(landscape.seeds),
-            "steps": landscape.steps,
-            "founders": landscape.founders,
-            "extinct": list(landscape.extinct),
-            "genes": list(landscape.genes),
-            "measures": dict(MEASURES),
-            "surfaces": surfaces,
-            "tables": {each.name: {"title": each.title, "rows": each.rows.to_dicts()} for each in tables},
-        }
-    )
+    return {
+        "founders": landscape.founders,
+        "extinct": list(landscape.extinct),
+        "genes": list(landscape.genes),
+        "measures": dict(MEASURES),
+        "surfaces": surfaces,
+    }
 
 
 def _surfaces(landscape: Landscape) -> ResultTable:
@@ -102,9 +92,9 @@ def _surfaces(landscape: Landscape) -> ResultTable:
         )
         for what, estimates in pairs:
             for gene, estimate in zip(landscape.genes, estimates, strict=True):
-                rows.append(_row({"fitness": measure, "quantity": what, "gene": _short(gene)}, estimate))
+                rows.append(estimate_row({"fitness": measure, "quantity": what, "gene": _short(gene)}, estimate))
         rows.append(
-            _row(
+            estimate_row(
                 {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"}, found.quadratic.interaction
             )
         )
@@ -169,14 +159,10 @@ def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
         top = float(surface.smooth.value.max())
         for (end, point), estimate in zip(found, surface.smooth.at(inside), strict=True):
             genes = {_short(gene): value for gene, value in zip(landscape.genes, point, strict=True)}
-            row = _row({"fitness": measure, "end": end.source, **genes}, estimate)
+            row = estimate_row({"fitness": measure, "end": end.source, **genes}, estimate)
             rows.append(row | {"of the highest": estimate.value / top if top > 0 else None})
     note = "Relative fitness on the smooth surface; ends beyond its range count as at its edge."
     return [table("end", "Fitness where evolution ended", rows, note)]
-
-
-def _row(labels: dict[str, Any], estimate: Estimate) -> dict[str, Any]:
-    return labels | {"value": estimate.value, "low": estimate.low, "high": estimate.high}
 
 
 def _score(value: float, neutral: np.ndarray) -> float | None:
@@ -186,21 +172,3 @@ def _score(value: float, neutral: np.ndarray) -> float | None:
 
 def _short(gene: str) -> str:
     return gene.removeprefix("w_")
-
-
-def _page(landscape: Landscape, tables: Sequence[ResultTable]) -> str:
-    config = landscape.config
-    lines = [
-        f"# Fitness landscape: {config.name} ({config.fidelity})",
-        "",
-        f"{len(landscape.seeds)} worlds of {landscape.founders} founders, {landscape.steps:,} steps, no mutation. "
-        f"Seeds: {', '.join(map(str, landscape.seeds))}. Died out: {', '.join(map(str, landscape.extinct)) or 'none'}.",
-        "",
-        *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items()),
-        "",
-        f"![Relative fitness over {' and '.join(map(_short, landscape.genes))}]({FIGURE})",
-        "",
-    ]
-    for each in tables:
-        lines += [f"## {each.title}", "", markdown_table(each), "", each.note, ""]
-    return "\n".join(lines).rstrip() + "\n"

@@ -90,7 +90,7 @@ def landscape(
     if runs is None:
         return
     measured = measure_landscape(runs[0], pair)
-    finish(landscape_tables(measured, found), write_landscape(measured, found, plan.out.parent), console)
+    finish(landscape_tables(measured, found), write_landscape(measured, runs[0], found, plan.out.parent), console)
 
 
 def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | None":

@@ -1,0 +1,96 @@
+"""Writes what an assay found: a JSON summary, a page, a figure."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from hedon.analysis.analysis_table import markdown_table
+from hedon.analysis.style import save_figure
+from hedon.analysis.summary import plain
+from hedon.analysis.topic.result import ResultTable
+from hedon.assay.surface import Estimate
+from hedon.config.config import Config
+from hedon.config.dump import digest
+from hedon.record.atomic import write_atomically
+from hedon.record.error import RecordError
+from hedon.record.reader import Run
+
+
+def write_assay(
+    folder: Path,
+    kind: str,
+    runs: Sequence[Run],
+    config: Config,
+    content: Mapping[str, Any],
+    tables: Sequence[ResultTable],
+    intro: str,
+    figure: Figure,
+) -> list[Path]:
+    """Writes the files of an assay over what is there, and returns their paths.
+
+    Args:
+        folder: of the assay.
+        kind: of the assay; names the files.
+        runs: that it was read from.
+        config: of its condition.
+        content: what the summary holds besides its head and the tables.
+        tables: for the summary and the page.
+        intro: first lines of the page, in Markdown.
+        figure: its picture.
+
+    Raises:
+        RecordError: A file cannot be written.
+    """
+    head = {
+        "assay": kind,
+        "condition": config.name,
+        "fidelity": config.fidelity,
+        "config_digest": digest(config),
+        "runs": [
+            {
+                "folder": run.path.name,
+                "config_digest": run.manifest.config_digest,
+                "seeds": run.manifest.seeds,
+                "steps": max(run.manifest.steps_done, default=0),
+                "extinct_steps": run.manifest.extinct_steps,
+                "world_digests": run.manifest.world_digests,
+                "hedon_version": run.manifest.hedon_version,
+            }
+            for run in runs
+        ],
+    }
+    shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
+    summary = json.dumps(plain({**head, **content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
+    title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
+    lines = [f"# {title}", "", intro, "", f"![{title}]({kind}.png)", ""]
+    for each in tables:
+        lines += [f"## {each.title}", "", markdown_table(each), "", *([each.note, ""] if each.note else [])]
+    files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n"}
+    try:
+        for name, text in files.items():
+            write_atomically(folder / name, lambda file, text=text: file.write(text.encode()))
+        return [*(folder / name for name in files), save_figure(figure, folder / f"{kind}.png")]
+    except OSError as error:
+        raise RecordError(f"cannot write the assay into {folder}: {error}") from error
+
+
+def world_line(runs: Sequence[Run]) -> str:
+    """How many worlds there were, how long they lived, and which died out, as a sentence."""
+    parts = []
+    for run in runs:
+        manifest = run.manifest
+        pairs = zip(manifest.seeds, manifest.extinct_steps, strict=True)
+        died = [f"seed {seed} at step {step:,}" for seed, step in pairs if step is not None]
+        parts.append(
+            f"`{run.path.name}`: {len(manifest.seeds)} worlds, {max(manifest.steps_done, default=0):,} steps; "
+            f"died out: {', '.join(died) or 'none'}."
+        )
+    return " ".join(parts)
+
+
+def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
+    """A row with a value and its interval."""
+    return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}

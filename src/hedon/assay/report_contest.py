@@ -1,0 +1,101 @@
+"""The tables, the JSON summary, the figure and the page of a contest of two groups."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hedon.analysis.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
+from hedon.analysis.topic.result import ResultTable, table
+from hedon.assay.contest import Contest
+from hedon.assay.report import estimate_row
+
+_SHOWN_TIMES = 10
+
+
+def contest_tables(contest: Contest) -> list[ResultTable]:
+    """The result, the course of the ratio, and each world."""
+    first, second = contest.groups
+    rows = [
+        estimate_row({"quantity": "selection coefficient per generation"}, contest.selection) | {"p": contest.p},
+        estimate_row({"quantity": f"share of {first} at the end"}, contest.share),
+        {"quantity": f"share of {first} at the start", "value": contest.start},
+        {"quantity": "generations", "value": contest.generations},
+        {"quantity": f"worlds with {first} alone", "value": contest.fixed},
+        {"quantity": f"worlds with {second} alone", "value": contest.lost},
+        {"quantity": "worlds", "value": len(contest.lines)},
+    ]
+    note = (
+        f"Of {first} against {second}: above 0, {first} grows faster. Intervals: bootstrap over worlds. p: the chance "
+        "of so large a change of the share if both are alike; the founders of a world exchange their groups."
+    )
+    step, ratio, bounds = contest.course()
+    course = [
+        {"step": int(step[i]), "value": float(ratio[i]), "low": float(bounds[0, i]), "high": float(bounds[1, i])}
+        for i in np.linspace(0, len(step) - 1, _SHOWN_TIMES + 1).round().astype(int)
+    ]
+    finite = [{name: value if np.isfinite(value) else None for name, value in row.items()} for row in course]
+    worlds = [
+        {
+            "seed": lines.seed,
+            first: int(lines.count[-1, 0]),
+            second: int(lines.count[-1, 1]),
+            "generations": float(lines.generation[-1]),
+            "last step": int(lines.step[-1]),
+        }
+        for lines in contest.lines
+    ]
+    return [
+        table("contest", f"{first} against {second}", rows, note),
+        table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
+        table("contest_world", "Living at the end, by world", worlds, shown=False),
+    ]
+
+
+def contest_json(contest: Contest) -> dict[str, Any]:
+    """What the summary holds besides the tables."""
+    return {
+        "groups": list(contest.groups),
+        "selection": vars(contest.selection),
+        "share": vars(contest.share),
+        "start": contest.start,
+        "p": contest.p,
+        "fixed": contest.fixed,
+        "lost": contest.lost,
+        "generations": contest.generations,
+    }
+
+
+def draw_contest(contest: Contest) -> Figure:
+    """The share of the first group over time, world by world, and the log ratio of all worlds together."""
+    unit, name = step_unit(contest.steps)
+    step, ratio, (low, high) = contest.course()
+    with styled():
+        figure = new_figure(8.0, 3.4)
+        left, right = figure.subplots(1, 2)
+        for lines in contest.lines:
+            left.plot(lines.step / unit, lines.share, color=PALE, linewidth=0.9)
+        left.plot(step / unit, _mean_share(contest), color=BLUE, linewidth=1.8)
+        left.axhline(contest.start, color=MUTED, linewidth=0.8, linestyle="--")
+        left.set_ylim(0, 1)
+        left.set_xlabel(name)
+        head(left, f"Share of {contest.groups[0]}", "gray: worlds; blue: their mean; dashed: at the start")
+        known = np.isfinite(ratio)
+        right.plot(step[known] / unit, ratio[known], color=INK, linewidth=1.6)
+        right.fill_between(step / unit, low, high, color=PALE, alpha=0.6, where=np.isfinite(low) & np.isfinite(high))
+        right.axhline(0.0, color=MUTED, linewidth=0.8)
+        right.set_xlabel(name)
+        found = contest.selection
+        head(
+            right,
+            "Log ratio",
+            f"s = {found.value:.3g} per generation, {found.low:.3g} to {found.high:.3g}, p {contest.p:.3g}",
+        )
+    return figure
+
+
+def _mean_share(contest: Contest) -> np.ndarray:
+    shares = np.full((len(contest.lines), len(contest.course()[0])), np.nan)
+    for row, lines in zip(shares, contest.lines, strict=True):
+        row[: len(lines.step)] = lines.share
+    return np.nanmean(shares, axis=0)

@@ -1,0 +1,74 @@
+"""Two groups: a known difference is found, and equal groups do not win."""
+
+import numpy as np
+import pytest
+from assay_world import birth_death_world
+from scipy import stats
+
+from hedon.assay.contest import Contest, Lines, estimate, world_lines
+from hedon.assay.report_contest import contest_tables, draw_contest
+from hedon.config import load_config
+
+CONFIG = load_config("baseline")
+
+
+def lines(rng: np.random.Generator, birth: tuple[float, float], share: float = 0.5, *, count=40, steps=3000) -> Lines:
+    """One world in which the two groups have children at these chances and die at 1e-3."""
+    first = np.arange(count) < share * count
+    rng.shuffle(first)
+    rates = np.where(first, *birth)
+    agents = birth_death_world({"w_normal": rates}, lambda genes: genes["w_normal"], rng, steps=steps)
+    return world_lines(agents, 1, first.tolist(), steps)
+
+
+def contest(rng: np.random.Generator, birth: tuple[float, float], worlds: int, share: float = 0.5) -> Contest:
+    return estimate(("a", "b"), [lines(rng, birth, share) for _ in range(worlds)], CONFIG, 3000)
+
+
+def test_a_known_difference_is_found_with_its_size() -> None:
+    # The log of the ratio changes by the difference of the rates of birth per step, and a generation takes one over
+    # their mean: s = 2e-4 / 1e-3 per generation.
+    found = contest(np.random.default_rng(1), (1.1e-3, 0.9e-3), 40)
+    assert found.selection.low <= 0.2 <= found.selection.high
+    assert found.selection.low > 0
+    assert found.p < 0.01
+    assert found.generations == pytest.approx(3.0, abs=0.4)
+    step, ratio, bounds = found.course()
+    assert ratio[0] == 0
+    assert bounds[0, -1] <= 2e-4 * step[-1] <= bounds[1, -1]
+
+
+@pytest.mark.parametrize("share", [0.5, 0.1])
+def test_equal_groups_do_not_win(share: float) -> None:
+    trials, significant, missed = 200, 0, 0
+    for trial in range(trials):
+        found = contest(np.random.default_rng([trial, int(100 * share)]), (1e-3, 1e-3), 10, share)
+        significant += found.p < 0.05
+        missed += not found.selection.low <= 0 <= found.selection.high
+    low, high = stats.binom.interval(0.99, trials, 0.05)
+    print(f"share {share}: p < 0.05 in {significant} of {trials}, interval without 0 in {missed}")
+    assert low <= significant <= high
+    assert missed <= high
+
+
+def test_worlds_that_are_lost_count_and_add_no_noise() -> None:
+    rng = np.random.default_rng(2)
+    some = [lines(rng, (1e-3, 1e-3), 0.1, count=10) for _ in range(30)]
+    found = estimate(("a", "b"), some, CONFIG, 3000)
+    assert found.lost > 5
+    assert found.lost == sum(each.share[-1] == 0 for each in some)
+    assert found.share.value == pytest.approx(0.1, abs=0.1)
+    tables = {table.name: table for table in contest_tables(found)}
+    assert tables["contest_world"].rows.height == 30
+    assert draw_contest(found).axes
+
+
+def test_counts_are_those_of_the_pedigree() -> None:
+    rng = np.random.default_rng(3)
+    first = [True, False, True, False]
+    agents = birth_death_world({"w_normal": np.ones(4)}, lambda genes: np.full(4, 3e-3), rng, steps=1500)
+    found = world_lines(agents, 9, first, 1500)
+    assert found.count[0].tolist() == [2, 2]
+    assert found.count.sum(axis=1)[-1] == agents["death_step"].null_count()
+    assert found.descendants.sum() == agents["death_step"].null_count()
+    assert found.descendants[[0, 2]].sum() == found.count[-1, 0]
