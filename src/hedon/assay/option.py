@@ -1,10 +1,10 @@
 """The options of assays: which genes, how founders are spread, which runs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from hedon.assay.landscape import AssayError, Spread
+from hedon.assay.landscape import NEUTRAL, AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.experiment.plan import RunPlan, seed_span
@@ -123,3 +123,22 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
 def still(config: Config) -> Config:
     """A config without mutation, whose founders are not those of another run."""
     return replace(config, genome=replace(config.genome, mutation_scale=0.0, founders=""))
+
+
+def start_config(config: Config, point: Mapping[str, float]) -> Config:
+    """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
+
+    Raises:
+        AssayError: The point has a neutral marker.
+    """
+    genome = replace(config.genome, neutral_count=NEUTRAL, founders="")
+    food = dict(config.food)
+    for column, value in point.items():
+        kind = column.removeprefix("w_")
+        if column == "w_action":
+            genome = replace(genome, action=replace(genome.action, initial_mean=value))
+        elif kind in food:
+            food[kind] = replace(food[kind], gene=replace(food[kind].gene, initial_mean=value))
+        else:
+            raise AssayError(f"--at {column}={value:g}: a neutral marker is the control, so give food kinds and action")
+    return replace(config, genome=genome, food=food)

@@ -8,7 +8,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, assay_contest, config
+from hedon.cli import assay, assay_contest, assay_start, config
 from hedon.cli.analyze import analyze
 from hedon.cli.bench import bench
 from hedon.cli.branch import branch
@@ -50,6 +50,7 @@ app.command()(replay_fault)
 app.command()(config.presets)
 app.command()(bench)
 assay_contest.add_to(assay.app)
+assay_start.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
 app.add_typer(config.app, name="config")
 

@@ -50,10 +50,11 @@ def world_course(
         walks: neutral genes per course.
 
     Returns:
-        None where there is no pedigree, or one with gaps, or nobody lives at the end of the first interval.
+        None where there is no pedigree, or one with gaps, or nobody lives at the end of the first interval, or the
+        founders come from a table, whose law the neutral genes do not know.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size:
+    if tree.gaps or not tree.size or world.config.genome.founders:
         return None
     # A small excess, or rounding could cost the last time.
     times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)

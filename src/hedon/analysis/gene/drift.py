@@ -96,10 +96,11 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
     """Each weight of a world against walks along its pedigree.
 
     Returns:
-        None at all where there is no pedigree, or one with gaps, whose walks would have no beginning.
+        None at all where there is no pedigree, or one with gaps, whose walks would have no beginning; nor where the
+        founders come from a table, whose law the walks do not know.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size:
+    if tree.gaps or not tree.size or world.config.genome.founders:
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
     genes = {name: gene_config(world.config, name) for name in world.weight_names}

@@ -1,0 +1,115 @@
+"""The tables, the summary and the figure of starts at chosen points."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hedon.analysis.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
+from hedon.analysis.topic.result import ResultTable, table
+from hedon.assay.start import VERDICTS, Start
+
+_COLORS = (BLUE, ORANGE)
+
+
+def start_tables(starts: Sequence[Start]) -> list[ResultTable]:
+    """Where each weight ended, and its course."""
+    rows, courses = [], []
+    for start in starts:
+        neutral = [course for name, course in start.courses.items() if name.startswith("neutral_")]
+        for name in start.point:
+            course = start.courses[name]
+            rows.append(
+                {
+                    "run": start.name,
+                    "gene": name.removeprefix("w_"),
+                    "start": course.start,
+                    "end": course.end.mean,
+                    "low": course.end.low,
+                    "high": course.end.high,
+                    "drift from": float(course.null[0, -1]),
+                    "drift to": float(course.null[1, -1]),
+                    "score": course.score,
+                    "p": course.p,
+                    "p held": course.p_held,
+                    "verdict": course.verdict,
+                }
+            )
+        if neutral:
+            leave = sum(course.verdict == "leaves" for course in neutral)
+            ends = [course.end.mean for course in neutral if course.end.mean is not None]
+            rows.append(
+                {
+                    "run": start.name,
+                    "gene": f"{len(neutral)} neutral",
+                    "end": float(np.mean(ends)) if ends else None,
+                    "verdict": f"{leave} leave",
+                }
+            )
+        for name, course in start.courses.items():
+            known = np.isfinite(course.mean).any(axis=0)
+            for i in np.flatnonzero(known):
+                mean, (low, high) = float(np.nanmean(course.mean[:, i])), course.null[:, i].tolist()
+                courses.append(
+                    {
+                        "run": start.name,
+                        "gene": name.removeprefix("w_"),
+                        "step": int(course.step[i]),
+                        "mean": mean,
+                        "drift_low": low,
+                        "drift_high": high,
+                    }
+                )
+    meanings = "; ".join(f"{verdict}: {meaning}" for verdict, meaning in VERDICTS.items())
+    note = (
+        "Means over worlds, with intervals over worlds. drift from and to: where 95 % of neutral genes end that begin "
+        f"likewise and mutate along the same pedigrees. {meanings} (p below 0.05)."
+    )
+    return [
+        table("start", "Where the weights went", rows, note),
+        table("course", "Mean weights over time", courses, shown=False),
+    ]
+
+
+def start_json(starts: Sequence[Start]) -> dict[str, Any]:
+    """What the summary holds besides the tables."""
+    return {
+        "starts": [
+            {
+                "run": start.name,
+                "point": dict(start.point),
+                "worlds": start.worlds,
+                "extinct": start.extinct,
+                "generations": start.generations,
+                "verdicts": {name: start.courses[name].verdict for name in start.point},
+            }
+            for start in starts
+        ]
+    }
+
+
+def draw_starts(starts: Sequence[Start]) -> Figure:
+    """One panel per reward weight: each world, the mean, and the band of neutral genes that begin likewise."""
+    genes = list(starts[0].point)
+    with styled():
+        figure = new_figure(4.4 * len(genes), 3.4)
+        panels = figure.subplots(1, len(genes), squeeze=False)[0]
+        for axes, gene in zip(panels, genes, strict=True):
+            unit, name = step_unit(float(starts[0].courses[gene].step[-1]))
+            for start, color in zip(starts, _COLORS, strict=False):
+                course = start.courses[gene]
+                step = course.step / unit
+                axes.fill_between(step, *course.null, color=PALE, alpha=0.5, linewidth=0)
+                axes.plot(step, course.mean.T, color=color, linewidth=0.7, alpha=0.6)
+                axes.plot(step, _mean(course.mean), color=color, linewidth=2.0, label=f"{start.name}: {course.verdict}")
+            axes.axhline(0.0, color=MUTED, linewidth=0.8)
+            axes.set_xlabel(name)
+            axes.legend(loc="best")
+            head(axes, f"Weight of {gene.removeprefix('w_')}", "thin: worlds; thick: mean; gray: neutral genes")
+    return figure
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    known = np.isfinite(values)
+    return np.where(known.any(axis=0), np.nansum(values, axis=0) / np.maximum(known.sum(axis=0), 1), np.nan)

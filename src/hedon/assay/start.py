@@ -1,0 +1,136 @@
+"""Evolution from a claimed end point: does it stay there?"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from hedon.analysis.course import WorldCourse, world_course
+from hedon.analysis.drift import rank_score
+from hedon.analysis.interval import Interval, mean_interval
+from hedon.analysis.topic.result import generator
+from hedon.analysis.world import read_worlds
+from hedon.assay.resample import Floats
+from hedon.config.gene import gene_config
+from hedon.record.reader import Run
+
+TIMES = 50
+"""Intervals of a course."""
+ALPHA = 0.05
+VERDICTS = {
+    "leaves": "moved further in one direction than neutral genes of the same pedigrees do",
+    "held": "moved less than neutral genes do",
+    "as drift": "moved as far as neutral genes do: this run cannot tell",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class WeightCourse:
+    """One weight over time in all worlds that began at one point.
+
+    Attributes:
+        gene: column.
+        start: mean of the founders' law.
+        step: moments [step], (times,).
+        mean: over the living of each world, (worlds, times); NaN after a world died out.
+        null: bounds between which 95 % of neutral genes' means over worlds lie that begin as it does, (2, times).
+        end: mean over worlds at the end, with Student's interval.
+        score: mean standard normal score of the end among neutral genes.
+        p: two-sided chance of such a score under drift (Stouffer).
+        p_held: chance of ends as close to the start, or closer, under drift.
+        verdict: one of `VERDICTS`.
+    """
+
+    gene: str
+    start: float
+    step: Floats
+    mean: Floats
+    null: Floats
+    end: Interval
+    score: float
+    p: float
+    p_held: float
+    verdict: str
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The worlds that began at one point.
+
+    Attributes:
+        name: of the run's folder.
+        point: means of the founders' reward genes, by column.
+        worlds: how many.
+        extinct: how many died out.
+        generations: mean over worlds.
+        courses: of each weight, neutral markers too, by column.
+    """
+
+    name: str
+    point: Mapping[str, float]
+    worlds: int
+    extinct: int
+    generations: float
+    courses: Mapping[str, WeightCourse]
+
+
+def measure_start(run: Run) -> Start:
+    """Reads a finished run."""
+    worlds = read_worlds([run])
+    steps = max(run.manifest.steps_done)
+    found = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
+    courses = [course for course in found if course is not None]
+    names, config = worlds[0].weight_names, worlds[0].config
+    step = np.arange(TIMES + 1) * steps / TIMES
+    weights = {name: _weight(name, gene_config(config, name).initial_mean, step, courses) for name in names}
+    return Start(
+        name=run.path.name,
+        point={name: gene_config(config, name).initial_mean for name in worlds[0].reward_names},
+        worlds=len(worlds),
+        extinct=sum(world.extinct_step is not None for world in worlds),
+        generations=float(np.mean([course.generations for course in courses])) if courses else 0.0,
+        courses=weights,
+    )
+
+
+def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse]) -> WeightCourse:
+    mean = np.full((len(courses), len(step)), np.nan)
+    for row, course in zip(mean, courses, strict=True):
+        row[: len(course.mean[name])] = course.mean[name]
+    walks = min((len(course.neutral[name]) for course in courses), default=0)
+    null = np.full((walks, len(step)), np.nan)
+    if courses:
+        stacked = np.full((len(courses), walks, len(step)), np.nan)
+        for block, course in zip(stacked, courses, strict=True):
+            block[:, : course.neutral[name].shape[1]] = course.neutral[name][:walks]
+        living = np.isfinite(stacked).sum(axis=0)
+        null = np.where(living > 0, np.nansum(stacked, axis=0) / np.maximum(living, 1), np.nan)
+    scores = np.array([rank_score(course.mean[name][-1], course.neutral[name][:, -1]) for course in courses])
+    held = [
+        rank_score(abs(course.mean[name][-1] - start), np.abs(course.neutral[name][:, -1] - start))
+        for course in courses
+    ]
+    p, p_held = _two_sided(scores), _below(np.array(held))
+    verdict = "leaves" if p < ALPHA else "held" if p_held < ALPHA else "as drift"
+    return WeightCourse(
+        gene=name,
+        start=start,
+        step=step,
+        mean=mean,
+        null=np.quantile(null, (0.025, 0.975), axis=0) if walks else np.full((2, len(step)), np.nan),
+        end=mean_interval([course.mean[name][-1] for course in courses]),
+        score=float(scores.mean()) if len(scores) else math.nan,
+        p=p,
+        p_held=p_held,
+        verdict=verdict,
+    )
+
+
+def _two_sided(scores: Floats) -> float:
+    return float(2.0 * stats.norm.sf(abs(scores.sum()) / math.sqrt(max(len(scores), 1))))
+
+
+def _below(scores: Floats) -> float:
+    return float(stats.norm.cdf(scores.sum() / math.sqrt(max(len(scores), 1))))
