@@ -13,8 +13,8 @@ import numpy as np
 import polars as pl
 from scipy.integrate import trapezoid
 
-from hedon.analysis.genealogy import depth, founder, genealogy, living_at
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.descent.genealogy import depth, founder, genealogy, living_at
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.assay.landscape import AssayError
 from hedon.assay.resample import PERMUTATIONS, Floats, chance, world_draws, world_interval
 from hedon.assay.surface import Estimate

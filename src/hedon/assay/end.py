@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.weight import world_weights
+from hedon.analysis.gene.weight import world_weights
 from hedon.assay.landscape import AssayError
 from hedon.config.config import Config
 from hedon.record.founder_source import parse_point

@@ -8,9 +8,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from hedon.analysis.style import INK, MUTED, VERMILION, head, new_figure, styled
 from hedon.assay.end import End, on_surface
 from hedon.assay.landscape import Landscape, MeasureSurface
+from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled
 
 _TITLES = {
     "descendants": "living descendants",

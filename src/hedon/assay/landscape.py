@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import polars as pl
 
-from hedon.analysis.world import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.assay.gene_test import GeneEffect, flatness, gene_effects
 from hedon.assay.outcome import MEASURES, founder_outcomes
 from hedon.assay.resample import FEWEST_WORLDS, Floats, relative

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import polars as pl
 
-from hedon.analysis.genealogy import founder, genealogy
-from hedon.analysis.survival import durations
+from hedon.analysis.agent.lifetime import durations
+from hedon.analysis.descent.genealogy import founder, genealogy
 
 MEASURES = {
     "descendants": "living descendants at the end, the founder included",

@@ -7,16 +7,17 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from hedon.analysis.analysis_table import markdown_table
-from hedon.analysis.style import save_figure
-from hedon.analysis.summary import plain
-from hedon.analysis.topic.result import ResultTable
+from hedon.analysis.table import ResultTable
 from hedon.assay.surface import Estimate
 from hedon.config.config import Config
 from hedon.config.dump import digest
+from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.reader import Run
+from hedon.report.markdown import pipe_table
+from hedon.report.summary import plain
+from hedon.report.table import cells
 
 
 def write_assay(
@@ -67,7 +68,7 @@ def write_assay(
     title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
     lines = [f"# {title}", "", intro, "", f"![{title}]({kind}.png)", ""]
     for each in tables:
-        lines += [f"## {each.title}", "", markdown_table(each), "", *([each.note, ""] if each.note else [])]
+        lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n"}
     try:
         for name, text in files.items():

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.assay.contest import Contest
 from hedon.assay.report import estimate_row
+from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
 
 _SHOWN_TIMES = 10
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape

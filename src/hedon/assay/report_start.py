@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
-from hedon.analysis.topic.result import ResultTable, table
+from hedon.analysis.table import ResultTable, table
 from hedon.assay.start import VERDICTS, Start
+from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 
 _COLORS = (BLUE, ORANGE)
 

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from hedon.analysis.course import WorldCourse, world_course
-from hedon.analysis.drift import rank_score
-from hedon.analysis.interval import Interval, mean_interval
-from hedon.analysis.topic.result import generator
-from hedon.analysis.world import read_worlds
+from hedon.analysis.gene.course import WorldCourse, world_course
+from hedon.analysis.world.record import generator, read_worlds
 from hedon.assay.resample import Floats
 from hedon.config.gene import gene_config
 from hedon.record.reader import Run
+from hedon.statistic.drift import rank_score
+from hedon.statistic.interval import Interval, mean_interval
 
 TIMES = 50
 """Intervals of a course."""

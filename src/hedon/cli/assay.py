@@ -15,7 +15,7 @@ from hedon.text import printable
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.analysis.topic.result import ResultTable
+    from hedon.analysis.table import ResultTable
     from hedon.assay.conduct import Show
     from hedon.experiment.plan import Display, RunPlan
     from hedon.record.manifest import Manifest
@@ -106,7 +106,7 @@ def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | N
 
 def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Console") -> None:
     """Prints the tables, and where they were written."""
-    from hedon.analysis.analysis_table import analysis_group
+    from hedon.cli.display.analysis import analysis_group
 
     console.print(analysis_group({table.name: table for table in tables}))
     console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
@@ -114,7 +114,7 @@ def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Con
 
 def _shower(console: "Console") -> "Show":
     def show(plan: "RunPlan", go: "Callable[[Display], Manifest]") -> "Manifest":
-        from hedon.experiment.progress import make_display
+        from hedon.cli.display.run import make_display
 
         config = plan.config
         console.print(

@@ -22,9 +22,9 @@ from hedon.analysis.gene.drift import start_of
 from hedon.analysis.gene.noise import Mutations, NoiseTable, mutations, noise_table
 from hedon.analysis.gene.weight import last_agents
 from hedon.analysis.world.record import WorldRecord
+from hedon.config.gene import gene_config
 from hedon.statistic.interval import LEVEL
 from hedon.statistic.prediction import Prediction, prediction
-from hedon.config.gene import gene_config
 
 NAN = math.nan
 _LINES = 4000

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import depth, genealogy, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
-from hedon.analysis.gene.drift import start_of
 from hedon.analysis.world.record import WorldRecord
 from hedon.config.gene import gene_config
 

@@ -20,10 +20,10 @@ from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.world.record import WorldRecord, generator
+from hedon.config.gene import gene_config
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
-from hedon.config.gene import gene_config
 
 NAN = math.nan
 
