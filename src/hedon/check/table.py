@@ -42,7 +42,7 @@ def read_parts(folder: Path, table: Table) -> Iterator[tuple[str, pl.DataFrame |
     for path in paths:
         name = str(path.relative_to(folder))
         try:
-            rows = pl.read_parquet(path)
+            rows = pl.read_parquet(path, glob=False)
         except (pl.exceptions.PolarsError, OSError) as error:
             yield name, None, [Finding(name, f"cannot be read: {str(error).splitlines()[0]}")]
             continue

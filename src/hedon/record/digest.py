@@ -46,7 +46,7 @@ def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
 
 def _read(path: Path, table: Table) -> pl.DataFrame:
     try:
-        return pl.read_parquet(path, columns=[column.name for column in table.columns])
+        return pl.read_parquet(path, columns=[column.name for column in table.columns], glob=False)
     except (pl.exceptions.PolarsError, OSError) as error:
         raise RecordError(f"damaged part {path} ({error})") from error
 

@@ -83,7 +83,7 @@ class Run:
         """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded."""
         table = self._tables["frames"]
         paths = part_paths(self.path, "frames")
-        return pl.scan_parquet(paths) if paths else pl.LazyFrame(schema=table.polars_schema)
+        return pl.scan_parquet(paths, glob=False) if paths else pl.LazyFrame(schema=table.polars_schema)
 
     def damaged_parts(self) -> list[Path]:
         """The files of the tables agents and population that cannot be read."""
@@ -132,7 +132,7 @@ def _read(paths: list[Path], table: Table, skip_damaged: bool) -> pl.DataFrame:
     frames, faults = [pl.DataFrame(schema=table.polars_schema)], []
     for path in paths:
         try:
-            frames.append(pl.read_parquet(path, columns=[column.name for column in table.columns]))
+            frames.append(pl.read_parquet(path, columns=[column.name for column in table.columns], glob=False))
         except (pl.exceptions.PolarsError, OSError) as error:
             faults.append(f"{path} ({error})")
     if faults and not skip_damaged:
@@ -146,7 +146,7 @@ def _damaged(faults: list[str]) -> RecordError:
 
 def _fault(path: Path) -> str | None:
     try:
-        pl.read_parquet(path)
+        pl.read_parquet(path, glob=False)
     except (pl.exceptions.PolarsError, OSError) as error:
         return str(error)
     return None

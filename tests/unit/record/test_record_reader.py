@@ -106,6 +106,14 @@ def test_a_run_without_config_is_named(tmp_path: Path) -> None:
         open_run(folder)
 
 
+def test_a_folder_may_have_any_name(tmp_path: Path) -> None:
+    """Signs that stand for several files elsewhere are letters here."""
+    plain, strange = (open_run(write_run(tmp_path / name, intervals=2, worlds=1)) for name in ("run", "[1, 2] *?"))
+    assert strange.damaged_parts() == []
+    assert strange.agents().equals(plain.agents())
+    assert strange.population().equals(plain.population())
+
+
 def test_a_damaged_part_is_named_and_the_others_are_read(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=20, worlds=2)
     run = open_run(folder)
