@@ -1,4 +1,4 @@
-"""Which combinations of rewards evolved? Weights of the agents that were born last, as in the paper."""
+"""Which combinations of rewards evolved? Weights of the agents that were born last, one against another."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,35 +37,35 @@ _LEGEND_SEEDS = 10  # more would hide the data
 
 @dataclass(frozen=True)
 class WeightGroup:
-    """The agents of one setting, drawn as a panel per food kind.
+    """The agents of one setting, drawn as one or more panels.
 
     Attributes:
         agents: those of the table `agents` that are shown; `world` tells colors.
-        food_kinds: names.
+        panels: genome columns along the x and the y axis of each panel.
         title: what the setting is called.
         remark: what else must be known of it.
     """
 
     agents: pl.DataFrame
-    food_kinds: Sequence[str]
+    panels: Sequence[tuple[str, str]]
     title: str = ""
     remark: str = ""
 
     @property
-    def names(self) -> list[str]:
-        """The genome columns along the x axes."""
-        return [f"w_{kind}" for kind in self.food_kinds]
-
-    @property
     def weights(self) -> list[str]:
         """The genome columns along any axis."""
-        return [*self.names, "w_action"]
+        return list(dict.fromkeys(name for panel in self.panels for name in panel))
+
+
+def against_action(food_kinds: Sequence[str]) -> list[tuple[str, str]]:
+    """A panel per food kind: its weight along the x axis, that of action along the y axis."""
+    return [(f"w_{kind}", "w_action") for kind in food_kinds]
 
 
 def draw_weights(
     agents: pl.DataFrame, food_kinds: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
 ) -> Figure:
-    """The weights of the agents of one setting that were born last.
+    """The weights of the agents of one setting that were born last: of each food against that of action.
 
     Args:
         agents: table `agents`.
@@ -73,11 +73,11 @@ def draw_weights(
         neutral_names: genome columns.
         count: agents per world.
     """
-    return draw_weight_groups([WeightGroup(last_agents(agents, count), food_kinds)], neutral_names)
+    return draw_weight_groups([WeightGroup(last_agents(agents, count), against_action(food_kinds))], neutral_names)
 
 
 def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[str]) -> Figure:
-    """One panel per setting and food kind: its weight against the weight of action, a point per agent.
+    """The panels of each setting side by side, a point per agent.
 
     Colors tell worlds apart, or the time of birth where there is one world in all. The curves beyond the axes are
     the distributions over all agents, with that of the first neutral marker behind them in gray.
@@ -89,16 +89,16 @@ def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[st
         neutral_names: genome columns, of all settings.
     """
     reach = max(_reach(group) for group in groups)
-    kinds = sum(len(group.food_kinds) for group in groups)
-    columns = kinds + _SIDE * len(groups)  # panels and the distributions beside them, in panels
+    panels = sum(len(group.panels) for group in groups)
+    columns = panels + _SIDE * len(groups)  # panels and the distributions beside them, in panels
     size = min(3.3, (_WIDEST - 0.6) / columns)  # of a panel [inch]
     lines = max((1 + group.remark.count("\n") + bool(group.remark) for group in groups if group.title), default=0)
     with styled():
         figure = new_figure(size * columns + 0.6, 1.2 * size + 0.54 + 0.18 * lines)
         grid = figure.add_gridspec(
             2,
-            kinds + len(groups),
-            width_ratios=[part for group in groups for part in (*[1.0] * len(group.food_kinds), _SIDE)],
+            panels + len(groups),
+            width_ratios=[part for group in groups for part in (*[1.0] * len(group.panels), _SIDE)],
             height_ratios=[_SIDE, 1.0],
             wspace=0,
             hspace=0,
@@ -107,34 +107,40 @@ def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[st
         column = 0
         for group in groups:
             neutral = _neutral(group, neutral_names)
-            for name in group.names:
+            for panel in group.panels:
                 axes = figure.add_subplot(grid[1, column])
-                _scatter(figure, axes, group, name, by_birth=by_birth)
-                _edge_marks(axes, group.agents, name, reach)
-                _set_axes(axes, name, reach, first=column == 0)
+                _scatter(figure, axes, group, panel, by_birth=by_birth)
+                _edge_marks(axes, group.agents, panel, reach)
+                _set_axes(axes, panel, reach, first=column == 0)
                 top = figure.add_subplot(grid[0, column], sharex=axes)
-                _marginal(top, group.agents[name].to_numpy(), neutral, reach)
+                _marginal(top, group.agents[panel[0]].to_numpy(), neutral, reach)
                 column += 1
-                if name == group.names[0]:
+                if panel == group.panels[0]:
                     head(top, group.title, group.remark)
                     if group.agents.is_empty():
                         say_empty(axes, "no agents recorded")
-                if name == group.names[-1]:
+                if panel == group.panels[-1]:
                     side = figure.add_subplot(grid[1, column], sharey=axes)
-                    _marginal(side, group.agents["w_action"].to_numpy(), neutral, reach, upright=True)
+                    _marginal(side, group.agents[panel[1]].to_numpy(), neutral, reach, upright=True)
                     column += 1
         _legend(figure, groups, neutral_names, reach)
     return figure
 
 
-def _set_axes(axes: Axes, name: str, reach: float, *, first: bool) -> None:
-    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=f"weight of {name.removeprefix('w_')} food")
+def _set_axes(axes: Axes, panel: tuple[str, str], reach: float, *, first: bool) -> None:
+    x, y = map(_title, panel)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=x)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
     if first:
-        axes.set_ylabel("weight of action")
+        axes.set_ylabel(y)
     else:
         axes.tick_params(labelleft=False)
+
+
+def _title(name: str) -> str:
+    """What a genome column is called along an axis."""
+    return "weight of action" if name == "w_action" else f"weight of {name.removeprefix('w_')} food"
 
 
 def _neutral(group: WeightGroup, neutral_names: Sequence[str]) -> np.ndarray:
@@ -142,13 +148,13 @@ def _neutral(group: WeightGroup, neutral_names: Sequence[str]) -> np.ndarray:
     return group.agents[neutral_names[0]].to_numpy() if neutral_names else np.array([])
 
 
-def _scatter(figure: Figure, axes: Axes, group: WeightGroup, name: str, *, by_birth: bool) -> None:
+def _scatter(figure: Figure, axes: Axes, group: WeightGroup, panel: tuple[str, str], *, by_birth: bool) -> None:
     rows = group.agents
     for draw in (axes.axhline, axes.axvline):
         draw(0, color=PALE, linewidth=1.0, zorder=0.5)
     # Worlds in random order, so that the last does not cover the others.
     order = np.random.default_rng(0).permutation(rows.height)
-    x, y = rows[name].to_numpy()[order], rows["w_action"].to_numpy()[order]
+    x, y = (rows[name].to_numpy()[order] for name in panel)
     size = float(np.clip(6e4 / max(rows.height, 1), 3.0, 14.0))
     look = {"s": size, "linewidths": 0, "alpha": 0.45, "rasterized": True}
     if not by_birth or rows["birth_step"].n_unique() < 2:
@@ -157,7 +163,7 @@ def _scatter(figure: Figure, axes: Axes, group: WeightGroup, name: str, *, by_bi
         unit, unit_name = step_unit(float(rows["birth_step"].to_numpy().max()))
         births = rows["birth_step"].to_numpy()[order] / unit
         points = axes.scatter(x, y, c=births, cmap="viridis", **look)
-        if name == group.names[0]:
+        if panel == group.panels[0]:
             bar = figure.colorbar(points, ax=axes, location="bottom", shrink=0.7, aspect=40, pad=0.02)
             bar.set_label(f"born at [{unit_name}]")
             if bar.solids is not None:
@@ -165,10 +171,10 @@ def _scatter(figure: Figure, axes: Axes, group: WeightGroup, name: str, *, by_bi
             bar.outline.set_visible(False)
 
 
-def _edge_marks(axes: Axes, rows: pl.DataFrame, name: str, reach: float) -> None:
+def _edge_marks(axes: Axes, rows: pl.DataFrame, panel: tuple[str, str], reach: float) -> None:
     """Crosses at the edge of the axes for the agents that lie beyond it."""
-    rows = rows.filter(_is_beyond([name, "w_action"], reach))
-    x, y = (np.clip(rows[column].to_numpy(), -reach, reach) for column in (name, "w_action"))
+    rows = rows.filter(_is_beyond(panel, reach))
+    x, y = (np.clip(rows[column].to_numpy(), -reach, reach) for column in panel)
     axes.scatter(x, y, marker="x", s=9, linewidths=0.7, color=MUTED, alpha=0.7, clip_on=False, zorder=3)
 
 

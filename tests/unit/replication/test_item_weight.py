@@ -100,10 +100,16 @@ def test_arms_without_worlds_are_named(five: list[WorldRecord]) -> None:
     assert "Not run yet" not in draw("weights-baseline", baseline=five)[0]
 
 
-def test_poison_has_a_panel_per_kind_of_food(tmp_path: Path) -> None:
+def test_poison_is_drawn_in_the_axes_of_the_paper(tmp_path: Path) -> None:
     run = write_run(tmp_path / "run", worlds=2, intervals=5, food_kinds=("normal", "poison"), snapshot=False)
-    _, figure = draw("weights-poison", poison=read_worlds([open_run(run)]))
-    assert [axes.get_xlabel() for axes in panels(figure)] == ["weight of normal food", "weight of poison food"]
+    worlds = read_worlds([open_run(run)])
+    _, figure = draw("weights-poison", poison=worlds)
+    (axes,) = panels(figure)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("weight of normal food", "weight of poison food")
+    agents = pl.concat(world.agents for world in worlds)
+    points = np.asarray(axes.collections[0].get_offsets())
+    assert sorted(points[:, 0]) == pytest.approx(sorted(agents["w_normal"]))
+    assert sorted(points[:, 1]) == pytest.approx(sorted(agents["w_poison"]))
     assert texts(figure).count("2 worlds, 5,120 steps\nnone died out") == 1
 
 

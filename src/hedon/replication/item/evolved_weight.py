@@ -6,7 +6,7 @@ from functools import partial
 from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import draw_message
-from hedon.figure.weight import WeightGroup, draw_weight_groups
+from hedon.figure.weight import WeightGroup, against_action, draw_weight_groups
 from hedon.replication.item.census import describe, missing, present, sentences, stack, world_indices
 from hedon.replication.item.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 from hedon.replication.item.item import Arm, Item, Material
@@ -16,8 +16,12 @@ _READ = (
     "reward, tells what drift alone does. Worlds that died out are shown; the paper replaced them."
 )
 
+_AGAINST_ACTION = tuple(against_action(("normal",)))
 
-def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
+
+def _draw(
+    name: str, question: str, arms: Sequence[Arm], panels: Sequence[tuple[str, str]], material: Material
+) -> Iterator[NamedFigure]:
     worlds = present(arms, material)
     caption = sentences(_READ, missing(arms, material))
     if not worlds:
@@ -25,17 +29,17 @@ def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> 
         return
     indices = world_indices(worlds.values())
     groups = [
-        WeightGroup(
-            last_agents(stack(group, "agents", indices)), group[0].food_kinds, label, "\n".join(describe(group))
-        )
+        WeightGroup(last_agents(stack(group, "agents", indices)), panels, label, "\n".join(describe(group)))
         for label, group in worlds.items()
     ]
     neutral = next(iter(worlds.values()))[0].neutral_names
     yield NamedFigure(name, question, draw_weight_groups(groups, neutral), caption)
 
 
-def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
-    return Item(name, title, "figure", paper, partial(_draw, name, question, arms), arms, PAPER_SCALE)
+def _item(
+    name: str, title: str, paper: str, question: str, *arms: Arm, panels: Sequence[tuple[str, str]] = _AGAINST_ACTION
+) -> Item:
+    return Item(name, title, "figure", paper, partial(_draw, name, question, arms, panels), arms, PAPER_SCALE)
 
 
 WEIGHTS: tuple[Item, ...] = (
@@ -69,6 +73,7 @@ WEIGHTS: tuple[Item, ...] = (
         "The weight of normal food is positive; that of food with a fifth of its energy varies widely between runs.",
         "Does food that gives little become rewarding?",
         POOR,
+        panels=[("w_normal", "w_poor")],
     ),
     _item(
         "weights-poison",
@@ -76,5 +81,6 @@ WEIGHTS: tuple[Item, ...] = (
         "The weight of normal food is positive; that of food that costs energy varies widely between runs.",
         "Does food that harms become aversive?",
         POISON,
+        panels=[("w_normal", "w_poison")],
     ),
 )
