@@ -1,5 +1,7 @@
 """What do the laws of birth and death make of energy, and at which energies do agents live?"""
 
+import math
+
 import numpy as np
 import polars as pl
 from matplotlib.artist import Artist
@@ -15,6 +17,8 @@ from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 
 _LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
+_LINEAR_SCALE = (1.0 - 1.0 / 10.0) / math.log(10.0)
+"""Length of the linear part in decades: the axis then has the same slope on either side, and curves have no kink."""
 
 
 def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
@@ -70,7 +74,7 @@ def _energies(config: Config) -> NDArray[np.float64]:
 
 
 def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:
-    axes.set_xscale("symlog", linthresh=_LINEAR_BELOW)
+    axes.set_xscale("symlog", linthresh=_LINEAR_BELOW, linscale=_LINEAR_SCALE)
     axes.set_yscale("log")
     axes.set_xlim(0, energy[-1])
     axes.set_xlabel("energy, held constant")

@@ -61,7 +61,7 @@ def draw_birth(config: Config) -> Figure:
         children.annotate(
             f"without energy {none:.2f}",
             (0, none),
-            xytext=(10, 22),
+            xytext=(10, 44),
             textcoords="offset points",
             color=VERMILION,
             fontsize=8,
