@@ -1,4 +1,4 @@
-"""Where do mutations alone carry a weight?"""
+"""Where do mutations alone carry weights that nothing selects?"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.special import voigt_profile
 
 from hedon.analysis.descent.walk import MutationLaw, lineages
-from hedon.figure.style import INK, MUTED, new_figure, seed_color, styled
+from hedon.figure.style import INK, MUTED, PALE, new_figure, seed_color, styled
 from hedon.figure.trace import draw_zero_line
 
 LENGTHS = (100, 1000)
@@ -17,6 +17,7 @@ _TABLES = 1000  # worlds that these belong to, where noise is frozen
 _EXAMPLES = 8  # lines that are drawn
 _PER_TABLE = 2  # of these in a world, where noise is frozen
 _BINS = 40
+_CORNER = 0.1  # of the limit: how far a corner reaches along both axes
 
 Genes = NDArray[np.float32]
 Floats = NDArray[np.float64]
@@ -49,10 +50,57 @@ def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figur
     return figure
 
 
+def draw_walk_ends(law: MutationLaw, births: int, rng: np.random.Generator) -> Figure:
+    """A panel per number of mutations: two weights of each line, one against the other, as in the paper.
+
+    Large mutations carry weights to their limit, so points gather along the edges, and where both weights are there, in
+    the four corners; each corner tells its share of the lines.
+
+    Args:
+        law: of founding and mutation.
+        births: in a window; for frozen noise.
+        rng: source of chance.
+    """
+    worlds = _TABLES if law.frozen else _LINES
+    genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births, genes=2)
+    with styled():
+        figure = new_figure(8.6, 4.4)
+        for axes, length in zip(figure.subplots(1, len(LENGTHS)), LENGTHS, strict=True):
+            _draw_ends(axes, genes[length].reshape(-1, 2), law)
+            axes.set_title(f"after {length:,} mutations")
+    return figure
+
+
 def unlimited_share(law: MutationLaw, length: int, edges: Floats) -> Floats:
     """What share of lines would end in each bin if nothing were clipped, by the density at its middle."""
     middle = 0.5 * (edges[1:] + edges[:-1])
     return voigt_profile(middle - law.mean, law.sd, length * law.scale) * np.diff(edges)
+
+
+def _draw_ends(axes: Axes, ends: Genes, law: MutationLaw) -> None:
+    x, y = ends.T
+    reach = 1.06 * law.limit
+    for draw in (axes.axhline, axes.axvline):
+        draw(0, color=PALE, linewidth=1.0, zorder=0.5)
+    axes.scatter(x, y, s=4.0, color=MUTED, linewidths=0, alpha=0.3, rasterized=True, clip_on=False)
+    near = (1.0 - _CORNER) * law.limit
+    for right in (-1, 1):
+        for up in (-1, 1):
+            share = 100 * float(np.mean((right * x >= near) & (up * y >= near)))
+            axes.annotate(
+                f"{share:.1f} %",
+                (right * near, up * near),
+                xytext=(-12 * right, -12 * up),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=8,
+                color=INK,
+                bbox={"boxstyle": "round,pad=0.2", "color": "white", "alpha": 0.8},
+            )
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="one weight", ylabel="another weight")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
 
 
 def _sample(law: MutationLaw, births: int, rng: np.random.Generator) -> tuple[Genes, Genes, list[str]]:

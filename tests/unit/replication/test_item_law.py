@@ -21,10 +21,10 @@ LAW = mutation_law(CONFIG)
 
 
 def make(name: str, fidelity: str = "corrected") -> NamedFigure:
-    item = {item.name: item for item in LAWS}[name]
-    [named] = item.make(Material(fidelity))
+    """The figure of a name, which is that of its item or goes on from it."""
+    item = {item.name: item for item in LAWS}[name.removesuffix("_lines")]
+    [named] = [made for made in item.make(Material(fidelity)) if made.name == name]
     assert isinstance(named, NamedFigure)
-    assert named.name == item.name
     return named
 
 
@@ -87,9 +87,16 @@ def test_an_agent_without_energy_just_replaces_itself() -> None:
     assert any("1.02" in text.get_text() for text in children.texts)
 
 
+def test_the_axis_of_energy_has_one_slope_where_its_parts_meet() -> None:
+    """Else the curve would have a kink there that the function does not have."""
+    scale = panel(make("birth").figure, "children").get_xaxis().get_transform()
+    below, at, above = (scale.transform(np.array([energy])).item() for energy in (0.999, 1.0, 1.001))
+    assert (above - at) / (at - below) == pytest.approx(1.0, abs=2e-3)
+
+
 @pytest.mark.parametrize("fidelity", ["corrected", "released"])
 def test_walks_are_drawn_for_both_lengths(fidelity: str) -> None:
-    figure = make("walk", fidelity).figure
+    figure = make("walk_lines", fidelity).figure
     walks = [axes for axes in figure.axes if axes.get_ylabel() == "weight"]
     assert len(walks) == len(LENGTHS)
     for axes, length in zip(walks, LENGTHS, strict=True):
@@ -101,9 +108,27 @@ def test_walks_are_drawn_for_both_lengths(fidelity: str) -> None:
         assert np.sum(shares.get_data()[0]) == pytest.approx(100)
 
 
+@pytest.mark.parametrize("fidelity", ["corrected", "released"])
+def test_two_weights_gather_in_the_corners(fidelity: str) -> None:
+    shares = []
+    for axes, length in zip(make("walk", fidelity).figure.axes, LENGTHS, strict=True):
+        assert axes.get_title(loc="left") == f"after {length:,} mutations"
+        points = np.asarray(axes.collections[0].get_offsets())
+        assert points.shape == (10_000, 2)
+        assert np.abs(points).max() == 10
+        corner = (np.abs(points) >= 9).all(axis=1)
+        shares.append(corner.mean())
+        told = [float(text.get_text().removesuffix(" %")) for text in axes.texts]
+        assert sum(told) == pytest.approx(100 * corner.mean(), abs=0.2)
+        sides = np.sign(points[corner])
+        assert len(np.unique(sides, axis=0)) == 4
+    assert shares[1] > 5 * shares[0]
+
+
 def test_frozen_noise_is_explained_where_it_is_drawn() -> None:
-    assert "frozen" not in make("walk").caption
-    assert f"{window_births(CONFIG)} entries" in make("walk", "released").caption
+    for name in ("walk", "walk_lines"):
+        assert "frozen" not in make(name).caption
+        assert f"{window_births(CONFIG)} entries" in make(name, "released").caption
     assert window_births(CONFIG) == round(200 * 2e-4 * 1024)
 
 
@@ -129,7 +154,7 @@ def test_mutations_add_up_to_the_closed_form_where_nothing_is_clipped() -> None:
 def test_lines_begin_with_the_law_of_founders_and_stay_within_the_limit() -> None:
     law = MutationLaw(mean=2.0, sd=0.5, scale=0.5, limit=3.0, frozen=False, window=1024, late=False)
     genes = lineages(law, 30, 4000, 2, np.random.default_rng(4))
-    assert genes.shape == (31, 4000, 2)
+    assert genes.shape == (31, 4000, 2, 1)
     assert genes[0].mean() == pytest.approx(2.0, abs=0.03)
     assert np.abs(genes).max() == 3.0
 

@@ -135,9 +135,9 @@ def _walked(
 
 
 def lineages(
-    law: MutationLaw, mutations: int, worlds: int, count: int, rng: np.random.Generator, births: int = 1
+    law: MutationLaw, mutations: int, worlds: int, count: int, rng: np.random.Generator, births: int = 1, genes: int = 1
 ) -> NDArray[np.float32]:
-    """A neutral gene down single lines of descent, apart from any pedigree.
+    """Neutral genes down single lines of descent, apart from any pedigree.
 
     Args:
         law: of founding and mutation.
@@ -146,20 +146,22 @@ def lineages(
         count: lines in each world.
         rng: source of chance.
         births: with frozen noise, how many births a window has; each birth of a line is any one of them.
+        genes: that each agent has, each with noise of its own.
 
     Returns:
-        The gene of the founder and after each mutation, shape (mutations + 1, worlds, count).
+        The genes of the founder and after each mutation, shape (mutations + 1, worlds, count, genes).
     """
-    genes = np.empty((mutations + 1, worlds, count), np.float32)
-    genes[0] = np.clip(rng.normal(law.mean, law.sd, (worlds, count)), -law.limit, law.limit)
-    table = rng.standard_cauchy((worlds, births if law.frozen else 0))
+    shape = (worlds, count, genes)
+    values = np.empty((mutations + 1, *shape), np.float32)
+    values[0] = np.clip(rng.normal(law.mean, law.sd, shape), -law.limit, law.limit)
+    table = rng.standard_cauchy((worlds, births if law.frozen else 0, genes))
     for i in range(mutations):
         if law.frozen:
-            noise = np.take_along_axis(table, rng.integers(births, size=(worlds, count)), axis=1)
+            noise = np.take_along_axis(table, rng.integers(births, size=(worlds, count))[..., None], axis=1)
         else:
-            noise = rng.standard_cauchy((worlds, count))
-        genes[i + 1] = np.clip(genes[i] + law.scale * noise, -law.limit, law.limit)
-    return genes
+            noise = rng.standard_cauchy(shape)
+        values[i + 1] = np.clip(values[i] + law.scale * noise, -law.limit, law.limit)
+    return values
 
 
 def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:

@@ -10,9 +10,20 @@ from hedon.config import Config
 from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
 from hedon.figure.law import draw_birth, draw_hazard
 from hedon.figure.named import NamedFigure
-from hedon.figure.walk import draw_walks
+from hedon.figure.walk import draw_walk_ends, draw_walks
+from hedon.replication.item.census import sentences
 from hedon.replication.item.condition import BASELINE
 from hedon.replication.item.item import Item, Material
+
+_ENDS = (
+    "A point is a line of descent: two of its weights after 100 and after 1,000 mutations without selection. Weights "
+    "cannot pass their limit, and mutations have heavy tails, so lines gather along the edges, and in the four "
+    "corners, where both weights are within a tenth of it; the numbers are the shares of lines there."
+)
+_LINES = (
+    "A row per number of mutations: examples of lines, with the bands that hold half and 95 % of all lines, and at the "
+    "right where all lines end."
+)
 
 
 def window_births(config: Config) -> int:
@@ -44,14 +55,19 @@ def _birth(material: Material) -> Iterator[NamedFigure]:
 def _walk(material: Material) -> Iterator[NamedFigure]:
     config = BASELINE.config(material.fidelity)
     law, births = mutation_law(config), window_births(config)
-    question, caption = "Where do mutations alone carry a weight that nothing selects?", ""
+    frozen = ""
     if law.frozen:
-        caption = (
+        frozen = (
             f"The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
             f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
             "without energy tries in a window."
         )
-    yield NamedFigure("walk", question, draw_walks(law, births, np.random.default_rng(SEED)), caption)
+    for name, question, draw, caption in (
+        ("walk", "Where do mutations alone carry weights that nothing selects?", draw_walk_ends, _ENDS),
+        ("walk_lines", "How does a weight get there?", draw_walks, _LINES),
+    ):
+        figure = draw(law, births, np.random.default_rng(SEED))
+        yield NamedFigure(name, question, figure, sentences(caption, frozen))
 
 
 LAWS: tuple[Item, ...] = (
