@@ -13,11 +13,16 @@ from hedon.replication.item.item import Item, Material, Scale
 
 _FOODS = (*PLACES[1:], POOR, POISON)
 _ONE_WORLD = Scale((1,), 10_240)
+_BODY = (
+    "Left, the body with its heading upward: the arc of the mouth, the sectors in which it feels touch, and the forces "
+    "of its two motors; beside it a food of the same scale. Right, its rays at full length, which end where they no "
+    "longer see."
+)
 
 
 def _body(material: Material) -> Iterator[NamedFigure]:
     question = "What does an agent sense, and how does it move and eat?"
-    yield NamedFigure("body", question, draw_body(BASELINE.config(material.fidelity)))
+    yield NamedFigure("body", question, draw_body(BASELINE.config(material.fidelity)), _BODY)
 
 
 def _arena(material: Material) -> Iterator[NamedFigure]:

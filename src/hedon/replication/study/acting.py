@@ -27,6 +27,11 @@ _PANELS = {
     "deaths": "deaths per 1000 steps",
 }
 
+_DRAWN = (
+    "Thin lines are worlds, the thick line is the mean over the worlds of an arm, and the band is its 95 % interval, "
+    "from three worlds on. Where the bands overlap throughout, nothing is seen of the weights' precision."
+)
+
 
 def make_acting(material: Material) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
@@ -40,7 +45,7 @@ def make_acting(material: Material) -> Iterator[NamedFigure | ResultTable]:
             for label, found in worlds.items()
         }
         question = "Do worlds fare alike, whichever weights their agents act by?"
-        yield NamedFigure("acting_courses", question, draw_courses(courses, _PANELS))
+        yield NamedFigure("acting_courses", question, draw_courses(courses, _PANELS), _DRAWN)
     yield table(
         "acting",
         "Acting by weights of 32 and of 16 bits",

@@ -37,6 +37,13 @@ _APPETITE = (
     "Agents with larger weights were mostly born later, into other company."
 )
 
+_DRAWN = (
+    f"Left, foods eaten by agents of like weight of food, over lives of at least {WINDOWS} windows of learning: the "
+    "further left a curve rises, the smaller a weight is enough. Right, the mean weight of food of the living over "
+    "time. Thin lines are worlds, thick lines are means over the worlds of an arm, at the left where more than half of "
+    "them have such agents; the band is a 95 % interval, from three worlds on."
+)
+
 
 def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
@@ -47,7 +54,7 @@ def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
     if worlds:
         courses = {label: _course(found) for label, found in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
-        yield NamedFigure("entropy_appetite", question, draw_appetite(bins, courses))
+        yield NamedFigure("entropy_appetite", question, draw_appetite(bins, courses), _DRAWN)
     yield table(
         "entropy",
         "With and without the bonus for entropy",

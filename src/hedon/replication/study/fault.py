@@ -33,6 +33,10 @@ _EFFECT = (
     "p_holm is corrected for all effects on one response. seed_low and seed_high are the least and largest of the "
     "same effect within single seeds."
 )
+_CELLS_DRAWN = (
+    "A line per combination of faults: a point is a world, hollow where it died out, and the bar is their mean, "
+    "geometric for lifetimes and rates of food. A fault matters where the lines with it lie apart from those without."
+)
 _DRAWN = "An arrow at the edge of a panel ends an interval that goes on beyond it."
 _CELL = (
     "Means over worlds, geometric for lifetimes and rates of food. An extinct world counts as 0 alive from its end on. "
@@ -83,7 +87,7 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
     if rows:
         there = [label for label in CELLS if material.worlds.get(label)]
         cells = draw_cells(worlds.rows, there, _SHOWN)
-        yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells)
+        yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells, _CELLS_DRAWN)
     if told:
         names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in told]
         drawn = draw_effects(effects.rows, names, _SHOWN)

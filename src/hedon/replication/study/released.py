@@ -28,6 +28,11 @@ _COMPARED = ("w_food", "w_action", "lifetime", "food_agent", "alive", "generatio
 """Responses that the paper says something of."""
 
 _DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
+_WEIGHTS = (
+    "A point is one of the 5000 agents of a world that were born last: its weight of food against its weight of "
+    "action; a color is a seed, the same in both figures. Above and beside the axes, the distributions over all "
+    "agents, and that of the first neutral marker, outlined."
+)
 _FATE = (
     "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
     "second. Standing worlds that had such a low before, and rose again, say how far that can be trusted. The interval "
@@ -63,12 +68,11 @@ def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Ite
     standing = [rows for rows, found in zip(agents, fates, strict=True) if not found.is_lost]
     first = worlds[0]
     look = (first.food_kinds, first.neutral_names)
-    yield NamedFigure(
-        "released_weights", "Which rewards evolved, in all worlds?", draw_weights(pl.concat(agents), *look)
-    )
+    drawn = draw_weights(pl.concat(agents), *look)
+    yield NamedFigure("released_weights", "Which rewards evolved, in all worlds?", drawn, _WEIGHTS)
     if standing and len(standing) < len(agents):
-        figure = draw_weights(pl.concat(standing), *look)
-        yield NamedFigure("released_weights_standing", "And in those that do not head for extinction?", figure)
+        question, drawn = "And in those that do not head for extinction?", draw_weights(pl.concat(standing), *look)
+        yield NamedFigure("released_weights_standing", question, drawn, _WEIGHTS)
 
 
 def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
