@@ -14,7 +14,7 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 _SEED = 1  # of the scenes in which places are sampled, so that a setting gets the same answer again
 _SIZES = 11  # numbers of agents at which places are sampled
 LONG_LIFE = 100_000
-"""Mean life [step] beyond which births and deaths are so few that selection has next to nothing to act on."""
+"""Mean life [step] beyond which births and deaths are too few for selection to act on."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class EnergyLevel:
         lifetime: mean age at death [step].
         r0: children tried in a whole life; those that find a place are fewer.
         refusal: share of them that may fail before a lineage shrinks, 1 − 1/r0; 0 where it shrinks anyhow.
-        population: agents in the arena at which so many births fail: the number that room allows at this
+        population: agents in the arena at which that share of births fails: the number that room allows at this
             energy; the capacity where more would find places, NaN where the lineage shrinks anyhow.
     """
 
@@ -93,7 +93,7 @@ def fresh_force(config: Config) -> float:
 
 
 def _energies(config: Config) -> list[float]:
-    """Energies at which lives are told, up to the capacity."""
+    """Energies at which lives are computed, up to the capacity."""
     return [e for e in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if e < config.energy.capacity] + [config.energy.capacity]
 
 

@@ -17,7 +17,7 @@ _WIDTH = 9.0
 _ROW = 0.26  # height of a line of a panel [inch]
 _SPREAD = 0.28  # of the worlds of a cell, to either side of its line
 _REACH = 2.0  # widths of the estimates' own range beyond which intervals are cut off
-_WIDE = 4.0  # largest over least value from which on an axis of ratios is logarithmic
+_WIDE = 4.0  # an axis of ratios is logarithmic where the largest value is this many times the least, or more
 
 
 def draw_cells(worlds: pl.DataFrame, arms: Sequence[str], responses: Sequence[Response]) -> Figure:
@@ -71,7 +71,7 @@ def draw_effects(effects: pl.DataFrame, names: Sequence[str], responses: Sequenc
         for axes, response in zip(panels, responses, strict=True):
             rows = effects.filter(pl.col("response") == response.name)
             if rows.is_empty():
-                say_empty(axes, "no effect can be told")
+                say_empty(axes, "no effect can be estimated")
                 continue
             axes.axvline(1.0 if response.ratio else 0.0, color=PALE, linewidth=1.4, zorder=0.5)
             low, high = _reach(rows, response)
@@ -152,7 +152,7 @@ def _known(rows: pl.DataFrame, names: Sequence[str], neutral: float) -> np.ndarr
 
 
 def _scale(axes: Axes, low: float, high: float) -> None:
-    """A logarithmic axis where the values span so much that its ticks can be few and round."""
+    """A logarithmic axis where the values span a range wide enough for few, round ticks."""
     if high < _WIDE * low:
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return

@@ -11,10 +11,10 @@ With all cells there, they count alike, however many worlds they hold. Box, Hunt
 who halve interactions; here they are not halved, so that on a log scale an interaction is a ratio of ratios.
 
 The error is that of worlds within cells, pooled over all cells. Where cells are missing, an effect is estimated by
-least squares in the largest model that can tell it: all effects up to some order, those of higher order taken to be
-none. It is then the mean of what its factors do in some cells only, and is told only if no effect of other factors is
-mixed in, of whatever order: A may be told from two cells that differ in A alone, but never from cells with B, with C
-and with all three. What no model can tell is left out.
+least squares in the largest model that determines it: all effects up to some order, those of higher order taken to be
+none. It is then the mean of what its factors do in some cells only, and is given only if no effect of other factors is
+mixed in, of whatever order: A may be estimated from two cells that differ in A alone, but never from cells with B, with
+C and with all three. What no model determines is left out.
 """
 
 import itertools
@@ -49,7 +49,7 @@ class Effect:
         low, high: bounds of its 95 % interval, Student's t; NaN where no cell has two worlds.
         p: two-sided; NaN likewise, and where worlds of a cell do not differ.
         p_holm: corrected for all effects of the fit.
-        seed_low, seed_high: least and largest of the same effect in single seeds; NaN where no seed tells it.
+        seed_low, seed_high: least and largest of the same effect in single seeds; NaN where no seed determines it.
         seeds: that have.
     """
 
@@ -83,7 +83,7 @@ class FactorialFit:
 
 
 def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> FactorialFit:
-    """Estimates all effects that can be told.
+    """Estimates all effects that the cells determine.
 
     Args:
         cells: for each cell with values, the value of each seed.
@@ -137,7 +137,7 @@ def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDAr
 
 
 def _in_seeds(cells: Mapping[Cell, Mapping[int, float]], factors: int, group: Factors, order: int) -> list[float]:
-    """An effect in each single seed whose cells tell it by a model of the same order."""
+    """An effect in each single seed whose cells determine it by a model of the same order."""
     found = []
     for seed in sorted({seed for values in cells.values() for seed in values}):
         mine = [cell for cell, values in cells.items() if seed in values]

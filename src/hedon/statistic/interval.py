@@ -10,7 +10,7 @@ from scipy import stats
 
 LEVEL = 0.95
 SHOWN_FROM = 3
-"""Worlds from which on an interval is shown to a reader: over two it is so wide that it misleads."""
+"""Worlds that an interval must have to be shown: over two it is too wide to be of use, and misleads."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 LEVEL = 0.05
 ENOUGH_POWER = 0.8
 ENOUGH_WORLDS = 17
-"""Worlds from which on two clear modes are found with that chance: 0.20 at 5 worlds, 0.64 at 10, 0.80 at 16, 0.82 at 17
+"""Worlds that are enough to find two clear modes with that chance: 0.20 at 5 worlds, 0.64 at 10, 0.80 at 16, 0.82 at 17
 and 0.89 at 20, by 2000 samples each of `_null_and_power`."""
 _NULL_SAMPLES = 2000
 _CLEAR = 6.0  # standard deviations between two clear modes, of worlds around each

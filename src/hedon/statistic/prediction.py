@@ -11,7 +11,7 @@ from hedon.statistic.interval import LEVEL
 
 NAN = math.nan
 FEWEST = 3
-"""Pairs from which on a correlation and a slope are told."""
+"""Pairs that a correlation and a slope need at least."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Prediction:
         slope: of seen = slope · predicted, by least squares through the origin.
         low, high: bounds of its 95 % interval, Student's t.
         same_sign: pairs of equal sign.
-        p_sign: two-sided chance of so many or so few if signs were tossed, exact binomial.
+        p_sign: two-sided chance of a count this far from half if signs were tosses of a coin, exact binomial.
     """
 
     pairs: int

@@ -25,7 +25,7 @@ from scipy.signal import lfilter
 from hedon.statistic.interval import LEVEL
 
 SHOWN_LEVEL = 0.05
-"""An optimum is told only where a pull is found at this level: a gene that drifts has none."""
+"""An optimum is given only where a pull is found at this level: a gene that drifts has none."""
 _RATES = np.concatenate([[0.0], np.geomspace(1e-3, 3.0, 25)])
 """Strengths that are tried [1/interval]: a memory of 1000 intervals to one of a third."""
 _ROUNDING = 1e-12  # share of a sum of squares that is 0

@@ -19,7 +19,7 @@ from hedon.statistic.bootstrap import percentile_interval, resampled_sums
 
 STRATUM = 200
 """Births that are compared with one another. Individuals are compared with contemporaries alone: where traits and mean
-fitness both drift within a window, a comparison across it would show selection that is none."""
+fitness both drift within a window, a comparison across it would show selection where there is none."""
 FEWEST = 50
 """Individuals below which nothing is estimated."""
 REACH = 3.0

@@ -42,7 +42,7 @@ class SurvivalCurve:
     deaths: NDArray[np.int64]
 
     def trusted_age(self, at_risk: int = AT_RISK) -> float:
-        """The largest age at death that so many agents reached [step]; 0 where there is none."""
+        """The largest age at death that at least `at_risk` agents reached [step]; 0 where there is none."""
         reached = self.age[self.at_risk >= at_risk]
         return float(reached[-1]) if len(reached) else 0.0
 

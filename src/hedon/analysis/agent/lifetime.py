@@ -14,7 +14,7 @@ def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: b
 
     Args:
         agents: table `agents`.
-        last: only so many of them, those who died last.
+        last: at most this many of them, those who died last.
         born_in_run: without the founders, whose energy and genome come from the config.
     """
     dead = agents.filter(pl.col("death_step").is_not_null())

@@ -11,7 +11,7 @@ import polars as pl
 
 from hedon.analysis.agent.cohort import complete_share
 
-_MANY = 10  # children from which on the distribution is not told apart
+_MANY = 10  # agents with this many children or more are counted together
 
 
 @dataclass(frozen=True)

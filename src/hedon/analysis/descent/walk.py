@@ -18,7 +18,7 @@ from hedon.config import Config
 from hedon.config.evolution import GeneConfig
 
 WALKS = 2000
-"""Per world: the smallest chance that they tell from zero is 1 in 2000."""
+"""Per world; the smallest chance that they can show is 1 in 2000."""
 _PIECE = 250  # walks at a time: 20 MB for 20,000 ancestors
 
 

@@ -1,7 +1,7 @@
 """Did a weight go further, or more in one direction, than drift alone would have carried it?
 
 Two controls. The *walk*: in each world, the mean weight of the agents born last is compared with neutral genes that
-mutate along the same pedigree (`walk`). Its rank among them becomes a standard normal *score*; over worlds,
+mutate along the same pedigree (`descent.walk`). Its rank among them becomes a standard normal *score*; over worlds,
 scores that lean to one side say that the weight was pushed in a *direction* (Stouffer), scores that are large,
 whatever their sign, that it was carried a *distance* (chi-squared): a weight with two modes shows in the second
 alone. Scores that are all too small say that it was *held* (the lower tail). The *marker*: whether a weight strays

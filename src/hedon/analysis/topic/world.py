@@ -11,7 +11,7 @@ from hedon.analysis.table import ResultTable, over_worlds, table
 from hedon.analysis.world.record import Conditions, labels
 from hedon.analysis.world.regime import REGIMES, regimes
 
-_TIMES = 20  # at which the coalescence is told
+_TIMES = 20  # at which the coalescence is computed
 _LINE_TIMES = 100  # at which lines are counted
 
 

@@ -51,7 +51,7 @@ ROOM_HUNGER = 0.25
 ROOM_REFUSAL = 0.1
 FOOD_UPTAKE = 0.8
 INTERVALS = 40
-"""Of a run, in which the regime is told."""
+"""Into which a run is cut; each has its own regime."""
 
 
 @dataclass(frozen=True)

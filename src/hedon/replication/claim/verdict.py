@@ -25,7 +25,7 @@ DIFFERS, NOT_SHOWN = "differs", "no difference shown"
 NO_SPREAD, NO_COUNT = "the paper gives no spread", "the paper gives no count"
 FEWEST_WORLDS = 3
 LEVEL = 0.05
-"""Chance of a difference that is none, for the second question."""
+"""Level of the second question: the chance of finding a difference where there is none."""
 _UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
 """Why the second question cannot be asked, by the way worlds are summed up; a setting is the same in every world."""
 

@@ -1,4 +1,4 @@
-"""Which worlds is an item made from? What a reader is told of them, and how worlds of several arms are put together."""
+"""Which worlds is an item made from? What a reader must know of them, and how worlds of several arms are joined."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -7,7 +7,7 @@ import polars as pl
 from hedon.analysis.world.record import WorldRecord
 from hedon.replication.item.item import Arm, Material
 
-_NAMED = 3  # seeds that died out are named up to so many
+_NAMED = 3  # at most this many seeds that died out are named
 
 
 def present(arms: Iterable[Arm], material: Material) -> dict[str, Sequence[WorldRecord]]:

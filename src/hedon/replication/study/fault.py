@@ -131,12 +131,12 @@ def _effect_rows(response: Response, fit: FactorialFit) -> Iterator[dict[str, An
 
 
 def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
-    """Names what could not be told, and what only without interactions; responses with the same gaps together."""
+    """Names what could not be estimated, and what only without interactions; responses with the same gaps together."""
     gaps: dict[str, list[str]] = {}
     for name, fit in fits.items():
         narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
         parts = [f"left out: {', '.join(map(effect_name, fit.left_out))}"] if fit.left_out else []
-        parts += [f"told for some cells only: {', '.join(narrow)}"] if narrow else []
+        parts += [f"estimated from some cells only: {', '.join(narrow)}"] if narrow else []
         if parts:
             gaps.setdefault(" and ".join(parts), []).append(name)
     told = [

@@ -81,7 +81,7 @@ def _world_count(found: Sequence[tuple[int, GeneDrift]]) -> int:
 
 
 def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> Iterator[dict[str, Any]]:
-    """Genes of one world share its pedigree, so bounds and chances are told from three worlds on, not three pairs."""
+    """Genes of one world share its pedigree, so bounds and chances are given from three worlds on, not three pairs."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
             mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
