@@ -13,7 +13,6 @@ from hedon.analysis.world.record import read_worlds
 from hedon.config import load_config
 from hedon.record.reader import open_run
 from hedon.statistic.correction import holm
-from hedon.statistic.drift import rank_score, sign_flip_p
 
 LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10, late=False)
 
@@ -142,25 +141,3 @@ def test_the_interval_by_drifts_own_spread_agrees_with_its_p() -> None:
 def test_without_worlds_there_is_no_test() -> None:
     tests = drift_tests([[]], ("w",), ("n",), np.random.default_rng(1))
     assert all(np.isnan(test.p) and test.worlds == 0 for test in tests)
-
-
-def test_rank_scores_are_normal() -> None:
-    null = np.arange(1999.0)
-    assert rank_score(999.0, null) == pytest.approx(0.0, abs=1e-9)
-    assert rank_score(1e9, null) == pytest.approx(stats.norm.ppf(1999.5 / 2000))
-    assert rank_score(-1e9, null) == pytest.approx(-rank_score(1e9, null))
-
-
-def test_sign_flips() -> None:
-    rng = np.random.default_rng(1)
-    assert sign_flip_p(np.array([1.0, 2.0, 3.0]), rng) == 2 / 8
-    assert sign_flip_p(np.array([1.0, -2.0, 3.0]), rng) == 6 / 8  # all but the two sums of 0
-    many = sign_flip_p(rng.normal(1.0, 1.0, 30), rng)
-    assert many < 0.001
-
-
-def test_holm_on_a_known_example() -> None:
-    # Sorted 0.005, 0.01, 0.03, 0.04 times 4, 3, 2, 1, never falling.
-    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
-    assert holm([0.9, np.nan, 0.8]) == pytest.approx([1.0, np.nan, 1.0], nan_ok=True)
-    assert holm([]) == []

@@ -4,7 +4,7 @@ import polars as pl
 import pytest
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
-from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
+from hedon.analysis.agent.lifetime import dead_agents, durations, mean_lifetime
 from hedon.analysis.gene.weight import last_agents, world_weights
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import (
@@ -15,8 +15,6 @@ from hedon.analysis.world.population import (
     mean_energy,
     run_tail,
 )
-from hedon.replication.paper import EXTINCTION, PAPER, paper_figures
-from hedon.statistic.interval import mean_interval
 
 # Three dead and one alive. Foods per step of life: 2/100, 0/300, 12/600.
 AGENTS = pl.DataFrame(
@@ -99,15 +97,6 @@ def test_last_agents_are_counted_per_world() -> None:
     assert last_agents(both, 1)["world"].to_list() == [0, 1]
 
 
-def test_interval_over_worlds() -> None:
-    interval = mean_interval([1.0, 2.0, 3.0, None, math.nan])
-    assert (interval.mean, interval.worlds) == (2.0, 3)
-    assert interval.high == pytest.approx(2 + 4.302652729749464 / math.sqrt(3))  # t(0.975; 2), from a table
-    assert interval.low == pytest.approx(2 - 4.302652729749464 / math.sqrt(3))
-    assert mean_interval([5.0]).low is None
-    assert mean_interval([]).mean is None
-
-
 def test_ledger_closes_on_the_hand_example() -> None:
     ledger = world_ledger(POPULATION, AGENTS)
     assert ledger.initial == 80
@@ -151,16 +140,6 @@ def test_history_in_two_intervals() -> None:
     assert history(POPULATION.head(0), ("normal",)).is_empty()
 
 
-def test_the_papers_figures_are_in_proportion() -> None:
-    assert set(PAPER) == {"baseline", "small", "large", "centered", "relocation", "poor", "poison"}
-    assert paper_figures(None) is None
-    assert paper_figures("my-own") is None
-    for figures in PAPER.values():
-        if figures.food_per_step is not None and figures.mean_lifetime is not None:
-            assert 1 < figures.food_per_step * figures.mean_lifetime < 1000  # foods in a life
-    assert all(0 <= share <= 1 for share in EXTINCTION.values())
-
-
 def test_a_part_of_a_window_makes_no_spike() -> None:
     whole = {"births": 20, "deaths": 10, "eaten_normal": 100, "agent_steps": 100 * 1024, "steps": 1024, "alive": 100}
     part = {"births": 2, "deaths": 0, "eaten_normal": 4, "agent_steps": 100 * 64, "steps": 64, "alive": 102}
@@ -178,3 +157,10 @@ def test_a_part_of_a_window_makes_no_spike() -> None:
     assert first["births"].to_list() == pytest.approx([20e3 / 1024, 20e3 / 1024, 22e3 / 1088])
     assert first["eaten_normal"][-1] == pytest.approx(104e3 / (100 * 1088))
     assert found.filter(pl.col("world") == 1)["births"].to_list() == [31.25]
+
+
+def test_who_lives_is_censored_at_the_end() -> None:
+    agents = pl.DataFrame({"birth_step": [0, 10, 40], "death_step": [30, None, None]})
+    duration, died = durations(agents, 50)
+    assert duration.tolist() == [30, 40, 10]
+    assert died.tolist() == [True, False, False]

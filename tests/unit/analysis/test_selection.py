@@ -3,7 +3,6 @@ import polars as pl
 import pytest
 
 from hedon.analysis.gene.selection import selection
-from hedon.statistic.bootstrap import percentile_interval, resampled_sums
 from hedon.statistic.selection import STRATUM, differential_and_gradient
 
 NAMES = ("w_normal", "w_action", "neutral_1")
@@ -15,17 +14,6 @@ def cohort(z: np.ndarray, children: np.ndarray, *, parent: np.ndarray | None = N
     table = {"agent_id": np.arange(n), "birth_step": np.arange(n), "death_step": np.arange(n) + 100}
     table |= {"parent_id": np.arange(n) if parent is None else parent, "children": children}
     return pl.DataFrame(table | {name: z[:, i].astype(np.float32) for i, name in enumerate(NAMES)})
-
-
-def test_the_gradient_is_a_multiple_regression() -> None:
-    rng = np.random.default_rng(1)
-    z = rng.normal(size=(500, 3)) @ np.array([[1, 0.5, 0], [0, 1, 0.3], [0, 0, 2.0]])
-    fitness = rng.poisson(np.exp(0.2 * z[:, 0]))
-    omega = fitness / fitness.mean()
-    s, beta = differential_and_gradient(z, omega)
-    design = np.column_stack([np.ones(500), z])
-    np.testing.assert_allclose(beta, np.linalg.lstsq(design, omega, rcond=None)[0][1:], rtol=1e-9)
-    np.testing.assert_allclose(s, [np.cov(omega, z[:, i], ddof=0)[0, 1] for i in range(3)], rtol=1e-9)
 
 
 def test_the_truth_of_a_log_linear_fitness_is_found_and_covered() -> None:
@@ -98,18 +86,3 @@ def test_too_few_agents_give_nothing() -> None:
         rows = selection(cohort(rng.normal(size=(n, 3)), np.ones(n, int)), NAMES, 1000, rng)
         assert len(rows) == 6
         assert all(np.isnan(row.gradient) for row in rows)
-
-
-def test_the_bootstrap_has_the_spread_of_theory() -> None:
-    """The mean of n numbers varies by σ/√n; with clusters of equal numbers, n is the number of clusters."""
-    rng = np.random.default_rng(7)
-    values = rng.normal(size=1000)
-    features = np.stack([np.ones(1000), values], axis=1)
-    sums = resampled_sums(features, np.arange(1000), rng, 4000)
-    means = sums[:, 1] / sums[:, 0]
-    assert means.std() == pytest.approx(values.std() / np.sqrt(1000), rel=0.06)
-    low, high = percentile_interval(means)
-    assert high - low == pytest.approx(2 * 1.96 * values.std() / np.sqrt(1000), rel=0.08)
-    tens = np.repeat(values[:100], 10)
-    sums = resampled_sums(np.stack([np.ones(1000), tens], axis=1), np.repeat(np.arange(100), 10), rng, 4000)
-    assert (sums[:, 1] / sums[:, 0]).std() == pytest.approx(values[:100].std() / 10, rel=0.06)

@@ -1,8 +1,6 @@
 import numpy as np
-import polars as pl
 import pytest
 
-from hedon.analysis.agent.lifetime import durations
 from hedon.statistic.survival import exposure_mean, restricted_mean, survival_curve
 
 # Remission times of the 6-MP group of Freireich et al. (1963), the textbooks' example.
@@ -66,13 +64,6 @@ def test_the_intervals_of_the_curve_cover() -> None:
         at = np.searchsorted(curve.age, 1.0) - 1
         hits += curve.low[at] <= np.exp(-1.0) <= curve.high[at]
     assert 0.92 <= hits / 300 <= 0.98
-
-
-def test_who_lives_is_censored_at_the_end() -> None:
-    agents = pl.DataFrame({"birth_step": [0, 10, 40], "death_step": [30, None, None]})
-    duration, died = durations(agents, 50)
-    assert duration.tolist() == [30, 40, 10]
-    assert died.tolist() == [True, False, False]
 
 
 def test_nobody_died() -> None:

@@ -1,0 +1,61 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from synthetic_run import write_run
+
+from hedon.record.error import RecordError
+from hedon.record.reader import open_run
+from hedon.report.run import write_report
+
+FIGURES = ["weights", "history", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
+NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.png" for name in FIGURES)]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"intervals": 30, "worlds": 3},
+        {"intervals": 30, "worlds": 3, "extinct": 0},
+        {"intervals": 12, "worlds": 1, "extinct": 0},
+        {"intervals": 1, "worlds": 1},
+        {"intervals": 0, "worlds": 1},
+        {"intervals": 5, "worlds": 2, "neutral_count": 0},
+        {"intervals": 5, "worlds": 1, "food_kinds": ("normal", "poor", "poison"), "neutral_count": 3},
+        {"intervals": 2, "worlds": 12},
+    ],
+    ids=[
+        "usual",
+        "one extinct",
+        "all extinct",
+        "one window",
+        "no window",
+        "no marker",
+        "three kinds",
+        "many",
+    ],
+)
+def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:
+    files = write_report(open_run(write_run(tmp_path / "run", **options)))
+    assert [file.name for file in files] == NAMES
+    for file in files[4:]:
+        image = imread(file)
+        assert image.shape[0] > 200
+        assert len(np.unique(image[::3, ::3, :3].sum(axis=-1))) > 20  # lines, letters, colors
+
+
+def test_a_report_is_written_again(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=0, worlds=1, snapshot=False)
+    assert [file.name for file in write_report(open_run(folder))] == NAMES[:-1]
+    before = (folder / "summary.json").read_text()
+    write_report(open_run(folder))
+    assert (folder / "summary.json").read_text() == before
+
+
+def test_a_report_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=1, worlds=1)
+    (folder / "figures").touch()
+    with pytest.raises(RecordError, match="cannot write the report"):
+        write_report(open_run(folder))
