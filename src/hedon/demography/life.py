@@ -77,15 +77,6 @@ def expected_lifetime(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.
     return _integrated_survival(config, energy, _oldest(config, flat))
 
 
-def expected_children(
-    hazard: HazardConfig, birth: BirthConfig, energy: "ArrayLike", age: "ArrayLike"
-) -> "NDArray[np.float64]":
-    """Mean number of births that an agent tries before an age [step], at constant energy [energy]."""
-    oldest = _oldest(hazard, energy_hazard(hazard, energy))
-    until = np.minimum(np.asarray(age, dtype=np.float64), oldest)
-    return birth_rate(birth, energy) * _integrated_survival(hazard, energy, until)
-
-
 def reproduction_number(
     hazard: HazardConfig, birth: BirthConfig, energy: "ArrayLike", placed: float = 1.0
 ) -> "NDArray[np.float64]":

@@ -52,21 +52,6 @@ def relative_fitness(values: Floats) -> Floats:
     return np.concatenate(parts)
 
 
-def differential_and_gradient(z: Floats, omega: Floats) -> tuple[Floats, Floats]:
-    """s = Cov(ω, z) and β = Cov(z)⁻¹ s.
-
-    Args:
-        z: traits, shape (n, p).
-        omega: relative fitness, shape (n,).
-
-    Returns:
-        Each (p,). The gradient of a trait without variance is NaN, and the others are as without it.
-    """
-    features = _features(z, omega[:, None])
-    s, beta = _solve(features.sum(axis=0, keepdims=True), z.shape[1], 0)
-    return s[0], beta[0]
-
-
 def linear_selection(
     z: Floats, omega: Floats, cluster: NDArray[np.int64], rng: np.random.Generator, replicates: int
 ) -> Floats:

@@ -36,17 +36,13 @@ def test_cumulative_hazard_is_the_integral_of_the_hazard(config: HazardConfig, e
 
 @pytest.mark.parametrize("config", [HAZARD, STEEP, dataclasses.replace(HAZARD, alpha_energy=0.0)])
 @pytest.mark.parametrize("energy", ENERGIES)
-def test_lifetime_and_children_are_integrals_of_survival(config: HazardConfig, energy: float) -> None:
+def test_the_lifetime_is_the_integral_of_survival(config: HazardConfig, energy: float) -> None:
     mean = float(life.expected_lifetime(config, energy))
     # In units of the mean, so that the integrand has no scale of its own.
     whole, _ = quad(lambda x: mean * float(life.survival(config, x * mean, energy)), 0, 60, limit=500)
     assert mean == pytest.approx(whole, rel=1e-7)
-    part, _ = quad(lambda x: mean * float(life.survival(config, x * mean, energy)), 0, 0.7)
-    children = life.expected_children(config, BIRTH, energy, 0.7 * mean)
-    assert children == pytest.approx(float(life.birth_rate(BIRTH, energy)) * part, rel=1e-9)
-    assert life.expected_children(config, BIRTH, energy, 1e9) == pytest.approx(
-        float(life.reproduction_number(config, BIRTH, energy)), rel=1e-9
-    )
+    children = float(life.birth_rate(BIRTH, energy)) * whole
+    assert life.reproduction_number(config, BIRTH, energy) == pytest.approx(children, rel=1e-7)
 
 
 def test_sum_over_steps_is_close() -> None:
@@ -69,7 +65,6 @@ def test_limits_of_the_lifetime() -> None:
     )
     immortal = dataclasses.replace(ageless, kappa=0.0)
     assert np.isinf(life.expected_lifetime(immortal, 0.0))
-    assert life.expected_children(immortal, BIRTH, 0.0, 1000) == pytest.approx(0.2)
 
 
 def test_shapes_follow_the_energy() -> None:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from hedon.statistic.selection import differential_and_gradient
+from hedon.statistic.selection import linear_selection
 
 
 def test_the_gradient_is_a_multiple_regression() -> None:
@@ -8,7 +8,7 @@ def test_the_gradient_is_a_multiple_regression() -> None:
     z = rng.normal(size=(500, 3)) @ np.array([[1, 0.5, 0], [0, 1, 0.3], [0, 0, 2.0]])
     fitness = rng.poisson(np.exp(0.2 * z[:, 0]))
     omega = fitness / fitness.mean()
-    s, beta = differential_and_gradient(z, omega)
+    s, _, beta, _ = linear_selection(z, omega[:, None], np.arange(500), rng, 2)[0, 0]
     design = np.column_stack([np.ones(500), z])
     np.testing.assert_allclose(beta, np.linalg.lstsq(design, omega, rcond=None)[0][1:], rtol=1e-9)
     np.testing.assert_allclose(s, [np.cov(omega, z[:, i], ddof=0)[0, 1] for i in range(3)], rtol=1e-9)
