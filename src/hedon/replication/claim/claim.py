@@ -34,8 +34,11 @@ SOME = (0.05, 0.95)
 OLD_SHARE = 0.05
 """The lifespan of agents is read as the age that this share of those with full energy reaches."""
 
-Measure = Callable[[WorldRecord], float | None]
+WEIGHTS = {"w_normal": "food", "w_action": "action"}
+"""The reward weights that all conditions have, and what claims call them."""
 
+Measure = Callable[[WorldRecord], float | None]
+"""The figure of one world; None where it has none."""
 
 OverWorlds = Literal["mean", "ratio", "spread", "distance", "share", "extinction", "modes", "walk", "setting"]
 """How the figures of several worlds are summed up."""
@@ -139,7 +142,7 @@ def _weight_claims() -> Iterator[Claim]:
     for preset in ("baseline", "large"):
         text, two = "the weight of action has two modes, largely positive or slightly negative", "w_action"
         yield Claim("two modes of action", preset, text, partial(last_mean, two), "modes", "two")
-    for weight, name in (("w_normal", "food"), ("w_action", "action")):
+    for weight, name in WEIGHTS.items():
         text = f"the weight of {name} does not go where neutral genes of the same worlds go"
         found = partial(score, weight)
         yield Claim(f"{name} weight no random walk", "baseline", text, found, "walk", "differs")

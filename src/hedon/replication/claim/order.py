@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.gene.weight import last_mean
-from hedon.replication.claim.claim import Measure, lifetime_of_dead
+from hedon.replication.claim.claim import WEIGHTS, Measure, lifetime_of_dead
 from hedon.replication.paper import PAPER, STEPS
 from hedon.statistic.contrast import difference_interval, spread_ratio_interval
 
@@ -77,7 +77,7 @@ def _orders() -> Iterator[Order]:
         ratio = (PAPER[first].mean_lifetime or math.nan) / (PAPER[second].mean_lifetime or math.nan)
         yield Order("longer lifetime", first, second, text, lifetime_of_dead, "ratio", f"{ratio:.3g} times", low=factor)
     for second in ("baseline", "large"):
-        for weight, name in (("w_normal", "food"), ("w_action", "action")):
+        for weight, name in WEIGHTS.items():
             text = f"the weight of {name} varies less between worlds of the small arena than in {second}"
             measure = partial(last_mean, weight)
             yield Order(f"{name} weight stable", "small", second, text, measure, "spread", "most stable", high=1.0)

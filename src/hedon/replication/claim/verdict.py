@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hedon.analysis.world.extinction import world_extinction
 from hedon.analysis.world.record import WorldRecord, by_condition
@@ -24,6 +25,7 @@ HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"
 NO_SPREAD, NO_COUNT = "the paper gives no spread", "the paper gives no count"
 FEWEST_WORLDS = 3
+TOO_FEW, CROSSES = f"fewer than {FEWEST_WORLDS} worlds", "the interval crosses the border"
 LEVEL = 0.05
 """Level of the second question: the chance of finding a difference where there is none."""
 _UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
@@ -98,14 +100,14 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
     used, shortfall, remarks = _asked(claim.steps, worlds)
-    figures = np.array([figure for world in used if (figure := claim.measure(world)) is not None], np.float64)
+    figures = _figures(claim, used)
     found = estimate(claim, figures, used)
     name = found.verdict or place(found.low, found.high, claim.low, claim.high)
-    why = found.reason or ("the interval crosses the border" if name == UNDECIDED and len(figures) else "")
+    why = found.reason or (CROSSES if name == UNDECIDED and len(figures) else "")
     if claim.over_worlds == "setting":
         remarks = []
     elif len(figures) < FEWEST_WORLDS:
-        name, why = UNDECIDED, f"fewer than {FEWEST_WORLDS} worlds"
+        name, why = UNDECIDED, TOO_FEW
     elif shortfall:
         name, why = UNDECIDED, shortfall
     p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
@@ -119,15 +121,15 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
         used, shortfall, said = _asked(order.steps, worlds)
-        parts.append(np.array([figure for world in used if (figure := order.measure(world)) is not None], np.float64))
+        parts.append(_figures(order, used))
         remarks += [f"{worlds[0].condition}: {remark}" for remark in said]
         shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
     fewest = min(map(len, parts))
     value, low, high = compare(order.scale, *parts) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
-    why = "the interval crosses the border" if name == UNDECIDED else ""
+    why = CROSSES if name == UNDECIDED else ""
     if fewest < FEWEST_WORLDS:
-        name, why = UNDECIDED, f"fewer than {FEWEST_WORLDS} worlds"
+        name, why = UNDECIDED, TOO_FEW
     elif shortfalls:
         name, why = UNDECIDED, "; ".join(shortfalls)
     condition = f"{first[0].condition} against {second[0].condition}"
@@ -149,9 +151,9 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     found = world_extinction(worlds, claim.steps)
     name = place(found.low, found.high, claim.low, claim.high) if found.worlds else UNDECIDED
     unknown = found.worlds - found.extinct - found.followed
-    reasons = ["the interval crosses the border" if name == UNDECIDED else ""]
+    reasons = [CROSSES if name == UNDECIDED else ""]
     if found.worlds < FEWEST_WORLDS:
-        name, reasons = UNDECIDED, [f"fewer than {FEWEST_WORLDS} worlds"]
+        name, reasons = UNDECIDED, [TOO_FEW]
     if unknown:
         reasons.append(f"{unknown} of {found.worlds} worlds live and end before step {claim.steps:,}")
     if unknown and not found.followed:
@@ -176,6 +178,11 @@ def _asked(steps: int, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord]
     elif short := len(living) - len(long_enough):
         remarks.append(f"{short} shorter left out")
     return long_enough or living, shortfall, remarks
+
+
+def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.float64]:
+    """The figures of the worlds that have one, (n,)."""
+    return np.array([figure for world in worlds if (figure := claim.measure(world)) is not None], np.float64)
 
 
 def _against_paper(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
