@@ -182,7 +182,8 @@ def write_run(
         run_seconds=10.0,
     )
     done, extinct_steps = [], []
-    with Writer(folder, 'preset = "baseline"\n', manifest) as writer:
+    others = "".join(f"[food.{kind}]\nenergy = 0.2\n" for kind in food_kinds if kind != "normal")
+    with Writer(folder, f'preset = "baseline"\n{others}', manifest) as writer:
         last = []
         for index, seed in enumerate(manifest.seeds):
             dying: dict[str, Any] = {"birth_factor": 0.0, "lifetime": 3000.0} if index == extinct else {}

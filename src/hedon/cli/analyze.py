@@ -34,6 +34,7 @@ def analyze(
       drift       weights against neutral walks and neutral markers
       reversion   held near a value? Ornstein-Uhlenbeck against drift
       mode        one mode or two, over worlds
+      mutation    what a child's own mutation does to its life, among siblings
 
     \b
     Examples:

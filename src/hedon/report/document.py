@@ -23,6 +23,7 @@ Format {FORMAT_VERSION}.
 ```
 RUN/
   config.toml                    the complete config; loadable again
+  founders.csv                   whose genes the founders have, only with `--founders`
   manifest.json                  with what the run was made
   agents/part-000000.parquet …   agents that have died
   agents/living.parquet          agents alive when records were last written

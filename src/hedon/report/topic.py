@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Callable, Sequence
 
 from hedon.analysis.table import ResultTable
-from hedon.analysis.topic import drift, life, selection, world
+from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
 from hedon.error import HedonError
 from hedon.replication.claim.table import verdict
@@ -25,6 +25,7 @@ TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "drift": drift.drift,
     "reversion": drift.reversion_topic,
     "mode": drift.mode,
+    "mutation": treatment.mutation_topic,
 }
 
 

@@ -1,0 +1,153 @@
+"""Each birth is an experiment: a child's own mutation is random. Does it change the child's life?
+
+Mutations are drawn after a parent has bred, so among the children of one parent they depend on nothing else: comparing
+siblings tells what a gene causes, whatever place, energy and ancestors their parent had. What is regressed is the
+deviation of a child's outcome from the mean of its siblings on that of its mutation. Mutations are Cauchy, so a few
+are enormous: they are clipped, or replaced by the normal scores of their ranks.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.analysis.agent.lifetime import durations
+from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.world.record import WorldRecord
+from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
+
+OUTCOMES = ("food", "lifespan", "children")
+SCALES = ("clipped", "rank")
+CLIP = 1.0
+"""Largest mutation that counts as it is: with the default scale of 0.02 one in eighty is larger."""
+KNOWN = 0.9
+"""Part of the run in which a child must be born: of those born later little is known. Whether a child is dead must not
+decide, since that would choose by the outcome."""
+YOUNG = 1024
+"""Food per step is counted over at least so many steps [step]: a meal in a life of three steps says nothing."""
+FEWEST = 30
+"""Parents with several children below which nothing is estimated."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Births:
+    """Children with their own mutations and what became of them.
+
+    Attributes:
+        change: child's genome minus parent's, (n, genes).
+        outcome: energy eaten per step, lifespan or age so far [step], and children, (n, 3).
+        parent: one number per parent, (n,).
+    """
+
+    change: Floats
+    outcome: Floats
+    parent: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class MutationEffect:
+    """What a mutation of one gene does to one outcome.
+
+    Attributes:
+        outcome: one of `OUTCOMES`.
+        weight: genome column.
+        scale: one of `SCALES`.
+        births, parents: that enter: children of parents with several.
+        effect: change of the outcome over its mean, per unit of the weight, or per standard deviation of the rank.
+        low, high: bounds of its 95 % interval, by a bootstrap that draws parents as wholes.
+        p: two-sided, by the bootstrap's standard error.
+    """
+
+    outcome: str
+    weight: str
+    scale: str
+    births: int
+    parents: int
+    effect: float
+    low: float
+    high: float
+    p: float
+
+
+def births_of(world: WorldRecord) -> Births:
+    """The children of one world whose parents are recorded, born in the first `KNOWN` of the run."""
+    agents = world.agents
+    tree = genealogy(agents)
+    lived, _ = durations(agents, world.last_step)
+    child = np.flatnonzero((tree.parent >= 0) & (tree.birth <= KNOWN * world.last_step))
+    genome = agents.select(world.weight_names).to_numpy().astype(np.float64)
+    gained = agents["energy_gained"].to_numpy().astype(np.float64)
+    outcome = np.stack([gained / np.maximum(lived, YOUNG), lived, agents["children"].to_numpy()], axis=1)
+    return Births(genome[child] - genome[tree.parent[child]], outcome[child], tree.parent[child])
+
+
+def pool(births: Sequence[Births]) -> Births:
+    """The births of several worlds, whose parents differ."""
+    begin = np.cumsum([0, *(int(each.parent.max(initial=-1)) + 1 for each in births)])
+    return Births(
+        np.concatenate([each.change for each in births]),
+        np.concatenate([each.outcome for each in births]),
+        np.concatenate([each.parent + first for each, first in zip(births, begin, strict=False)]),
+    )
+
+
+def mutation_effects(
+    births: Births, names: Sequence[str], rng: np.random.Generator, replicates: int = REPLICATES
+) -> list[MutationEffect]:
+    """The effects of each gene on each outcome, by both scales.
+
+    Args:
+        births: of one condition.
+        names: of the genes.
+        rng: source of chance.
+        replicates: bootstrap samples.
+
+    Returns:
+        None where too few parents have several children.
+    """
+    _, parent, count = np.unique(births.parent, return_inverse=True, return_counts=True)
+    several = count[parent] > 1
+    _, parent = np.unique(parent[several], return_inverse=True)
+    if not several.any() or parent.max() + 1 < FEWEST:
+        return []
+    mean = births.outcome[several].mean(axis=0)
+    y = _among_siblings(births.outcome[several] / np.where(mean > 0, mean, 1.0), parent)
+    found = []
+    for scale in SCALES:
+        x = _among_siblings(_scaled(births.change[several], scale), parent)
+        columns = [*(x[:, g] * y[:, k] for g in range(x.shape[1]) for k in range(y.shape[1])), *(x**2).T]
+        features = np.stack([np.bincount(parent, column) for column in columns], axis=1)
+        unit = np.maximum(features.std(axis=0), 1e-300)  # sums are made in single precision
+        drawn = resampled_sums(features / unit, np.arange(len(features)), rng, replicates)
+        sums = np.concatenate([(features / unit).sum(axis=0, keepdims=True), drawn]) * unit
+        genes, outcomes = x.shape[1], y.shape[1]
+        above = sums[:, : genes * outcomes].reshape(-1, genes, outcomes)
+        below = sums[:, genes * outcomes :, None]
+        slopes = np.divide(above, below, out=np.full_like(above, np.nan), where=below > 0)
+        low, high = percentile_interval(slopes[1:])
+        error = slopes[1:].std(axis=0)
+        for k, outcome in enumerate(OUTCOMES):
+            for g, name in enumerate(names):
+                effect = float(slopes[0, g, k])
+                z = abs(effect) / error[g, k] if error[g, k] > 0 else np.nan
+                row = (effect, float(low[g, k]), float(high[g, k]), float(2.0 * stats.norm.sf(z)))
+                found.append(MutationEffect(outcome, name, scale, len(x), int(parent.max()) + 1, *row))
+    return found
+
+
+def _scaled(change: Floats, scale: str) -> Floats:
+    if scale == "clipped":
+        return np.clip(change, -CLIP, CLIP)
+    rank = stats.rankdata(change, axis=0)
+    return np.asarray(stats.norm.ppf((rank - 0.5) / len(change)), np.float64)
+
+
+def _among_siblings(values: Floats, parent: NDArray[np.int64]) -> Floats:
+    """Deviations from the mean of the siblings, (n, columns)."""
+    count = np.bincount(parent)
+    means = np.stack([np.bincount(parent, column) / count for column in values.T], axis=1)
+    return values - means[parent]

@@ -1,0 +1,43 @@
+"""A topic about causes: mutation as a treatment that births hand out at random."""
+
+import itertools
+from dataclasses import asdict
+
+import numpy as np
+
+from hedon.analysis.gene.mutation import CLIP, OUTCOMES, SCALES, births_of, mutation_effects, pool
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import SEED, Conditions
+
+
+def mutation_topic(conditions: Conditions) -> list[ResultTable]:
+    """What a child's own mutation does to its life, among siblings."""
+    rows, shown = [], []
+    for condition, worlds in conditions.items():
+        rng = np.random.default_rng([SEED, len(worlds)])
+        effects = mutation_effects(pool([births_of(world) for world in worlds]), worlds[0].weight_names, rng)
+        rows += [{"condition": condition} | asdict(effect) for effect in effects]
+        for outcome, scale in itertools.product(OUTCOMES, SCALES):
+            mine = [effect for effect in effects if (effect.outcome, effect.scale) == (outcome, scale)]
+            neutral = [effect for effect in mine if effect.weight.startswith("neutral_")]
+            shown += [{"condition": condition} | asdict(effect) for effect in mine if effect not in neutral]
+            if neutral:
+                found = sum(effect.p < 0.05 for effect in neutral)
+                shown.append(
+                    {
+                        "condition": condition,
+                        "outcome": outcome,
+                        "weight": f"{len(neutral)} neutral: {found} with p < 0.05",
+                        "scale": scale,
+                    }
+                )
+    note = (
+        "Children of one parent are compared, so parent and place cannot matter: what differs is their own mutation. "
+        f"effect: change of the outcome over its mean, per unit of the weight (clipped at ± {CLIP:g}), or per standard "
+        "deviation of the rank. Neutral markers do nothing, and show what chance gives. Intervals: bootstrap over "
+        "parents."
+    )
+    return [
+        table("mutation", "What mutations do to the lives of children", shown, note),
+        table("mutation_gene", "What mutations of each gene do, neutral markers too", rows, shown=False),
+    ]
