@@ -218,6 +218,24 @@ struct JacobiSolver {
       scratch.position[place].x += scratch.motion[place].x * batch.c.dt;
       scratch.position[place].y += scratch.motion[place].y * batch.c.dt;
       scratch.angle[place] += scratch.motion[place].angular * batch.c.dt;
+      keep_inside(batch, place);
+    }
+  }
+
+  /// Puts a body whose center was pushed through an outer wall back onto it. A wall does not push a center that lies
+  /// behind it, so the body would leave the arena for good.
+  HEDON_FN static void keep_inside(const Batch& batch, int32_t place) {
+    constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
+    const PairList& walls = batch.state.neighbors.walls;
+    Vec2& center = batch.scratch.position[place];
+    for (int32_t pair = walls.start[place]; pair < walls.start[place + 1]; ++pair) {
+      if (walls.second[pair] >= batch.state.outer_walls) continue;
+      const Segment& wall = batch.state.walls[walls.second[pair]];
+      const Vec2 along = wall.b - wall.a;  // the outer walls run clockwise, so the inside is to their right
+      const float behind = -cross(center - wall.a, along) / length(along);
+      if (!(behind > 0.0f)) continue;
+      const float shift = (behind + MARGIN) / length(along);
+      center = center + shift * Vec2{along.y, -along.x};
     }
   }
 };

@@ -1,5 +1,5 @@
 /// Newborns that inherit only when the window ends, as in the paper's released code: until then they act with the
-/// network and are paid by the genome that their slot had before.
+/// network and are paid by the genome that their slot had before. See "What `released` changes" in docs/model.md.
 #pragma once
 
 #include <cstdint>
