@@ -30,19 +30,14 @@ SECONDS = 20.0
 
 def changed(config: Config, path: str, value: Any) -> Config:
     """A config with one setting replaced, unchecked, as `dataclasses.replace` does it."""
-    section, _, name = path.rpartition(".")
-    if not section:
-        return dataclasses.replace(config, **{name: value})
-    head, *rest = section.split(".")
-    if head != "food":
-        return dataclasses.replace(config, **{head: dataclasses.replace(getattr(config, head), **{name: value})})
-    kind, *placement = rest
-    food = config.food[kind]
-    if placement:
-        new = dataclasses.replace(food, placement=dataclasses.replace(food.placement, **{name: value}))
-    else:
-        new = dataclasses.replace(food, **{name: value})
-    return dataclasses.replace(config, food={**config.food, kind: new})
+
+    def replaced(section: Any, names: list[str]) -> Any:
+        name, *below = names
+        if isinstance(section, dict):
+            return {**section, name: replaced(section[name], below)}
+        return dataclasses.replace(section, **{name: replaced(getattr(section, name), below) if below else value})
+
+    return replaced(config, path.split("."))
 
 
 REPORTED = [

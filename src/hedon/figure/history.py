@@ -9,12 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.world.population import history
-from hedon.figure.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, styled
+from hedon.figure.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, step_unit, styled
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
 _WIDEST = 10.0  # figure [inch]
 _POINTS = 200  # intervals of the time axis
+_MANY = 8  # courses of neutral genes from which on their range is shaded behind the weights
+_RANGE = (0.025, 0.975)  # quantiles of these
 
 
 @dataclass(frozen=True)
@@ -40,14 +42,7 @@ def draw_history(
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
-    """One panel per reward weight and one for the first neutral marker, all with the same axes.
-
-    Args:
-        population: table `population`.
-        food_kinds: names.
-        neutral_names: genome columns; the first is drawn.
-        colors: per food kind.
-    """
+    """One panel per reward weight and one for the neutral genes, all with the same axes; see `draw_histories`."""
     return draw_histories([HistoryRow(population)], food_kinds, neutral_names, colors)
 
 
@@ -57,35 +52,44 @@ def draw_histories(
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
-    """One row per setting, one column per reward weight and for the first neutral marker; the same axes throughout.
+    """One row per setting, one column per reward weight and for the neutral genes; the same axes throughout.
 
     Thin lines are means over the living of one world, thick lines are means over worlds with their 95 %
-    interval. A cross ends the line of a world that died out.
+    interval. A cross ends the line of a world that died out. Behind the weights is shaded where 95 % of all
+    neutral genes of all worlds are at that time. Each neutral gene of each world is a line of the last column,
+    which the axes may cut off.
 
     Args:
         settings: from top to bottom, at least one.
         food_kinds: names, of all settings.
-        neutral_names: genome columns; the first is drawn.
+        neutral_names: genome columns.
         colors: per food kind.
     """
     shown = {f"w_{kind}": (f"weight of {kind} food", colors[kind]) for kind in food_kinds}
     shown["w_action"] = ("weight of action", ACTION_COLOR)
-    shown |= dict.fromkeys(neutral_names[:1], ("neutral marker", NEUTRAL_COLOR))
+    columns = len(shown) + bool(neutral_names)
     end = max(last_step(setting.population) for setting in settings)
     with styled():
-        width = min(2.7 * len(shown) + 0.5, _WIDEST)
+        width = min(2.7 * columns + 0.5, _WIDEST)
         height = 2.3 * len(settings) + 0.3 if len(settings) > 1 else 2.9 + 0.3 * bool(settings[0].title)
         figure = new_figure(width, height)
-        grid = figure.subplots(len(settings), len(shown), sharex=True, sharey=True, squeeze=False)
+        grid = figure.subplots(len(settings), columns, sharex=True, sharey=True, squeeze=False)
         reach = 0.0
         for setting, panels in zip(settings, grid, strict=True):
-            rows = history(setting.population, food_kinds, list(shown), _POINTS, end)
-            for axes, (name, (title, color)) in zip(panels, shown.items(), strict=True):
+            rows = history(setting.population, food_kinds, [*shown, *neutral_names], _POINTS, end)
+            reach = max(reach, *(_draw_range(axes, rows, neutral_names, end) for axes in panels[: len(shown)]))
+            for axes, (name, (title, color)) in zip(panels, shown.items(), strict=False):
                 draw_zero_line(axes)
                 draw_traces(axes, rows, f"{name}_mean", color, extinct=setting.extinct, end=end)
                 if setting is settings[0]:
                     axes.set_title(title, color=color)
-                if setting is settings[-1]:
+            if neutral_names:
+                draw_zero_line(panels[-1])
+                _draw_neutral(panels[-1], rows, neutral_names, end)
+                if setting is settings[0]:
+                    panels[-1].set_title("neutral genes", color=NEUTRAL_COLOR)
+            if setting is settings[-1]:
+                for axes in panels:
                     draw_time_axis(axes, rows, end)
             _say_setting(panels[0], setting)
             panels[0].set_ylabel("mean weight of the living" if len(settings) == 1 else "mean weight")
@@ -93,9 +97,31 @@ def draw_histories(
                 say_empty(panels[0], "nothing recorded yet")
             values = rows.select(f"{name}_mean" for name in shown).to_numpy().astype(np.float64)
             reach = max(reach, np.nanmax(np.abs(values)) if np.isfinite(values).any() else 0.0)
-        if reach < _MIN_HALF_RANGE:
-            grid[0, 0].set_ylim(-_MIN_HALF_RANGE, _MIN_HALF_RANGE)
+        reach = max(1.05 * reach, _MIN_HALF_RANGE)
+        grid[0, 0].set_ylim(-reach, reach)
     return figure
+
+
+def _draw_range(axes: Axes, rows: pl.DataFrame, neutral_names: Sequence[str], end: float) -> float:
+    """Shades where most neutral genes are; returns how far that reaches from 0."""
+    courses = rows.unpivot([f"{name}_mean" for name in neutral_names], index=["bin", "step"]).drop_nulls("value")
+    low, high = (pl.col("value").quantile(q, "linear") for q in _RANGE)
+    bands = courses.group_by("bin", maintain_order=True).agg(
+        pl.col("step").max(), low.alias("low"), high.alias("high"), pl.len()
+    )
+    bands = bands.filter(pl.col("len") >= _MANY).sort("step")
+    if bands.is_empty():
+        return 0.0
+    unit, _ = step_unit(max(last_step(rows), end))
+    axes.fill_between(bands["step"] / unit, bands["low"], bands["high"], color=NEUTRAL_COLOR, alpha=0.15, linewidth=0)
+    return float(np.abs(bands.select("low", "high").to_numpy()).max())
+
+
+def _draw_neutral(axes: Axes, rows: pl.DataFrame, neutral_names: Sequence[str], end: float) -> None:
+    unit, _ = step_unit(max(last_step(rows), end))
+    for world in rows.partition_by("world"):
+        for name in neutral_names:
+            axes.plot(world["step"] / unit, world[f"{name}_mean"], color=NEUTRAL_COLOR, linewidth=0.8, alpha=0.35)
 
 
 def _say_setting(axes: Axes, setting: HistoryRow) -> None:

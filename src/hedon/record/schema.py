@@ -31,6 +31,11 @@ def weight_names(food_kinds: Sequence[str], neutral_count: int) -> tuple[str, ..
     return (*food_weight_names(food_kinds), "w_action", *neutral_names(neutral_count))
 
 
+def shown_weight_names(food_kinds: Sequence[str], neutral_count: int) -> tuple[str, ...]:
+    """The genome as a terminal shows it: the weights, and one neutral marker as a control."""
+    return weight_names(food_kinds, min(neutral_count, 1))
+
+
 def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
     """One row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
     return _table(

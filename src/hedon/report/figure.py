@@ -14,9 +14,10 @@ WEIGHTS = FigureKind(
 HISTORY = FigureKind(
     "history",
     "When did they evolve, and how much of it is drift?",
-    "Mean weight of the living over time, and that of the first neutral marker, which nothing depends on. Thin lines "
-    "are worlds, the thick line is their mean, and the band is its 95 % interval, from three worlds on. A cross marks "
-    "where a world died out. A weight that strays no further than the marker may have drifted.",
+    "Mean weight of the living over time, and that of each neutral gene, which nothing depends on. Thin lines are "
+    "worlds, the thick line is their mean, and the band around it its 95 % interval, from three worlds on. Shaded in "
+    "gray is where 95 % of the neutral genes of all worlds are at that time. A cross marks where a world died out. A "
+    "weight that stays within the gray may have drifted.",
 )
 POPULATION = FigureKind(
     "population",

@@ -125,7 +125,7 @@ def test_frozen_noise_predicts_where_a_gene_without_selection_drifts() -> None:
     rng = np.random.default_rng(5)
     # Rows alike, so that both halves of a run hold much of the same noise.
     rows = [np.clip(make_table(rng)[0], -0.3, 0.3) for _ in range(10)]
-    worlds = [make_world(np.tile(row, (PER_WINDOW + 1, 1)), rng, windows=300, seed=i) for i, row in enumerate(rows)]
+    worlds = [make_world(np.tile(row, (PER_WINDOW + 1, 1)), rng, windows=600, seed=i) for i, row in enumerate(rows)]
     drifts = [gene_drift(world, GENE, rng) for world in worlds]
     known = [drift for drift in drifts if drift is not None]
     assert len(known) == 10

@@ -59,7 +59,7 @@ def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
     assert [axes.get_title("left") for axes in figure.axes] == [
         "weight of normal food",
         "weight of action",
-        "neutral marker",
+        "neutral genes",
     ]
     thick = [line for line in figure.axes[0].lines if line.get_linewidth() == 2.0]
     expected = run.population().group_by("step").agg(pl.col("w_normal_mean").mean())

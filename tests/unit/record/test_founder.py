@@ -81,10 +81,10 @@ def test_sources_and_mixtures() -> None:
         ("group\na\n", "line 1: must name at least one gene"),
         (
             "fod\n1\n",
-            "there is no gene 'fod' (there are normal, poison, action, neutral_1 to neutral_1); did you mean food",
+            "there is no gene 'fod' (there are normal, poison, action, neutral_1 to neutral_16); did you mean food",
         ),
         ("acton\n1\n", "did you mean action?"),
-        ("neutral_2\n1\n", "there is no gene 'neutral_2'"),
+        ("neutral_17\n1\n", "there is no gene 'neutral_17'"),
         ("food,normal\n1,1\n", "the gene 'normal' appears twice"),
         ("food\n", "must have from 1 to 100,000 rows"),
         ("food\n1\n\nx\n", "line 4, food = 'x': must be a number from -10 to 10"),

@@ -13,7 +13,7 @@ from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.table import ResultTable
 from hedon.analysis.world.fate import EXTINCT, HEADING, STANDING, fate
 from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.config import digest, load_config
+from hedon.config import diff, digest, load_config
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 from hedon.replication.item.item import Item, Material
@@ -60,16 +60,24 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
 
 
 def test_arms_share_runs_with_other_items() -> None:
-    """All three faults are settings of the released program, and no fault is the corrected baseline,
-    whatever is reproduced."""
+    """All faults are settings of the released program, and no fault is the corrected baseline, whatever is
+    reproduced."""
     faults = {arm.label: arm.config("text") for arm in fault.ARMS}
     assert list(faults) == list(fault.CELLS)
-    assert len({digest(config) for config in faults.values()}) == 8
+    assert len({digest(config) for config in faults.values()}) == 16
     released_digest = digest(load_config("baseline", "released"))
     corrected_digest = digest(load_config("baseline", "corrected"))
-    three = ("genome.mutation_noise=frozen", "learning.critic_target=batch_mean", "food.normal.growth_rate=1")
-    solved = load_config("baseline", overrides=three)
-    assert digest(faults["all"]) == digest(solved)
+    changes = diff(faults["none"], faults["all"])
+    assert [path for path, _, _ in changes] == [
+        "physics.solver",
+        "food.normal.growth_rate",
+        "genome.mutation_noise",
+        "learning.critic_target",
+    ]
+    released_has = {
+        path: value for path, _, value in diff(load_config("baseline"), load_config("baseline", "released"))
+    }
+    assert all(released_has[path] == value for path, _, value in changes)
     assert released_digest == digest(released.ARMS[0].config("text"))
     assert digest(faults["none"]) == corrected_digest
     assert [digest(arm.config("text")) for arm in noise.ARMS] == [
@@ -104,7 +112,7 @@ def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
     tables, _ = made(fault.FAULTS[0], {"none": worlds, "growth": worlds})
     assert set(tables["fault_effects"].rows["effect"]) == {"growth"}
     note = tables["fault_effects"].note
-    assert "left out: noise, critic," in note
+    assert "left out: noise, critic, solver," in note
     assert "told for some cells only: growth (of all responses)" in note
 
 

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.record.schema import weight_names
+from hedon.record.schema import shown_weight_names
 
 FIRST_LINE_SECONDS = 1.0
 LINE_SECONDS = 10.0
@@ -59,7 +59,7 @@ class LineDisplay:
 
     def __init__(self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
         self._stream = stream
-        self._weights = weight_names(kinds, neutral_count)
+        self._weights = shown_weight_names(kinds, neutral_count)
         self._seeds = seeds
         self._speed = _Speed()
         self._due = FIRST_LINE_SECONDS
@@ -98,7 +98,7 @@ class LiveDisplay:
     """A progress bar and a table of the worlds, updated on a terminal."""
 
     def __init__(self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
-        self._weights = weight_names(kinds, neutral_count)
+        self._weights = shown_weight_names(kinds, neutral_count)
         self._seeds = seeds
         self._speed = _Speed()
         self._live = Live(console=console, auto_refresh=False, transient=True)

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
+from hedon.record.schema import neutral_names
 from hedon.replication.paper import STEPS
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
@@ -65,7 +66,7 @@ def _over_worlds(summary: Mapping[str, Any]) -> list[PrintedTable | Text]:
     for key, (label, source) in _QUANTITIES.items():
         reported = [] if paper is None else [_reported(paper.get(source))]
         rows.append([label, *_interval(summary[key]), *reported])
-    rows += [[f"weight {weight}", *_interval(interval)] for weight, interval in summary["weights"].items()]
+    rows += [[f"weight {weight}", *_interval(summary["weights"][weight])] for weight in _shown(summary)]
     if count < SHOWN_FROM:
         for line in (headers, *rows):
             del line[2]
@@ -89,7 +90,7 @@ def _world_by_world(summary: Mapping[str, Any]) -> PrintedTable:
 
 
 def _weights(summary: Mapping[str, Any]) -> PrintedTable:
-    names = list(summary["weights"])
+    names = _shown(summary)
     rows = []
     for world in summary["worlds"]:
         spreads = [world["weights"][name] for name in names]
@@ -97,6 +98,12 @@ def _weights(summary: Mapping[str, Any]) -> PrintedTable:
         rows.append([str(world["seed"]), *cells])
     title = f"weights of the agents born last (at most {LAST_AGENTS}), mean ± sd"
     return PrintedTable(("seed", *names), rows, title=title, dim=_extinct(summary))
+
+
+def _shown(summary: Mapping[str, Any]) -> list[str]:
+    """The weights, and of the neutral markers the first."""
+    neutral = neutral_names(len(summary["weights"]))
+    return [name for name in summary["weights"] if name not in neutral[1:]]
 
 
 def _extinct(summary: Mapping[str, Any]) -> list[int]:
