@@ -113,7 +113,7 @@ def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
     assert set(tables["fault_effects"].rows["effect"]) == {"growth"}
     note = tables["fault_effects"].note
     assert "left out: noise, critic, solver," in note
-    assert "told for some cells only: growth (of all responses)" in note
+    assert "estimated from some cells only: growth (of all responses)" in note
 
 
 def test_an_extinct_world_counts_as_empty(worlds: list[WorldRecord]) -> None:
