@@ -19,7 +19,8 @@ from hedon.assay.landscape import AssayError
 from hedon.assay.resample import PERMUTATIONS, Floats, chance, world_draws, world_interval
 from hedon.assay.surface import Estimate
 from hedon.config.config import Config
-from hedon.record.founder import Founders, load_founders
+from hedon.record.founder import Founders
+from hedon.record.founder_table import load_founders
 from hedon.record.reader import Run
 
 TIMES = 101

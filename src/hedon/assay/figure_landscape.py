@@ -21,7 +21,7 @@ _TITLES = {
 
 
 def draw_landscape(landscape: Landscape, ends: Sequence[End]) -> Figure:
-    """One panel per measure: the smooth surface, its optimum with intervals, the ends, and the paper's region."""
+    """One panel per measure: the smooth surface, its optimum with intervals, and the ends."""
     with styled():
         figure = new_figure(9.0, 8.0)
         axes = figure.subplots(2, 2, squeeze=False).ravel()
@@ -37,17 +37,16 @@ def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurf
     smooth = surface.smooth
     x, y = smooth.axes
     low, high = float(smooth.value.min()), float(smooth.value.max())
-    norm = Normalize(low, max(high, low + 1e-9))
-    axes.contourf(x, y, smooth.value.T, levels=np.linspace(norm.vmin or 0.0, norm.vmax or 1.0, 15), cmap="viridis")
+    high = max(high, low + 1e-9)  # a flat surface has no levels
+    norm = Normalize(low, high)
+    axes.contourf(x, y, smooth.value.T, levels=np.linspace(low, high, 15), cmap="viridis")
     lines = axes.contour(x, y, smooth.value.T, levels=7, colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=7, fmt="%.2f")
     figure.colorbar(ScalarMappable(norm, "viridis"), ax=axes, label="relative fitness")
     best = [estimate.value for estimate in smooth.optimum]
     bars = [
-        [[estimate.value - estimate.low], [estimate.high - estimate.value]]
-        if np.isfinite(estimate.low)
-        else [[0.0], [0.0]]
-        for estimate in smooth.optimum
+        np.nan_to_num([[max(each.value - each.low, 0.0)], [max(each.high - each.value, 0.0)]])
+        for each in smooth.optimum
     ]
     axes.errorbar(*best, xerr=bars[0], yerr=bars[1], fmt="*", color=VERMILION, ms=13, mec="white", label="optimum")
     found = on_surface(ends, landscape.genes)

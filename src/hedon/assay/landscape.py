@@ -9,7 +9,7 @@ import polars as pl
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.assay.gene_test import GeneEffect, flatness, gene_effects
 from hedon.assay.outcome import MEASURES, founder_outcomes
-from hedon.assay.resample import FEWEST_WORLDS, Floats, relative
+from hedon.assay.resample import Floats, relative
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
 from hedon.error import HedonError
@@ -181,8 +181,3 @@ def _bounds(pair: Floats) -> tuple[Floats, Floats]:
     """Within which the surface is told: beyond are too few founders."""
     low, high = np.quantile(pair, (_TAIL, 1.0 - _TAIL), axis=0)
     return low, high
-
-
-def enough_worlds(count: int) -> bool:
-    """Whether an interval over worlds can be given."""
-    return count >= FEWEST_WORLDS

@@ -8,7 +8,8 @@ import polars as pl
 
 from hedon.check.finding import Finding
 from hedon.config.config import Config
-from hedon.record.founder import FOUNDERS, FounderError, load_founders
+from hedon.record.founder import FOUNDERS, FounderError
+from hedon.record.founder_table import load_founders
 from hedon.record.manifest import Manifest
 
 

@@ -122,7 +122,7 @@ def _shower(console: "Console") -> "Show":
             f"into {printable(str(plan.out))}",
             soft_wrap=True,
         )
-        with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:
+        with make_display(console, tuple(config.food), 0, plan.seeds) as display:
             return go(display)
 
     return show

@@ -77,7 +77,7 @@ def run(
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
     require_no_run(folder)
-    begin_with = read_founders(founders, config) if founders else None
+    begin_with = None if founders is None else read_founders(founders, config)
     plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with)
     conduct(plan, lambda display: run_plan(plan, display))
 

@@ -18,7 +18,7 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
-from hedon.record.founder import load_founders
+from hedon.record.founder_table import load_founders
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.provenance import git_revision

@@ -13,7 +13,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +25,6 @@ from hedon.text import brief
 
 FOUNDERS = "founders.csv"
 GROUP, SHARE = "group", "share"
-MAX_ROWS = 100_000
-"""Most rows of a table."""
-MAX_BYTES = 100_000_000
 
 
 class FounderError(HedonError):
@@ -169,97 +165,6 @@ def unknown_gene(config: Config, name: str) -> str:
     near = nearest(name, [*columns, *shown, "food"])
     hint = f"; did you mean {near}?" if near else ""
     return f"there is no gene {brief(repr(name))} (there are {', '.join(shown)}{neutral}){hint}"
-
-
-def read_table(path: Path, config: Config) -> Founders:
-    """Reads a table of founders from a CSV file.
-
-    Args:
-        path: Of the file. Its first line names the columns: genes, by their column in the records or by their short
-            name, and `group` and `share` if there are any. An empty cell is a gene that is drawn as the config says.
-        config: Whose genes they are.
-
-    Raises:
-        FounderError: The table cannot be used; the message gives the place, the value and what is allowed.
-    """
-    origin = brief(str(path))
-    try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-        if len(content) > MAX_BYTES:
-            raise FounderError(f"{origin}: is too large for a table of founders (at most {MAX_BYTES:,} bytes)")
-        rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig"), newline=""), strict=True))
-    except OSError as error:
-        raise FounderError(f"{origin}: cannot be read: {error.strerror}") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        what = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"it is not CSV: {error}"
-        raise FounderError(f"{origin}: cannot be read: {what}") from None
-    head = [cell.strip() for cell in rows[0]] if rows else []
-    genes = _columns(head, config, origin)
-    lines = [(number, row) for number, row in enumerate(rows[1:], 2) if row]
-    if not 1 <= len(lines) <= MAX_ROWS:
-        raise FounderError(f"{origin}: must have from 1 to {MAX_ROWS:,} rows below its first line, not {len(lines):,}")
-    values, groups, shares = [], [], {}
-    for number, row in lines:
-        place = f"{origin}: line {number}"
-        if len(row) != len(head):
-            raise FounderError(f"{place}: has {len(row)} cells, but there are {len(head)} columns")
-        cells = dict(zip(head, map(str.strip, row), strict=True))
-        group = cells.get(GROUP) or path.stem
-        if SHARE in head:
-            share = _number(cells[SHARE], f"{place}, {SHARE}", 0.0, 1e9)
-            if not share > 0 or shares.setdefault(group, share) != share:
-                rule = "must be above 0, and the same in all rows of a group"
-                raise FounderError(f"{place}, {SHARE} = {brief(cells[SHARE])}: {rule}")
-        limit = config.genome.weight_limit
-        values.append([_number(cells[name], f"{place}, {name}", -limit, limit, empty=True) for name in genes])
-        groups.append(group)
-    return make_founders(tuple(genes.values()), np.array(values, np.float32), groups, shares or None)
-
-
-def load_founders(folder: Path, config: Config) -> Founders | None:
-    """The table of a run, from its folder; None if its founders are drawn as the config says.
-
-    Raises:
-        FounderError: The table is missing or was changed.
-    """
-    if not config.genome.founders:
-        return None
-    founders = read_table(folder / FOUNDERS, config)
-    if founders.digest != config.genome.founders:
-        raise FounderError(f"{folder / FOUNDERS}: was changed: its digest differs from the one in the config")
-    return founders
-
-
-def _columns(head: Sequence[str], config: Config, origin: str) -> dict[str, str]:
-    """The column of the genome for each column of genes in a table."""
-    genes: dict[str, str] = {}
-    for name in head:
-        if name in (GROUP, SHARE):
-            continue
-        column = column_of(config, name)
-        if column is None:
-            raise FounderError(f"{origin}: line 1: {unknown_gene(config, name)}")
-        if column in genes.values():
-            raise FounderError(f"{origin}: line 1: the gene {name!r} appears twice")
-        genes[name] = column
-    if not genes:
-        raise FounderError(f"{origin}: line 1: must name at least one gene, such as food or action, besides {GROUP}")
-    if len(set(head)) < len(head):
-        raise FounderError(f"{origin}: line 1: a column appears twice")
-    return genes
-
-
-def _number(text: str, place: str, low: float, high: float, *, empty: bool = False) -> float:
-    if empty and not text:
-        return math.nan
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not low <= value <= high:
-        raise FounderError(f"{place} = {brief(repr(text))}: must be a number from {low:g} to {high:g}")
-    return value
 
 
 def _shuffled(items: Sequence[int], what: str) -> list[int]:

@@ -7,7 +7,8 @@ import numpy as np
 import polars as pl
 
 from hedon.config.config import Config
-from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, read_table, unknown_gene
+from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, unknown_gene
+from hedon.record.founder_table import read_table
 from hedon.record.reader import open_run
 from hedon.text import brief
 

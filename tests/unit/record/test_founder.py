@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from hedon.config import load_config
-from hedon.record.founder import FounderError, Founders, join, load_founders, make_founders, read_table
+from hedon.record.founder import FounderError, Founders, join, make_founders
 from hedon.record.founder_source import parse_point, read_founders
+from hedon.record.founder_table import load_founders, read_table
 
 CONFIG = load_config("poison")
 
