@@ -28,16 +28,12 @@ SECONDS = 20.0
 """Longest time of a trial: a hang, since each lives for a few steps."""
 
 
-def changed(config: Config, path: str, value: Any) -> Config:
-    """A config with one setting replaced, unchecked, as `dataclasses.replace` does it."""
-
-    def replaced(section: Any, names: list[str]) -> Any:
-        name, *below = names
-        if isinstance(section, dict):
-            return {**section, name: replaced(section[name], below)}
-        return dataclasses.replace(section, **{name: replaced(getattr(section, name), below) if below else value})
-
-    return replaced(config, path.split("."))
+def changed(config: Any, path: str, value: Any) -> Any:
+    """A config, or a part of one, with one setting replaced, unchecked, as `dataclasses.replace` does it."""
+    name, _, rest = path.partition(".")
+    if isinstance(config, dict):
+        return {**config, name: changed(config[name], rest, value)}
+    return dataclasses.replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
 
 
 REPORTED = [
