@@ -1,0 +1,154 @@
+"""`hedon assay` as a user calls it: a known sign, an interruption, starts, and each bad input."""
+
+import json
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from hedon.check.run import check_run
+
+COSTLY = (
+    "learning.rollout_steps=64",
+    "learning.minibatch_size=32",
+    "learning.learning_rate=0.003",
+    "learning.gamma=0",
+    "reward.action_coef=1.0",
+    "energy.action_cost=3e-4",
+    "energy.basic_cost=0",
+    'energy.starvation="death"',
+    "food.normal.growth_rate=0",
+    "food.normal.initial_count=0",
+    "birth.kappa=0",
+    "hazard.kappa=0",
+    "hazard.alpha_age=0",
+)
+"""A world without food and births, in which motion alone kills: who is rewarded for moving dies first."""
+SHORT = ("--seeds", "1-4", "--steps", "3072", *(part for setting in COSTLY for part in ("--set", setting)))
+
+
+def call(folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(
+        ["hedon", "assay", *arguments], capture_output=True, text=True, check=False, cwd=folder, timeout=300
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a landscape of the costly world."""
+    path = tmp_path_factory.mktemp("assay")
+    answer = call(path, "landscape", "baseline", *SHORT, "--out", "whole")
+    assert answer.returncode == 0, answer.stderr
+    assert "Fitness over two genes" in answer.stdout
+    return path
+
+
+def effects(path: Path) -> dict[tuple[str, str], dict]:
+    rows = json.loads(path.read_text(encoding="utf-8"))["tables"]["gene"]["rows"]
+    return {(row["fitness"], row["gene"]): row for row in rows}
+
+
+def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None:
+    found = effects(folder / "whole" / "landscape.json")
+    for measure in ("descendants", "lifespan"):
+        action, food = found[measure, "action"], found[measure, "normal"]
+        assert action["high"] < 0
+        assert action["p slope"] < 0.01
+        assert action["z slope"] < -3
+        assert food["p slope"] > 0.001
+    assert not check_run(folder / "whole" / "run").findings
+    assert (folder / "whole" / "landscape.png").stat().st_size > 10_000
+    assert "| descendants" in (folder / "whole" / "landscape.md").read_text(encoding="utf-8")
+
+
+def test_an_interrupted_assay_goes_on_to_the_same_summary(folder: Path) -> None:
+    command = ["hedon", "assay", "landscape", "baseline", *SHORT, "--out", "broken"]
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True)
+    for _ in range(600):
+        if any((folder / "broken" / "run" / "population").glob("*.parquet")):
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    printed, _ = process.communicate(timeout=120)
+    assert process.returncode == 0
+    assert "The same command goes on." in printed
+    assert not (folder / "broken" / "landscape.json").exists()
+    answer = call(folder, *command[2:])
+    assert answer.returncode == 0, answer.stderr
+    whole, broken = ((folder / name / "landscape.json").read_text(encoding="utf-8") for name in ("whole", "broken"))
+    assert whole == broken
+    before = (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns
+    answer = call(folder, *command[2:])
+    assert answer.returncode == 0, answer.stderr
+    assert (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns == before, "a finished one is only read"
+
+
+def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: Path) -> None:
+    answer = call(folder, "compete", "action=-8", "action=8", *SHORT, "--out", "compete")
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "compete" / "compete.json").read_text(encoding="utf-8"))
+    assert found["share"]["low"] > 0.5
+    assert found["p"] < 0.01
+    assert found["start"] == 0.5
+    rows = {row["seed"]: row for row in found["tables"]["contest_world"]["rows"]}
+    assert set(rows) == {1, 2, 3, 4}
+    # The founders of the competition, as a freezer: without their weight of action they live longer or shorter.
+    answer = call(folder, "knockout", "compete/run@0", "action", *SHORT[:4], "--out", "knockout")
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "knockout" / "knockout.json").read_text(encoding="utf-8"))
+    assert found["groups"] == ["action = 0", "run@0"]
+    assert not check_run(folder / "knockout" / "run").findings
+    answer = call(folder, "invade", "action=8", "action=-8", "--share", "0.2", *SHORT, "--out", "invade")
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "invade" / "invade.json").read_text(encoding="utf-8"))
+    assert found["groups"] == ["action=-8", "action=8"]
+    assert found["start"] == pytest.approx(0.2)
+    assert found["share"]["value"] > 0.2
+
+
+def test_a_start_begins_at_its_point(folder: Path) -> None:
+    lively = ("--set", "learning.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
+    options = (*lively, "--set", "hazard.kappa=0.1", "--steps", "1024", "--seeds", "1-3", "--out", "start")
+    answer = call(folder, "start", "baseline", "--at", "food=5,action=-4", "--beside", "food=0", *options)
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "start" / "start.json").read_text(encoding="utf-8"))
+    assert [each["point"] for each in found["starts"]] == [
+        {"w_normal": 5.0, "w_action": -4.0},
+        {"w_normal": 0.0, "w_action": 0.0},
+    ]
+    courses = [row for row in found["tables"]["course"]["rows"] if row["step"] == 0 and row["run"] == "start"]
+    means = {row["gene"]: row["mean"] for row in courses}
+    assert means["normal"] == pytest.approx(5, abs=0.1)
+    assert means["action"] == pytest.approx(-4, abs=0.1)
+    assert len(means) == 18
+    assert {"held", "leaves", "as drift"} >= {
+        verdict for each in found["starts"] for verdict in each["verdicts"].values()
+    }
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("landscape", "basline"), "there is no such preset"),
+        (("landscape", "baseline", "--genes", "food,acton"), "did you mean action?"),
+        (("landscape", "baseline", "--genes", "food"), "must be two different genes"),
+        (("landscape", "baseline", "--range", "-20:3"), "must be LOW:HIGH around 0, within -10:10"),
+        (("landscape", "baseline", "--sd", "-1"), "Invalid value for '--sd'"),
+        (("landscape", "baseline", "--ends", "nowhere"), "--ends nowhere: cannot be read"),
+        (("landscape", "baseline", "--out", "whole"), "holds a run with other settings, founders or seeds"),
+        (("compete", "food=1", "fod=2"), "there is no gene 'fod'"),
+        (("compete", "food=1", "nowhere"), "there is no such file or folder"),
+        (("knockout", "whole/run", "acton"), "did you mean action?"),
+        (("knockout", "whole/run@99999999", "action"), "has only 3,072 steps"),
+        (("start", "baseline", "--at", "food=50"), "must be one number from -10 to 10"),
+        (("start", "baseline", "--at", "neutral_1=1"), "a neutral marker is the control"),
+    ],
+)
+def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...], message: str) -> None:
+    answer = call(folder, *arguments)
+    assert answer.returncode == 2
+    assert message in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert not answer.stdout
