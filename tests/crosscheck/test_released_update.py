@@ -70,13 +70,11 @@ def test_values_are_those_of_the_network_before(window, kernel):
 def test_forty_updates(window, kernel, critic, most):
     """Within 1e-5 by the program's own critic; by the correct one another network results."""
     before = flat(window, "o_")
-    moments = np.zeros((2, len(before)), np.float32)
-    batch = (packed(window["obs"]), *(window[name] for name in ("act", "lp", "adv", "tgt")))
+    still, obs, settings = np.zeros_like(before), packed(window["obs"]), config(critic_target=critic)
+    act, lp, adv, tgt, perm = (window[name] for name in ("act", "lp", "adv", "tgt", "perm"))
     after = _engine.learning.update(
-        kernel, ONE_KIND_RAW, config(critic_target=critic), before, *moments, 0, *batch, window["perm"]
+        kernel, ONE_KIND_RAW, settings, before, still, still, 0, obs, act, lp, adv, tgt, perm
     )[0]
-    names = ppo_reference.split(after, INPUTS)
-    worst = max(
-        np.abs(names[name] - wanted).max() for name, wanted in ppo_reference.split(flat(window, "n_"), INPUTS).items()
-    )
+    found, wanted = (ppo_reference.split(params, INPUTS) for params in (after, flat(window, "n_")))
+    worst = max(np.abs(found[name] - wanted[name]).max() for name in wanted)
     assert worst <= most if most is not None else worst > 1e-2
