@@ -1,3 +1,4 @@
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ from analysis_tree import lines, random_tree
 from synthetic_run import write_run
 
 from hedon.analysis.descent.genealogy import (
+    ALIVE,
     Genealogy,
     ancestry,
     common_ancestor,
@@ -17,7 +19,7 @@ from hedon.analysis.descent.genealogy import (
     living_at,
 )
 from hedon.analysis.descent.generation import generation_time
-from hedon.analysis.descent.walk import birth_number
+from hedon.analysis.descent.walk import MutationLaw, birth_number, is_mutated
 from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
 from hedon.statistic.price import price
@@ -121,3 +123,13 @@ def test_births_are_numbered_within_their_window() -> None:
     assert birth_number(tree, 10, late=False).tolist() == [0, 0, 0, 1, 2, 3, 4, 5]
     # Windows of 11 steps have five births and one.
     assert birth_number(tree, 11, late=True).tolist() == [0, 0, 1, 2, 3, 4, 5, 0]
+
+
+def test_who_died_before_its_window_ended_never_had_a_genome_of_its_own() -> None:
+    law = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=10.0, frozen=False, window=10, late=True)
+    #                 founder  lives on  dies first  its child  too late to know
+    tree = Genealogy(np.array([-1, 0, 0, 2, 1]), np.array([0, 3, 3, 5, 21]), np.array([ALIVE, 30, 10, ALIVE, ALIVE]), 0)
+    assert is_mutated(tree, law, last_step=25).tolist() == [False, True, False, False, False]
+    assert is_mutated(tree, law, last_step=30).tolist() == [False, True, False, False, True]
+    at_birth = dataclasses.replace(law, late=False)
+    assert is_mutated(tree, at_birth, last_step=25).tolist() == [False, True, True, True, True]

@@ -164,6 +164,20 @@ def lineages(
     return values
 
 
+def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.bool_]:
+    """Whether an agent's recorded genome is its parent's recorded one and a mutation; False for founders, shape (n,).
+
+    Where genomes are drawn at a window's end, an agent that died in the window of its birth never had one of its own, and
+    one born in a window that goes on has none yet.
+    """
+    born = tree.parent >= 0
+    if not law.late:
+        return born
+    end = -(-tree.birth // law.window) * law.window
+    has = ~born | ((tree.death > end) & (end <= last_step))
+    return born & has & has[tree.parent]
+
+
 def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
     """Numbers births so that those with equal frozen noise have equal numbers.
 

@@ -15,6 +15,7 @@ from scipy import stats
 
 from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.descent.walk import is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
 
@@ -78,7 +79,8 @@ def births_of(world: WorldRecord) -> Births:
     agents = world.agents
     tree = genealogy(agents)
     lived, _ = durations(agents, world.last_step)
-    child = np.flatnonzero((tree.parent >= 0) & (tree.birth <= KNOWN * world.last_step))
+    mutated = is_mutated(tree, mutation_law(world.config), world.last_step)
+    child = np.flatnonzero(mutated & (tree.birth <= KNOWN * world.last_step))
     genome = agents.select(world.weight_names).to_numpy().astype(np.float64)
     gained = agents["energy_gained"].to_numpy().astype(np.float64)
     outcome = np.stack([gained / np.maximum(lived, YOUNG), lived, agents["children"].to_numpy()], axis=1)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import genealogy
-from hedon.analysis.descent.walk import birth_number, mutation_law
+from hedon.analysis.descent.walk import birth_number, is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
 
 Floats = NDArray[np.float64]
@@ -79,11 +79,7 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
     agents = world.agents.head(int(whole))
     tree = genealogy(agents)
     law = mutation_law(world.config)
-    inherited = np.ones(tree.size, bool)
-    if law.late:  # who died in the window of its birth never got a genome, and a window that goes on gave none yet
-        end = -(-tree.birth // law.window) * law.window
-        inherited = (tree.parent < 0) | ((tree.death > end) & (end <= world.last_step))
-    child = np.flatnonzero((tree.parent >= 0) & inherited & inherited[tree.parent])
+    child = np.flatnonzero(is_mutated(tree, law, world.last_step))
     weights = agents[weight].to_numpy().astype(np.float64)
     limit = world.config.genome.weight_limit
     clipped = np.abs(weights[child]) >= limit * (1.0 - _NEAR)
