@@ -167,8 +167,8 @@ def lineages(
 def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.bool_]:
     """Whether an agent's recorded genome is its parent's recorded one and a mutation; False for founders, shape (n,).
 
-    Where genomes are drawn at a window's end, an agent that died in the window of its birth never had one of its own, and
-    one born in a window that goes on has none yet.
+    Where genomes are drawn at a window's end, an agent that died in the window of its birth never had one of its own,
+    and one born in a window that goes on has none yet.
     """
     born = tree.parent >= 0
     if not law.late:
