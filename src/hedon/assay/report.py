@@ -67,7 +67,7 @@ def write_assay(
     summary = json.dumps(plain({**head, **content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
     title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
     lines = [f"# {title}", "", intro, "", f"![{title}]({kind}.png)", ""]
-    for each in tables:
+    for each in (table for table in tables if table.shown):
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n"}
     try:
