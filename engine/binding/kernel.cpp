@@ -53,25 +53,25 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
     type.get()[i] = static_cast<float>(circle_type.data()[i]);
     all.get()[i] = static_cast<int32_t>(i);
   }
-  const RayScene scene = {x.get(),
-                          y.get(),
-                          radius.get(),
-                          type.get(),
-                          ax.get(),
-                          ay.get(),
-                          bx.get(),
-                          by.get(),
-                          static_cast<int32_t>(segments.shape(0)),
-                          static_cast<float>(wall_type)};
-  // For an eye at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
+  const RayTargets targets = {x.get(),
+                              y.get(),
+                              radius.get(),
+                              type.get(),
+                              ax.get(),
+                              ay.get(),
+                              bx.get(),
+                              by.get(),
+                              static_cast<int32_t>(segments.shape(0)),
+                              static_cast<float>(wall_type)};
+  // For an fan at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
   const Aligned<float> next(HIDDEN * HIDDEN);
-  const Eye eye = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(), sine.get(), static_cast<int32_t>(rays),
-                   start, length, -1,   1.0f, 0.0f,         {},         {next.get(), HIDDEN}};
-  const int32_t sighted_circles = static_cast<int32_t>(count);
-  const Sighted sighted = {{all.get(), all.get()}, {sighted_circles, sighted_circles}};
+  const RayFan fan = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(), sine.get(), static_cast<int32_t>(rays),
+                      start, length, -1,   1.0f, 0.0f,         {},         {next.get(), HIDDEN}};
+  const int32_t candidate_count = static_cast<int32_t>(count);
+  const RayCandidates candidates = {{all.get(), all.get()}, {candidate_count, candidate_count}};
   alignas(64) float reading[PACKED_RAYS];
   uint8_t hit[PACKED_RAYS];
-  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(scene, eye, sighted, reading, hit);
+  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(targets, fan, candidates, reading, hit);
   return nb::make_tuple(to_numpy(reading, {rays}), to_numpy(hit, {rays}));
 }
 

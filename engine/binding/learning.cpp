@@ -147,11 +147,11 @@ FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Fl
   const size_t count = packed.shape(0);
   Aligned<PackedObservation> observation(reinterpret_cast<const PackedObservation*>(packed.data()), count);
   Aligned<float> weights(params.data(), params.size());
-  Aligned<float> folded(HIDDEN);
-  Aligned<float> paired(static_cast<size_t>(shape.pairs()));
-  const ActingNetwork network = {weights.get(), folded.get(), rounded ? paired.get() : nullptr};
+  Aligned<float> folded_bias(HIDDEN);
+  Aligned<float> packed_weights(static_cast<size_t>(shape.pairs()));
+  const ActingNetwork network = {weights.get(), folded_bias.get(), rounded ? packed_weights.get() : nullptr};
   std::vector<float> output(count * OUTPUTS);
-  kernel.derive(shape, network);
+  kernel.pack_weights(shape, network);
   for (size_t i = 0; i < count; ++i) {
     kernel.forward(shape, network, observation.get()[i], output.data() + i * OUTPUTS);
   }

@@ -68,19 +68,19 @@ void restore(PythonSimulation& self, int index, const nb::dict& arrays) {
 
 nb::dict take_rows(PythonSimulation& self, int index) {
   World& from = self.world(index);
-  const int32_t waiting = std::clamp(from.clock().event_count, 0, from.shape->events);
+  const int32_t waiting = std::clamp(from.head().event_count, 0, from.shape->events);
   std::vector<int64_t> rows(static_cast<size_t>(waiting));
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
   nb::dict out =
       columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
-  from.clock().event_count = 0;
+  from.head().event_count = 0;
   return out;
 }
 
 nb::dict living_rows(PythonSimulation& self, int index) {
   const World& from = self.slotted(index);
   std::vector<int64_t> rows;
-  for (int32_t i = 0; i < from.clock().living_count; ++i) rows.push_back(from.state.living[i]);
+  for (int32_t i = 0; i < from.head().living_count; ++i) rows.push_back(from.state.living[i]);
   return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
 }
 
@@ -89,7 +89,7 @@ nb::object observations(PythonSimulation& self, int index) {
   World& from = self.slotted(index);
   const FloatMode mode(self.get().flush());
   const ObservationShape& shape = from.shape->network.observation;
-  const size_t count = static_cast<size_t>(from.clock().living_count), size = static_cast<size_t>(shape.size());
+  const size_t count = static_cast<size_t>(from.head().living_count), size = static_cast<size_t>(shape.size());
   std::vector<float> full(count * size);
   gather_scene(from);
   for (size_t i = 0; i < count; ++i) {
@@ -124,7 +124,7 @@ void set_genomes(PythonSimulation& self, int index,
   const World& from = self.slotted(index);
   const size_t genes = static_cast<size_t>(from.shape->genome.size());
   const float limit = from.config->genome.weight_limit;
-  if (genomes.shape(0) != static_cast<size_t>(from.clock().living_count) || genomes.shape(1) != genes)
+  if (genomes.shape(0) != static_cast<size_t>(from.head().living_count) || genomes.shape(1) != genes)
     throw nb::value_error("there must be one genome for each living agent, with all genes");
   for (size_t i = 0; i < genomes.shape(0) * genes; ++i) {
     if (!(std::fabs(genomes.data()[i]) <= limit)) throw nb::value_error("genes must be within ± weight_limit");
@@ -208,12 +208,10 @@ void bind_simulation(nb::module_& module) {
           nb::sig("def view(self, world: int, path: str) -> numpy.typing.NDArray[typing.Any]"),
           "One array of a world's state, by slot.")
       .def("view_names", &state_names, "Paths that `view` knows.")
-      .def("poke", &poke_state, nb::arg("world"), nb::arg("path"), nb::arg("index"), nb::arg("value"),
-           "For tests: overwrites one number of a world's state, as a memory error would.")
       .def(
           "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
       .def(
-          "clock", [](S& s, int world) { return to_dict(s.world(world).clock()); }, nb::arg("world"))
+          "head", [](S& s, int world) { return to_dict(s.world(world).head()); }, nb::arg("world"))
       .def(
           "digest",
           [](S& s, int world) {

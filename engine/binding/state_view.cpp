@@ -14,7 +14,7 @@ namespace {
 bool is_by_slot(const std::string& name) {
   static const std::set<std::string> names = {
       "alive",          "living",       "free",          "eaten",   "genome", "touch",    "params", "folded_bias",
-      "paired_weights", "first_moment", "second_moment", "updates", "action", "log_prob", "value",  "reward"};
+      "packed_weights", "first_moment", "second_moment", "updates", "action", "log_prob", "value",  "reward"};
   return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
 }
 
@@ -22,18 +22,18 @@ bool is_by_slot(const std::string& name) {
 
 nb::object view_state(nb::handle self, int index, const std::string& path) {
   World& world = nb::cast<PythonSimulation&>(self).world(index);
-  const size_t slots = static_cast<size_t>(world.shape->slots);
+  const size_t capacity = static_cast<size_t>(world.shape->capacity);
   nb::object out;
   for_each_array(world.state, "", [&]<class T>(const std::string& name, Array<T>& array) {
     const size_t count = static_cast<size_t>(array.count);
     if constexpr (std::is_arithmetic_v<T>) {
       if (name != path) return;
-      const bool table = is_by_slot(name) && count != slots;
-      const size_t shape[2] = {table ? slots : count, table ? count / slots : 1};
+      const bool table = is_by_slot(name) && count != capacity;
+      const size_t shape[2] = {table ? capacity : count, table ? count / capacity : 1};
       out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, table ? 2 : 1, shape, self));
     } else if constexpr (std::is_same_v<T, PackedObservation>) {
       if (name != path) return;
-      const size_t shape[3] = {slots, count / slots, sizeof(T)};
+      const size_t shape[3] = {capacity, count / capacity, sizeof(T)};
       out =
           nb::cast(nb::ndarray<nb::numpy, const uint8_t>(reinterpret_cast<const uint8_t*>(array.data), 3, shape, self));
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
@@ -49,27 +49,6 @@ nb::object view_state(nb::handle self, int index, const std::string& path) {
   });
   if (!out.is_valid()) throw nb::key_error(("no array named '" + path + "' in the state").c_str());
   return out;
-}
-
-void poke_state(PythonSimulation& self, int index, const std::string& path, int64_t at, double value) {
-  bool known = false;
-  const auto write = [&]<class T>(T& number) {
-    number = static_cast<T>(value);
-    known = true;
-  };
-  for_each_array(self.world(index).state, "", [&]<class T>(const std::string& name, Array<T>& array) {
-    if (at < 0 || at >= array.count) return;
-    if constexpr (std::is_arithmetic_v<T>) {
-      if (name == path) write(array[at]);
-    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
-      T::for_each_field([&](const char* column, auto member) {
-        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(array[at].*member)>>) {
-          if (name + "." + column == path) write(array[at].*member);
-        }
-      });
-    }
-  });
-  if (!known) throw nb::key_error(("no number '" + path + "' with this index in the state").c_str());
 }
 
 nb::list state_names(PythonSimulation& self) {

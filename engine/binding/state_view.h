@@ -17,7 +17,4 @@ nanobind::object view_state(nanobind::handle self, int index, const std::string&
 /// The paths that `view_state` knows.
 nanobind::list state_names(PythonSimulation& self);
 
-/// Overwrites one number of the state, as a memory error would: for tests of the checks that find it.
-void poke_state(PythonSimulation& self, int index, const std::string& path, int64_t at, double value);
-
 }  // namespace hedon

@@ -25,56 +25,56 @@ HEDON_INLINE void take_hit(RayLanes& rays, LaneMask hit, Lanes from_center, Lane
   rays.distance = smaller(candidate, rays.distance);
 }
 
-/// A ray misses a circle whose far side is before the ray's start, or, by the eye's `edge`, whose near side is. There
+/// A ray misses a circle whose far side is before the ray's start, or, by the fan's `edge`, whose near side is. There
 /// is no branch, because branch prediction for 16 rays would often fail. Memory is idle here, so each circle prefetches
 /// a row of the data that is read `next`.
-HEDON_INLINE void cast_at_circles(const RayScene& scene, const Eye& eye, const int32_t* circle, int32_t circles,
+HEDON_INLINE void cast_at_circles(const RayTargets& targets, const RayFan& fan, const int32_t* circle, int32_t circles,
                                   const Rows& next, int32_t first_row, RayLanes& rays) {
-  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), zero = broadcast(0.0f);
-  const Lanes edge = broadcast(eye.edge);
-  const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y);
+  const Lanes start = broadcast(fan.start), length = broadcast(fan.length), zero = broadcast(0.0f);
+  const Lanes edge = broadcast(fan.edge);
+  const Lanes center_x = broadcast(fan.x), center_y = broadcast(fan.y);
   for (int32_t i = 0; i < circles; ++i) {
     const int32_t at = circle[i];
     ask_for(next.first + (first_row + i % ROWS_PER_ARC) * next.width, next.width);
-    const Lanes x = broadcast(scene.circle_x[at]) - eye_x;
-    const Lanes y = broadcast(scene.circle_y[at]) - eye_y;
-    const Lanes radius = broadcast(scene.circle_radius[at]);
+    const Lanes x = broadcast(targets.circle_x[at]) - center_x;
+    const Lanes y = broadcast(targets.circle_y[at]) - center_y;
+    const Lanes radius = broadcast(targets.circle_radius[at]);
     const Lanes aside = rays.direction_x * y - rays.direction_y * x;
     const Lanes squared = radius * radius - aside * aside;
     const Lanes along = multiply_add(rays.direction_x, x, rays.direction_y * y);
     const Lanes half_chord = square_root(larger(zero, squared));
     const LaneMask hit = both(zero <= squared, start <= multiply_add(edge, half_chord, along));
-    take_hit(rays, hit, along - half_chord, start, length, broadcast(scene.circle_type[at]));
+    take_hit(rays, hit, along - half_chord, start, length, broadcast(targets.circle_type[at]));
   }
 }
 
 /// As bits: which of the 16 segments from `first` on an arc may hit. It surely misses a segment that lies behind one of
 /// its edges, or whose whole line is out of reach.
-HEDON_INLINE uint32_t segments_ahead(const RayScene& scene, const Eye& eye, const Arc& arc, int32_t first) {
-  const Lanes eye_x = broadcast(eye.x), eye_y = broadcast(eye.y), zero = broadcast(0.0f);
-  const Lanes reach = broadcast(eye.start + eye.length);
-  const Lanes ax = load(scene.segment_ax + first) - eye_x, ay = load(scene.segment_ay + first) - eye_y;
-  const Lanes bx = load(scene.segment_bx + first) - eye_x, by = load(scene.segment_by + first) - eye_y;
+HEDON_INLINE uint32_t segments_ahead(const RayTargets& targets, const RayFan& fan, const Arc& arc, int32_t first) {
+  const Lanes center_x = broadcast(fan.x), center_y = broadcast(fan.y), zero = broadcast(0.0f);
+  const Lanes reach = broadcast(fan.start + fan.length);
+  const Lanes ax = load(targets.segment_ax + first) - center_x, ay = load(targets.segment_ay + first) - center_y;
+  const Lanes bx = load(targets.segment_bx + first) - center_x, by = load(targets.segment_by + first) - center_y;
   const Lanes right_x = broadcast(arc.right_x), right_y = broadcast(arc.right_y);
   const Lanes left_x = broadcast(arc.left_x), left_y = broadcast(arc.left_y);
   const LaneMask right_of_it = both(right_x * ay - right_y * ax < zero, right_x * by - right_y * bx < zero);
   const LaneMask left_of_it = both(ax * left_y - ay * left_x < zero, bx * left_y - by * left_x < zero);
   const Lanes area = ax * by - ay * bx, length_x = bx - ax, length_y = by - ay;
   const LaneMask beyond = reach * reach * multiply_add(length_x, length_x, length_y * length_y) < area * area;
-  const int32_t count = scene.segments - first;
+  const int32_t count = targets.segments - first;
   const uint32_t asked = count < 16 ? (1u << count) - 1u : 0xFFFFu;
   return asked & ~(to_bits(right_of_it) | to_bits(left_of_it) | to_bits(beyond));
 }
 
 /// Segments are made longer by a millionth, so that no ray passes between two that meet.
-HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const Arc& arc, RayLanes& rays) {
-  const Lanes start = broadcast(eye.start), length = broadcast(eye.length), nearest = broadcast(eye.nearest);
-  const Lanes type = broadcast(scene.segment_type);
-  for (int32_t first = 0; first < scene.segments; first += 16) {
-    for (uint32_t bits = segments_ahead(scene, eye, arc, first); bits != 0; bits &= bits - 1) {
+HEDON_INLINE void cast_at_segments(const RayTargets& targets, const RayFan& fan, const Arc& arc, RayLanes& rays) {
+  const Lanes start = broadcast(fan.start), length = broadcast(fan.length), nearest = broadcast(fan.nearest);
+  const Lanes type = broadcast(targets.segment_type);
+  for (int32_t first = 0; first < targets.segments; first += 16) {
+    for (uint32_t bits = segments_ahead(targets, fan, arc, first); bits != 0; bits &= bits - 1) {
       const int32_t at = first + lowest_bit(bits);
-      const float ax = scene.segment_ax[at] - eye.x, ay = scene.segment_ay[at] - eye.y;
-      const float ex = scene.segment_bx[at] - eye.x - ax, ey = scene.segment_by[at] - eye.y - ay;
+      const float ax = targets.segment_ax[at] - fan.x, ay = targets.segment_ay[at] - fan.y;
+      const float ex = targets.segment_bx[at] - fan.x - ax, ey = targets.segment_by[at] - fan.y - ay;
       const Lanes across = rays.direction_x * broadcast(ey) - rays.direction_y * broadcast(ex);
       const Lanes inverse = broadcast(1.0f) / across;
       const Lanes part = (broadcast(ax) * rays.direction_y - broadcast(ay) * rays.direction_x) * inverse;
@@ -86,18 +86,19 @@ HEDON_INLINE void cast_at_segments(const RayScene& scene, const Eye& eye, const 
 }
 
 /// See `Kernel::cast_rays`.
-HEDON_FN void cast_rays(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type) {
-  const Lanes forward_x = broadcast(eye.forward_x), forward_y = broadcast(eye.forward_y);
-  const Lanes zero = broadcast(0.0f), length = broadcast(eye.length);
+HEDON_FN void cast_rays(const RayTargets& targets, const RayFan& fan, const RayCandidates& candidates, float* reading,
+                        uint8_t* type) {
+  const Lanes forward_x = broadcast(fan.forward_x), forward_y = broadcast(fan.forward_y);
+  const Lanes zero = broadcast(0.0f), length = broadcast(fan.length);
   for (int32_t a = 0; a < RAY_ARCS; ++a) {
     Lanes readings = zero, types = zero;
-    if (a < eye.arcs()) {
-      const Lanes cosine = load(eye.ray_cosine + a * 16), sine = load(eye.ray_sine + a * 16);
+    if (a < fan.arcs()) {
+      const Lanes cosine = load(fan.ray_cosine + a * 16), sine = load(fan.ray_sine + a * 16);
       RayLanes rays{cosine * forward_x - sine * forward_y, cosine * forward_y + sine * forward_x, broadcast(NOTHING),
                     zero};
-      cast_at_circles(scene, eye, sighted.circle[a], sighted.circles[a], eye.next, a * ROWS_PER_ARC, rays);
-      cast_at_segments(scene, eye, eye.arc[a], rays);
-      const LaneMask found = both(rays.distance <= length, first_lanes(eye.rays - a * 16));
+      cast_at_circles(targets, fan, candidates.circle[a], candidates.circles[a], fan.next, a * ROWS_PER_ARC, rays);
+      cast_at_segments(targets, fan, fan.arc[a], rays);
+      const LaneMask found = both(rays.distance <= length, first_lanes(fan.rays - a * 16));
       readings = select(found, broadcast(2.0f) - rays.distance / length, zero);
       types = select(found, rays.type, zero);
     }

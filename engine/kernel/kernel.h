@@ -37,7 +37,7 @@ struct PpoLoss {
 };
 
 /// Circles and segments that rays may hit. Arrays are aligned to 64 bytes and readable to the next multiple of 16.
-struct RayScene {
+struct RayTargets {
   const float* circle_x;  ///< [u]
   const float* circle_y;
   const float* circle_radius;
@@ -64,7 +64,7 @@ struct Arc {
 };
 
 /// The rays of one agent, from the right to the left.
-struct Eye {
+struct RayFan {
   float x, y;                  ///< the agent's center [u]
   float forward_x, forward_y;  ///< its heading, a unit vector
   const float* ray_cosine;     ///< of each ray's angle to the heading; (32), entries past `rays` repeat the last
@@ -82,7 +82,7 @@ struct Eye {
 };
 
 /// Indices of the circles that the rays of each arc may hit. Each list has room for all circles and 16 more.
-struct Sighted {
+struct RayCandidates {
   int32_t* circle[RAY_ARCS];
   int32_t circles[RAY_ARCS];
 };
@@ -90,8 +90,8 @@ struct Sighted {
 struct Kernel {
   const char* name;
 
-  /// Pairs the weights, unless `network.paired` is null, and folds the bias. Call it when parameters change.
-  void (*derive)(const NetworkShape& shape, const ActingNetwork& network);
+  /// Pairs the weights, unless `network.packed_weights` is null, and folds the bias. Call it when parameters change.
+  void (*pack_weights)(const NetworkShape& shape, const ActingNetwork& network);
 
   /// Mean (2) and value (1) for one observation.
   void (*forward)(const NetworkShape& shape, const ActingNetwork& network, const PackedObservation& observation,
@@ -109,12 +109,14 @@ struct Kernel {
                     const Learner& learner);
 
   /// Appends those of the circles [first, last) that each arc may touch, in order. No ray can hit those left out.
-  void (*cull_circles)(const RayScene& scene, const Eye& eye, int32_t first, int32_t last, Sighted& sighted);
+  void (*cull_circles)(const RayTargets& targets, const RayFan& fan, int32_t first, int32_t last,
+                       RayCandidates& candidates);
 
-  /// Nearest hit of each ray among the sighted circles and all segments: `reading` = 2 - d / length (that is, the
-  /// observed reading + 1) and `type`; both are 0 if nothing is hit. Both have PACKED_RAYS entries, 0 past the eye's
+  /// Nearest hit of each ray among the candidates circles and all segments: `reading` = 2 - d / length (that is, the
+  /// observed reading + 1) and `type`; both are 0 if nothing is hit. Both have PACKED_RAYS entries, 0 past the fan's
   /// rays; `reading` is aligned to 64 bytes. Of equal distances the first counts, circles before segments.
-  void (*cast_rays)(const RayScene& scene, const Eye& eye, const Sighted& sighted, float* reading, uint8_t* type);
+  void (*cast_rays)(const RayTargets& targets, const RayFan& fan, const RayCandidates& candidates, float* reading,
+                    uint8_t* type);
 
   /// Multiply-adds in registers, to measure this processor's peak rate. Reads a factor (below 1) from `result` and
   /// writes there a number that depends on all of them. Returns the number of floating-point operations.

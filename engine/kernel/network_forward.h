@@ -28,10 +28,10 @@ struct PlainRows {
 };
 
 /// Rows of 64 weights in pairs: each one with the one 16 columns further.
-struct PairedRows {
+struct PackedRows {
   const float* first;
 
-  HEDON_INLINE PairedRows after(int row) const { return {first + row * (HIDDEN / 2)}; }
+  HEDON_INLINE PackedRows after(int row) const { return {first + row * (HIDDEN / 2)}; }
 
   template <int C>
   HEDON_INLINE void read(int row, int column, Lanes* to) const {
@@ -82,9 +82,9 @@ HEDON_INLINE void multiply(const float* a, const Matrix& b, int rows, int inner,
   }
 }
 
-/// See `ActingNetwork::folded`. w1   the rows that will be read
+/// See `ActingNetwork::folded_bias`. w1   the rows that will be read
 template <class Matrix>
-HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Matrix& w1, float* folded) {
+HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Matrix& w1, float* folded_bias) {
   Lanes bias[WIDTH], row[WIDTH];
   PlainRows{b1}.read<WIDTH>(0, 0, bias);
   const ObservationShape& sizes = shape.observation;
@@ -95,21 +95,21 @@ HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Ma
       unroll<WIDTH>([&](auto c) HEDON_INLINED { bias[c] = bias[c] - row[c]; });
     }
   }
-  unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded + c * LANES, bias[c]); });
+  unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded_bias + c * LANES, bias[c]); });
 }
 
-/// See `Kernel::derive`.
-HEDON_FN void derive(const NetworkShape& shape, const ActingNetwork& network) {
+/// See `Kernel::pack_weights`.
+HEDON_FN void pack_weights(const NetworkShape& shape, const ActingNetwork& network) {
   const float* const b1 = network.params + shape.b1();
-  if (network.paired == nullptr) {
-    fold_bias(shape, b1, PlainRows{network.params + shape.w1()}, network.folded);
+  if (network.packed_weights == nullptr) {
+    fold_bias(shape, b1, PlainRows{network.params + shape.w1()}, network.folded_bias);
     return;
   }
   for (int32_t pair = 0; pair < shape.pairs(); pair += LANES) {
     const float* const first = network.params + 2 * pair;
-    for (int i = 0; i < LANES; ++i) network.paired[pair + i] = pair_weights(first[i], first[LANES + i]);
+    for (int i = 0; i < LANES; ++i) network.packed_weights[pair + i] = pair_weights(first[i], first[LANES + i]);
   }
-  fold_bias(shape, b1, PairedRows{network.paired}.after(shape.w1() / HIDDEN), network.folded);
+  fold_bias(shape, b1, PackedRows{network.packed_weights}.after(shape.w1() / HIDDEN), network.folded_bias);
 }
 
 /// Whether ray r hit the same type in all S observations. Observations of neighboring steps mostly agree, so the branch
@@ -126,12 +126,12 @@ HEDON_INLINE bool same_type(const PackedObservation* const* observation, int32_t
 /// that all of them read is loaded only once.
 /// hidden   (S, 64), after the tanh
 template <int S, class Matrix>
-HEDON_INLINE void first_layer(const NetworkShape& shape, const Matrix& w1, const float* folded,
+HEDON_INLINE void first_layer(const NetworkShape& shape, const Matrix& w1, const float* folded_bias,
                               const PackedObservation* const* observation, float* hidden) {
   const ObservationShape& sizes = shape.observation;
   Lanes total[S][WIDTH];
   unroll<S>([&](auto s) HEDON_INLINED {
-    unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = load(folded + c * LANES); });
+    unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = load(folded_bias + c * LANES); });
   });
   const auto add_row = [&](auto s, float x, const Lanes* row) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = multiply_add(broadcast(x), row[c], total[s][c]); });
@@ -197,7 +197,7 @@ HEDON_INLINE void forward_by(const NetworkShape& shape, const ActingNetwork& net
   alignas(64) float hidden2[HIDDEN];
   const PackedObservation* one = &observation;
   const float* const bias = network.params + shape.b2();
-  first_layer<1>(shape, weights.after(shape.w1() / HIDDEN), network.folded, &one, hidden1);
+  first_layer<1>(shape, weights.after(shape.w1() / HIDDEN), network.folded_bias, &one, hidden1);
   multiply<1, Shape::forward_lanes, HIDDEN, 1>(
       hidden1, weights.after(shape.w2() / HIDDEN), 1, HIDDEN,
       [&](int, int column) HEDON_INLINED { return load(bias + column); },
@@ -209,10 +209,10 @@ HEDON_INLINE void forward_by(const NetworkShape& shape, const ActingNetwork& net
 template <class Shape>
 HEDON_FN void forward(const NetworkShape& shape, const ActingNetwork& network, const PackedObservation& observation,
                       float* output) {
-  if (network.paired == nullptr) {
+  if (network.packed_weights == nullptr) {
     forward_by<Shape>(shape, network, PlainRows{network.params}, observation, output);
   } else {
-    forward_by<Shape>(shape, network, PairedRows{network.paired}, observation, output);
+    forward_by<Shape>(shape, network, PackedRows{network.packed_weights}, observation, output);
   }
 }
 

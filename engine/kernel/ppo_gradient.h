@@ -41,16 +41,16 @@ HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params,
     float* hidden = hidden2 + column;
     for (int s = 0; s < count; ++s, hidden += HIDDEN) {
       const Lanes h = load(hidden);
-      Lanes by_hidden = broadcast(block.output[0][s]) * weight[0];
+      Lanes grad_hidden = broadcast(block.output[0][s]) * weight[0];
       total[0] = multiply_add(broadcast(block.output[0][s]), h, total[0]);
       unroll<OUTPUTS - 1>([&](auto o) HEDON_INLINED {
-        const Lanes by_output = broadcast(block.output[o + 1][s]);
-        by_hidden = multiply_add(by_output, weight[o + 1], by_hidden);
-        total[o + 1] = multiply_add(by_output, h, total[o + 1]);
+        const Lanes grad_output = broadcast(block.output[o + 1][s]);
+        grad_hidden = multiply_add(grad_output, weight[o + 1], grad_hidden);
+        total[o + 1] = multiply_add(grad_output, h, total[o + 1]);
       });
-      const Lanes by_sum = by_hidden * (broadcast(1.0f) - h * h);
-      bias = bias + by_sum;
-      store(hidden, by_sum);
+      const Lanes grad_sum = grad_hidden * (broadcast(1.0f) - h * h);
+      bias = bias + grad_sum;
+      store(hidden, grad_sum);
     }
     unroll<OUTPUTS>([&](auto o) HEDON_INLINED { store(gradient + shape.w3() + o * HIDDEN + column, total[o]); });
     store(gradient + shape.b2() + column, bias);
@@ -61,7 +61,7 @@ HEDON_INLINE void heads_backward(const NetworkShape& shape, const float* params,
 /// read. A row that all of them read is loaded and stored once; sums are always in the order of the samples.
 template <int S, int C>
 HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation* const* observation,
-                              const float* by_sum, float* gradient) {
+                              const float* grad_sum, float* gradient) {
   const ObservationShape& sizes = shape.observation;
   Lanes by[S][C];
   Lanes total[C];
@@ -86,7 +86,7 @@ HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation
   };
 
   unroll<S>([&](auto s) HEDON_INLINED {
-    unroll<C>([&](auto c) HEDON_INLINED { by[s][c] = load(by_sum + s * HIDDEN + c * LANES); });
+    unroll<C>([&](auto c) HEDON_INLINED { by[s][c] = load(grad_sum + s * HIDDEN + c * LANES); });
   });
   float* const w1 = gradient + shape.w1();
   for (int32_t r = 0; r < sizes.rays; ++r) {
@@ -115,16 +115,16 @@ HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation
 /// Backward through the first layer for a block.
 template <class Shape>
 HEDON_INLINE void first_layer_backward(const NetworkShape& shape, const PackedObservation* const* observation,
-                                       int count, const float* by_sum, float* gradient) {
+                                       int count, const float* grad_sum, float* gradient) {
   constexpr int S = Shape::row_samples;
   constexpr int C = Shape::row_lanes;
   int s = 0;
   for (; s + S <= count; s += S) {
     for (int column = 0; column < HIDDEN; column += C * LANES) {
-      add_to_rows<S, C>(shape, observation + s, by_sum + s * HIDDEN + column, gradient + column);
+      add_to_rows<S, C>(shape, observation + s, grad_sum + s * HIDDEN + column, gradient + column);
     }
   }
-  for (; s < count; ++s) add_to_rows<1, WIDTH>(shape, observation + s, by_sum + s * HIDDEN, gradient);
+  for (; s < count; ++s) add_to_rows<1, WIDTH>(shape, observation + s, grad_sum + s * HIDDEN, gradient);
 }
 
 /// Forward, loss and backward of one block of at most BLOCK samples.
@@ -139,9 +139,9 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
   const PlainRows w1 = {params + shape.w1()};
   int s = 0;
   for (; s + Shape::samples <= count; s += Shape::samples) {
-    first_layer<Shape::samples>(shape, w1, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+    first_layer<Shape::samples>(shape, w1, memory.folded_bias, observation + s, memory.hidden1 + s * HIDDEN);
   }
-  for (; s < count; ++s) first_layer<1>(shape, w1, memory.folded, observation + s, memory.hidden1 + s * HIDDEN);
+  for (; s < count; ++s) first_layer<1>(shape, w1, memory.folded_bias, observation + s, memory.hidden1 + s * HIDDEN);
   second_layer<Shape>(shape, params, memory.hidden1, count, memory.hidden2);
   const int padded = (count + LANES - 1) / LANES * LANES;
   for (s = 0; s < padded; ++s) {
@@ -175,7 +175,7 @@ template <class Shape>
 HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
                                        const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {
   const PpoScratch memory = split_scratch(scratch);
-  fold_bias(shape, params + shape.b1(), PlainRows{params + shape.w1()}, memory.folded);
+  fold_bias(shape, params + shape.b1(), PlainRows{params + shape.w1()}, memory.folded_bias);
   transpose(params + shape.w2(), HIDDEN, memory.w2_transposed);
   for (int32_t i = 0; i < shape.size(); i += LANES) store(gradient + i, broadcast(0.0f));
 

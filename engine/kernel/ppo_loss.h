@@ -56,12 +56,12 @@ HEDON_INLINE void loss_of_lanes(const LossConstants& constants, BlockSamples& bl
   const LaneMask is_clipped = clipped < free;
   const Lanes zero = broadcast(0.0f);
   sums.policy = sums.policy - share * select(is_clipped, clipped, free);
-  const Lanes by_log_prob = zero - share * select(is_clipped, zero, free);
+  const Lanes grad_log_prob = zero - share * select(is_clipped, zero, free);
   unroll<ACTIONS>([&](auto d) HEDON_INLINED {
-    const Lanes by_mean = by_log_prob * scaled[d] * constants.sd_inverse[d];
-    store(block.output[d] + at, by_mean);
-    sums.bias[d] = sums.bias[d] + by_mean;
-    sums.log_sd[d] = sums.log_sd[d] + by_log_prob * (scaled[d] * scaled[d] - broadcast(1.0f));
+    const Lanes grad_mean = grad_log_prob * scaled[d] * constants.sd_inverse[d];
+    store(block.output[d] + at, grad_mean);
+    sums.bias[d] = sums.bias[d] + grad_mean;
+    sums.log_sd[d] = sums.log_sd[d] + grad_log_prob * (scaled[d] * scaled[d] - broadcast(1.0f));
   });
 
   const Lanes target = load(block.target + at);
@@ -74,9 +74,9 @@ HEDON_INLINE void loss_of_lanes(const LossConstants& constants, BlockSamples& bl
     const Lanes spread = target - constants.target_mean;
     sums.value = sums.value + half * (spread * spread);
   }
-  const Lanes by_value = constants.value_coef * share * error;
-  store(block.output[ACTIONS] + at, by_value);
-  sums.bias[ACTIONS] = sums.bias[ACTIONS] + by_value;
+  const Lanes grad_value = constants.value_coef * share * error;
+  store(block.output[ACTIONS] + at, grad_value);
+  sums.bias[ACTIONS] = sums.bias[ACTIONS] + grad_value;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ inline constexpr int BLOCK = 64;  ///< samples that go through the network toget
 
 /// Parts of the scratch memory, each a multiple of 16 floats.
 struct PpoScratch {
-  float* folded;         ///< (64), the first bias with the -1 of the rays folded in
+  float* folded_bias;    ///< (64), the first bias with the -1 of the rays folded_bias in
   float* w2_transposed;  ///< (64, 64)
   float* hidden1;        ///< (BLOCK, 64); later the derivative of the loss with respect to the first layer's sums
   float* hidden2;        ///< (BLOCK, 64); the same for the second layer

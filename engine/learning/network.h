@@ -30,11 +30,12 @@ struct NetworkShape {
   }  ///< of all before b2: rows of 64 at the same places as in the parameters; b1 is not used
 };
 
-/// What an agent acts with: its parameters, and the data that `Kernel::derive` computes from them.
+/// What an agent acts with: its parameters, and the data that `Kernel::pack_weights` computes from them.
 struct ActingNetwork {
   const float* params;
-  float* folded;  ///< (64) b1, less the -1 that all ray channels read: folded[j] = b1[j] - sum of w1[row, j] over rays
-  float* paired;  ///< (pairs) w1 and w2 rounded, see `weight_pair.h`; null if agents act with the parameters
+  float* folded_bias;  ///< (64) b1, less the -1 that all ray channels read: folded_bias[j] = b1[j] - sum of w1[row, j]
+                       ///< over rays
+  float* packed_weights;  ///< (pairs) w1 and w2 rounded, see `weight_pair.h`; null if agents act with the parameters
 };
 
 }  // namespace hedon

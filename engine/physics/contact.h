@@ -21,7 +21,7 @@ struct alignas(16) Motion {
 
 /// Two bodies that overlap.
 struct BodyContact {
-  int32_t first, second;     ///< places
+  int32_t first, second;     ///< indices
   float normal_x, normal_y;  ///< unit vector from the first center to the second
   float arm;                 ///< [u]
   float turn;                ///< change of angular velocity per tangential impulse [1/u]
@@ -34,7 +34,7 @@ struct BodyContact {
 
 /// A body that overlaps a static circle or a wall.
 struct StaticContact {
-  int32_t body;              ///< place
+  int32_t body;              ///< index
   float anchor_x, anchor_y;  ///< where the body's center would just touch [u]
   float normal_x, normal_y;  ///< unit vector from the body's center to the circle's or to the wall's nearest point
   float arm;                 ///< [u]

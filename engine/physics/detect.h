@@ -8,9 +8,9 @@
 
 namespace hedon {
 
-/// The places and pairs of one batch.
+/// The indices and pairs of one batch.
 struct BatchRange {
-  int32_t first_place, last_place;
+  int32_t first_index, last_index;
   int32_t first_body_pair, last_body_pair;
   int32_t first_circle_pair, last_circle_pair;
   int32_t first_wall_pair, last_wall_pair;

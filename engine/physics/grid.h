@@ -45,7 +45,7 @@ HEDON_FN void remove(const Grid& grid, int32_t item) {
   grid.cell[item] = -1;
 }
 
-/// Inserts an item at a place; removes it from its old cell first.
+/// Inserts an item at a position; removes it from its old cell first.
 HEDON_FN void insert(const Grid& grid, int32_t item, float x, float y) {
   const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
   const int32_t row = cell_along(y, grid.inverse_cell, grid.rows);

@@ -33,11 +33,11 @@ HEDON_FN int32_t batch_count(int32_t bodies) {
   return wanted < 1 ? 1 : (wanted > MAX_BATCHES ? MAX_BATCHES : wanted);
 }
 
-/// Gives each rank its place: batch by batch, and by rank within a batch. Islands go to batches in the order of
+/// Gives each rank its index: batch by batch, and by rank within a batch. Islands go to batches in the order of
 /// their lowest rank, so that the batches have nearly equal work if no single island is larger than its share.
 /// scratch.parent   joined islands
 /// scratch.work     pairs by first rank on entry; overwritten
-HEDON_FN void assign_places(NeighborHead& head, const PhysicsScratch& scratch, int32_t bodies) {
+HEDON_FN void assign_indices(NeighborHead& head, const PhysicsScratch& scratch, int32_t bodies) {
   int64_t total = bodies;
   for (int32_t rank = 0; rank < bodies; ++rank) {
     const int32_t pairs = scratch.work[rank];
@@ -70,7 +70,7 @@ HEDON_FN void assign_places(NeighborHead& head, const PhysicsScratch& scratch, i
     head.batch_start[batch + 1] = next[batch] + size[batch];
   }
   for (int32_t rank = 0; rank < bodies; ++rank) {
-    scratch.new_place[rank] = next[scratch.batch[find_root(scratch.parent, rank)]]++;
+    scratch.new_index[rank] = next[scratch.batch[find_root(scratch.parent, rank)]]++;
   }
 }
 

@@ -106,11 +106,11 @@ HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impul
     const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[contact.body]));
     apply(contact, added.normal, added.tangent, change[contact.body]);
   }
-  for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
-    motion[place].x += change[place].x;
-    motion[place].y += change[place].y;
-    motion[place].angular += change[place].angular;
-    change[place] = {};
+  for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+    motion[index].x += change[index].x;
+    motion[index].y += change[index].y;
+    motion[index].angular += change[index].angular;
+    change[index] = {};
   }
 }
 
@@ -159,10 +159,10 @@ HEDON_FN void correct_positions_at_once(const Batch& batch, const JacobiContacts
     const float separation = dot(anchor - position[contact.body], normal);
     apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.body]);
   }
-  for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
-    position[place].x += change[place].x;
-    position[place].y += change[place].y;
-    change[place] = {};
+  for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+    position[index].x += change[index].x;
+    position[index].y += change[index].y;
+    change[index] = {};
   }
 }
 
@@ -203,32 +203,32 @@ struct JacobiSolver {
   /// Damps the velocities, then limits them: changes by contacts in this substep are not limited.
   HEDON_FN static void damp(const Batch& batch) {
     const SolverConstants& c = batch.c;
-    for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
-      Motion& motion = batch.scratch.motion[place];
+    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+      Motion& motion = batch.scratch.motion[index];
       motion.x = clamp(motion.x * c.linear_decay, -c.max_speed, c.max_speed);
       motion.y = clamp(motion.y * c.linear_decay, -c.max_speed, c.max_speed);
       motion.angular = clamp(motion.angular * c.angular_decay, -c.max_angular_speed, c.max_angular_speed);
-      batch.scratch.change[place] = {};
+      batch.scratch.change[index] = {};
     }
   }
 
   HEDON_FN static void move(const Batch& batch) {
     const PhysicsScratch& scratch = batch.scratch;
-    for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
-      scratch.position[place].x += scratch.motion[place].x * batch.c.dt;
-      scratch.position[place].y += scratch.motion[place].y * batch.c.dt;
-      scratch.angle[place] += scratch.motion[place].angular * batch.c.dt;
-      keep_inside(batch, place);
+    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+      scratch.position[index].x += scratch.motion[index].x * batch.c.dt;
+      scratch.position[index].y += scratch.motion[index].y * batch.c.dt;
+      scratch.angle[index] += scratch.motion[index].angular * batch.c.dt;
+      keep_inside(batch, index);
     }
   }
 
   /// Puts a body whose center was pushed through an outer wall back onto it. A wall does not push a center that lies
   /// behind it, so the body would leave the arena for good.
-  HEDON_FN static void keep_inside(const Batch& batch, int32_t place) {
+  HEDON_FN static void keep_inside(const Batch& batch, int32_t index) {
     constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
     const PairList& walls = batch.state.neighbors.walls;
-    Vec2& center = batch.scratch.position[place];
-    for (int32_t pair = walls.start[place]; pair < walls.start[place + 1]; ++pair) {
+    Vec2& center = batch.scratch.position[index];
+    for (int32_t pair = walls.start[index]; pair < walls.start[index + 1]; ++pair) {
       if (walls.second[pair] >= batch.state.outer_walls) continue;
       const Segment& wall = batch.state.walls[walls.second[pair]];
       const Vec2 along = wall.b - wall.a;  // the outer walls run clockwise, so the inside is to their right

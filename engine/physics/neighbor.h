@@ -148,13 +148,13 @@ HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape,
   }
 }
 
-/// Moves the candidates into the list, sorted by the place of the first body; the sort is stable.
+/// Moves the candidates into the list, sorted by the index of the first body; the sort is stable.
 /// map(second)   the list's value for a candidate's second
 template <class Map>
-HEDON_FN void fill_list(const PairList& list, const PairBuilder& pairs, const Array<int32_t>& place, int32_t bodies,
+HEDON_FN void fill_list(const PairList& list, const PairBuilder& pairs, const Array<int32_t>& index, int32_t bodies,
                         Map&& map) {
   for (int32_t at = 0; at <= bodies; ++at) list.start[at] = 0;
-  for (int32_t i = 0; i < pairs.count; ++i) ++list.start[place[pairs.found.first[i]]];
+  for (int32_t i = 0; i < pairs.count; ++i) ++list.start[index[pairs.found.first[i]]];
   int32_t sum = 0;
   for (int32_t at = 0; at <= bodies; ++at) {
     const int32_t here = list.start[at];
@@ -162,7 +162,7 @@ HEDON_FN void fill_list(const PairList& list, const PairBuilder& pairs, const Ar
     sum += here;
   }
   for (int32_t i = 0; i < pairs.count; ++i) {
-    const int32_t first = place[pairs.found.first[i]];
+    const int32_t first = index[pairs.found.first[i]];
     const int32_t at = list.start[first]++;
     list.first[at] = first;
     list.second[at] = map(pairs.found.second[i]);
@@ -213,16 +213,16 @@ HEDON_FN void build_neighbors(const PhysicsState& state, const BodyShape& shape,
     for (int32_t i = 0; i < pairs->count; ++i) ++scratch.work[pairs->found.first[i]];
   }
 
-  const auto old_place = [&](int32_t rank) { return list.place[order[rank]]; };
+  const auto old_index = [&](int32_t rank) { return list.index[order[rank]]; };
   bodies.carry_over(list.bodies, [&](int32_t i, int32_t* first, int32_t* second) {
-    const int32_t a = old_place(bodies.found.first[i]), b = old_place(bodies.found.second[i]);
+    const int32_t a = old_index(bodies.found.first[i]), b = old_index(bodies.found.second[i]);
     *first = a < b ? a : b;
     *second = a < b ? b : a;
     return *first >= 0;
   });
   const auto carry_static = [&](PairBuilder& pairs, const PairList& old) {
     pairs.carry_over(old, [&](int32_t i, int32_t* first, int32_t* second) {
-      *first = old_place(pairs.found.first[i]);
+      *first = old_index(pairs.found.first[i]);
       *second = pairs.found.second[i];
       return *first >= 0;
     });
@@ -230,19 +230,19 @@ HEDON_FN void build_neighbors(const PhysicsState& state, const BodyShape& shape,
   carry_static(circles, list.circles);
   carry_static(walls, list.walls);
 
-  for (int32_t place = 0; place < head.bodies; ++place) list.place[list.slot[place]] = -1;
-  assign_places(head, scratch, count);
+  for (int32_t index = 0; index < head.bodies; ++index) list.index[list.slot[index]] = -1;
+  assign_indices(head, scratch, count);
   for (int32_t rank = 0; rank < count; ++rank) {
-    const int32_t place = scratch.new_place[rank], slot = order[rank];
-    list.slot[place] = slot;
-    list.place[slot] = place;
-    list.build_x[place] = state.bodies.x[slot];
-    list.build_y[place] = state.bodies.y[slot];
+    const int32_t index = scratch.new_index[rank], slot = order[rank];
+    list.slot[index] = slot;
+    list.index[slot] = index;
+    list.build_x[index] = state.bodies.x[slot];
+    list.build_y[index] = state.bodies.y[slot];
   }
   const auto same = [](int32_t second) { return second; };
-  fill_list(list.bodies, bodies, scratch.new_place, count, [&](int32_t rank) { return scratch.new_place[rank]; });
-  fill_list(list.circles, circles, scratch.new_place, count, same);
-  fill_list(list.walls, walls, scratch.new_place, count, same);
+  fill_list(list.bodies, bodies, scratch.new_index, count, [&](int32_t rank) { return scratch.new_index[rank]; });
+  fill_list(list.circles, circles, scratch.new_index, count, same);
+  fill_list(list.walls, walls, scratch.new_index, count, same);
   head.skin = skin;
   ++head.builds;
 }

@@ -45,7 +45,7 @@ HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
 
   uint32_t* colors = scratch.colors.data;
   uint8_t* color = scratch.color.data + range.first_body_pair;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) colors[place] = 0;
+  for (int32_t index = range.first_index; index < range.last_index; ++index) colors[index] = 0;
   int32_t next[COLORS + 1] = {};
   for (int32_t i = 0; i < count; ++i) {
     uint32_t& a = colors[first[active[i]]];
@@ -152,7 +152,7 @@ HEDON_FN void apply_restitution(StaticContact* contacts, int32_t count, const So
 }
 
 /// One pass of position correction between bodies: each moves half the distance. The separation is measured between
-/// the present places along the normal of the contact; after the motion of one substep it differs from the true one by
+/// the present indices along the normal of the contact; after the motion of one substep it differs from the true one by
 /// less than the slop. `distance` is the distance of the centers when the bodies touch [u].
 HEDON_FN void correct_positions(const BodyContact* contacts, int32_t count, const SolverConstants& c, float distance,
                                 Vec2* position) {
@@ -179,15 +179,15 @@ HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, co
 
 /// Limits the velocities and moves the bodies by them.
 HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    Motion motion = scratch.motion[place];
+  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+    Motion motion = scratch.motion[index];
     motion.x = clamp(motion.x, -c.max_speed, c.max_speed);
     motion.y = clamp(motion.y, -c.max_speed, c.max_speed);
     motion.angular = clamp(motion.angular, -c.max_angular_speed, c.max_angular_speed);
-    scratch.motion[place] = motion;
-    scratch.position[place].x += motion.x * c.dt;
-    scratch.position[place].y += motion.y * c.dt;
-    scratch.angle[place] += motion.angular * c.dt;
+    scratch.motion[index] = motion;
+    scratch.position[index].x += motion.x * c.dt;
+    scratch.position[index].y += motion.y * c.dt;
+    scratch.angle[index] += motion.angular * c.dt;
   }
 }
 
@@ -199,10 +199,10 @@ struct SequentialSolver {
     const PhysicsScratch& scratch = batch.scratch;
     const SolverConstants& c = batch.c;
     Motion* motion = scratch.motion.data;
-    for (int32_t place = batch.range.first_place; place < batch.range.last_place; ++place) {
-      motion[place].x *= c.linear_decay;
-      motion[place].y *= c.linear_decay;
-      motion[place].angular *= c.angular_decay;
+    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+      motion[index].x *= c.linear_decay;
+      motion[index].y *= c.linear_decay;
+      motion[index].angular *= c.angular_decay;
     }
     const Array<Segment>& walls = batch.state.walls;
     const auto nearest = [&](int32_t wall, Vec2 center) {

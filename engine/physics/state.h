@@ -21,9 +21,9 @@ inline constexpr int MAX_BATCHES = 32;  ///< independent parts of one step, for 
 
 /// Pairs that may touch before the list is built again. Pairs with the same first body are consecutive.
 struct PairList {
-  Array<int32_t> start;          ///< first pair of each body, by place; (bodies + 1)
-  Array<int32_t> first;          ///< place of the first body
-  Array<int32_t> second;         ///< place of the second body, slot of the circle, or index of the wall
+  Array<int32_t> start;          ///< first pair of each body, by index; (bodies + 1)
+  Array<int32_t> first;          ///< index of the first body
+  Array<int32_t> second;         ///< index of the second body, slot of the circle, or index of the wall
   Array<float> normal_impulse;   ///< accumulated, per mass of a body, >= 0 [u/s]
   Array<float> tangent_impulse;  ///< accumulated, per mass of a body [u/s]
   Array<uint8_t> mark;           ///< the visitor's note in this step; cleared when a step begins
@@ -41,23 +41,23 @@ struct NeighborHead {
   int32_t unused;
   int64_t builds;                        ///< so far
   int64_t repeats;                       ///< steps tried again because a body moved too far for the skin
-  int32_t batch_start[MAX_BATCHES + 2];  ///< first place of each batch; the last entry is not used
+  int32_t batch_start[MAX_BATCHES + 2];  ///< first index of each batch; the last entry is not used
 
   HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, unused, builds, repeats, batch_start)
 };
 
-/// The pairs that may touch, and the bodies in the order in which the physics processes them (their *place*).
+/// The pairs that may touch, and the bodies in the order in which the physics processes them (their *index*).
 struct NeighborList {
   Array<NeighborHead> head;  ///< (1)
-  Array<int32_t> slot;       ///< of the body at each place
-  Array<int32_t> place;      ///< of each slot, -1 if it holds no listed body
-  Array<float> build_x;      ///< position of the body at each place at the last build [u]
+  Array<int32_t> slot;       ///< of the body at each index
+  Array<int32_t> index;      ///< of each slot, -1 if it holds no listed body
+  Array<float> build_x;      ///< position of the body at each index at the last build [u]
   Array<float> build_y;
-  PairList bodies;   ///< first and second: places
+  PairList bodies;   ///< first and second: indices
   PairList circles;  ///< second: slot of the circle
   PairList walls;    ///< second: index of the wall
 
-  HEDON_FIELDS(NeighborList, head, slot, place, build_x, build_y, bodies, circles, walls)
+  HEDON_FIELDS(NeighborList, head, slot, index, build_x, build_y, bodies, circles, walls)
 };
 
 struct PhysicsState {
@@ -99,12 +99,12 @@ struct PhysicsScratch {
   Array<int32_t> parent;     ///< union-find over ranks
   Array<int32_t> work;       ///< pairs and bodies of the island, by the rank of its root
   Array<int32_t> batch;      ///< of the island, by the rank of its root
-  Array<int32_t> new_place;  ///< of each rank
-  Array<Vec2> position;      ///< by place [u]
-  Array<Motion> motion;      ///< by place
-  Array<Motion> change;      ///< by place: changes by contacts in a pass of the solver jacobi
-  Array<float> angle;        ///< by place, not wrapped within a step [rad]
-  Array<uint32_t> colors;    ///< by place: colors of the contacts of the body
+  Array<int32_t> new_index;  ///< of each rank
+  Array<Vec2> position;      ///< by index [u]
+  Array<Motion> motion;      ///< by index
+  Array<Motion> change;      ///< by index: changes by contacts in a pass of the solver jacobi
+  Array<float> angle;        ///< by index, not wrapped within a step [rad]
+  Array<uint32_t> colors;    ///< by index: colors of the contacts of the body
   Array<int32_t> active;     ///< pairs of bodies that touch in this substep
   Array<uint8_t> color;      ///< of each of them
   PairScratch bodies;
@@ -114,7 +114,7 @@ struct PhysicsScratch {
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
-  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_place, position, motion, change, angle, colors, active,
+  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_index, position, motion, change, angle, colors, active,
                color, bodies, circles, walls, body_contacts, static_contacts, reports)
 };
 
@@ -194,7 +194,7 @@ void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& v
   NeighborList& list = state.neighbors;
   visit("head", list.head, int64_t{1});
   visit("slot", list.slot, capacity.bodies);
-  visit("place", list.place, capacity.bodies);
+  visit("index", list.index, capacity.bodies);
   visit("build_x", list.build_x, capacity.bodies);
   visit("build_y", list.build_y, capacity.bodies);
   visit_pairs(list.bodies, capacity.bodies, capacity.body_pairs, visit);
@@ -209,7 +209,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit("parent", scratch.parent, capacity.bodies);
   visit("work", scratch.work, capacity.bodies);
   visit("batch", scratch.batch, capacity.bodies);
-  visit("new_place", scratch.new_place, capacity.bodies);
+  visit("new_index", scratch.new_index, capacity.bodies);
   visit("position", scratch.position, capacity.bodies);
   visit("motion", scratch.motion, capacity.bodies);
   visit("change", scratch.change, capacity.bodies);
@@ -239,7 +239,7 @@ HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity)
   set_grid_shape(state, capacity);
   clear_grid(state.body_grid);
   clear_grid(state.circle_grid);
-  for (int64_t slot = 0; slot < state.neighbors.place.count; ++slot) state.neighbors.place[slot] = -1;
+  for (int64_t slot = 0; slot < state.neighbors.index.count; ++slot) state.neighbors.index[slot] = -1;
   state.neighbors.head[0].stale = 1;
 }
 

@@ -30,12 +30,12 @@ HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratc
                          const SolverConstants& c, const BodyForce& force, BatchReport& report, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
   const BodyState& bodies = state.bodies;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    const int32_t slot = list.slot[place];
+  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+    const int32_t slot = list.slot[index];
     const float push_x = force.x[slot], push_y = force.y[slot];
-    scratch.position[place] = {bodies.x[slot], bodies.y[slot]};
-    scratch.angle[place] = bodies.angle[slot];
-    scratch.motion[place] = {bodies.velocity_x[slot] + push_x * c.inverse_mass * c.dt,
+    scratch.position[index] = {bodies.x[slot], bodies.y[slot]};
+    scratch.angle[index] = bodies.angle[slot];
+    scratch.motion[index] = {bodies.velocity_x[slot] + push_x * c.inverse_mass * c.dt,
                              bodies.velocity_y[slot] + push_y * c.inverse_mass * c.dt,
                              bodies.angular_velocity[slot] + force.torque[slot] * c.inverse_inertia * c.dt, 0.0f};
     const float squared_force = push_x * push_x + push_y * push_y;
@@ -57,14 +57,14 @@ HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratc
 /// Writes the result of a successful try back to the body in `slot`, if there is one.
 HEDON_FN void commit_body(const PhysicsState& state, const PhysicsScratch& scratch, int32_t slot) {
   const BodyState& bodies = state.bodies;
-  const int32_t place = state.neighbors.place[slot];
-  if (place < 0) return;
-  bodies.x[slot] = scratch.position[place].x;
-  bodies.y[slot] = scratch.position[place].y;
-  bodies.angle[slot] = wrap_angle(scratch.angle[place]);
-  bodies.velocity_x[slot] = scratch.motion[place].x;
-  bodies.velocity_y[slot] = scratch.motion[place].y;
-  bodies.angular_velocity[slot] = scratch.motion[place].angular;
+  const int32_t index = state.neighbors.index[slot];
+  if (index < 0) return;
+  bodies.x[slot] = scratch.position[index].x;
+  bodies.y[slot] = scratch.position[index].y;
+  bodies.angle[slot] = wrap_angle(scratch.angle[index]);
+  bodies.velocity_x[slot] = scratch.motion[index].x;
+  bodies.velocity_y[slot] = scratch.motion[index].y;
+  bodies.angular_velocity[slot] = scratch.motion[index].angular;
 }
 
 /// Writes back the impulses of a batch's pairs.
@@ -84,8 +84,8 @@ HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scra
 /// Largest squared distance of a batch's bodies from their positions at the last build; infinite if one is not finite.
 HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scratch, const BatchRange& range) {
   float largest = 0.0f;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    const Vec2 moved = scratch.position[place] - Vec2{list.build_x[place], list.build_y[place]};
+  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+    const Vec2 moved = scratch.position[index] - Vec2{list.build_x[index], list.build_y[index]};
     const float squared = squared_length(moved);
     if (!(squared <= largest)) largest = squared == squared ? squared : std::numeric_limits<float>::infinity();
   }
@@ -96,9 +96,9 @@ HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scr
 template <class Solver, class Visitor>
 HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
                                      const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
-                                     float squared_limit, int32_t index, Visitor& visitor) {
+                                     float squared_limit, int32_t number, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
-  const Batch batch{config, shape, c, state, scratch, batch_range(list, index)};
+  const Batch batch{config, shape, c, state, scratch, batch_range(list, number)};
   const BatchRange& range = batch.range;
   BatchReport report{};
   load_batch(state, scratch, range, c, force, report, visitor);
@@ -109,11 +109,11 @@ HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShap
     if (report.squared_moved > squared_limit) break;
   }
   const Motion* motion = scratch.motion.data;
-  for (int32_t place = range.first_place; place < range.last_place; ++place) {
-    const float squared = motion[place].x * motion[place].x + motion[place].y * motion[place].y;
+  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+    const float squared = motion[index].x * motion[index].x + motion[index].y * motion[index].y;
     if (squared > report.squared_speed) report.squared_speed = squared;
   }
-  scratch.reports[index] = report;
+  scratch.reports[number] = report;
 }
 
 /// The maxima over all batches.
@@ -189,7 +189,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   const float free_path = speed * c.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
   // Bodies by slot, not by batch: otherwise two members would write to most cache lines in turn.
-  group.for_each(static_cast<int>(state.neighbors.place.count),
+  group.for_each(static_cast<int>(state.neighbors.index.count),
                  [&](int32_t slot) { commit_body(state, scratch, slot); });
   group.for_each(head.batches, [&](int32_t batch) {
     commit_pairs(state, scratch, batch_range(state.neighbors, batch));

@@ -11,17 +11,17 @@ namespace {
 
 Extent extent_of(const World& world) {
   const WorldState& state = world.state;
-  const Clock& clock = world.clock();
+  const WorldHead& head = world.head();
   Extent extent{};
-  extent.slots.assign(state.living.data, state.living.data + clock.living_count);
-  extent.free.assign(state.free.data, state.free.data + clock.free_count);
-  extent.ghosts = clock.ghost_count;
-  extent.newborns = state.newborn.count > 0 ? clock.births_in_window : 0;
+  extent.slots.assign(state.living.data, state.living.data + head.living_count);
+  extent.free.assign(state.free.data, state.free.data + head.free_count);
+  extent.ghosts = head.ghost_count;
+  extent.newborns = state.newborn.count > 0 ? head.births_in_window : 0;
   for (int32_t f = 0; f < world.shape->foods; ++f) {
     if (state.physics.circles.present[f]) extent.foods.push_back(f);
   }
-  extent.filled = clock.step % world.shape->steps;
-  const int64_t window_start = clock.step - extent.filled;
+  extent.filled = head.step % world.shape->steps;
+  const int64_t window_start = head.step - extent.filled;
   for (const int32_t slot : extent.slots) extent.learners += state.life[slot].birth_step <= window_start;
   return extent;
 }
@@ -73,10 +73,10 @@ void save_pairs(const World& world, const std::vector<int32_t>& rank, const Pair
 
 /// The place of each slot in the living order; -1 for the dead, and for newborns, which are in no list yet.
 std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
-  std::vector<int32_t> rank(static_cast<size_t>(world.shape->slots), -1);
+  std::vector<int32_t> rank(static_cast<size_t>(world.shape->capacity), -1);
   for (size_t i = 0; i < extent.slots.size(); ++i) {
     const int32_t slot = extent.slots[i];
-    if (world.state.life[slot].birth_step < world.clock().step)
+    if (world.state.life[slot].birth_step < world.head().step)
       rank[static_cast<size_t>(slot)] = static_cast<int32_t>(i);
   }
   return rank;
@@ -97,8 +97,8 @@ void save_each(const World& world, Take&& take) {
 
   const NeighborList& list = world.state.physics.neighbors;
   const std::vector<int32_t> rank = listed_ranks(world, extent);
-  const auto body = [&](int32_t place, int32_t* other) {
-    *other = rank[static_cast<size_t>(list.slot[place])];
+  const auto body = [&](int32_t index, int32_t* other) {
+    *other = rank[static_cast<size_t>(list.slot[index])];
     return *other >= 0;
   };
   const auto circle = [&](int32_t food, int32_t* other) {

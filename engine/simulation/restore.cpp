@@ -93,29 +93,29 @@ bool rises(const std::vector<T>& values, bool strictly) {
 /// Reads how many rows the arrays have. The slots are those that the world will give to the living.
 bool read_extent(Inspector& in, Extent& extent) {
   const WorldShape& shape = *in.world_.shape;
-  if (!in.has<int64_t>("clock.step", {1}) || !in.has<int32_t>("clock.living_count", {1}) ||
-      !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("clock.step", 0, UINT32_MAX) ||
-      !in.within<int32_t>("clock.living_count", 0, shape.slots) ||
-      !in.within<int32_t>("food.slot", 0, shape.foods - 1) || !in.has<int32_t>("clock.births_in_window", {1}) ||
-      !in.has<int32_t>("clock.ghost_count", {1}) || !in.within<int32_t>("clock.births_in_window", 0, INT32_MAX - 1.0) ||
-      !in.within<int32_t>("clock.ghost_count", 0, static_cast<double>(in.world_.state.ghost.count)) ||
-      !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("clock.living_count")[0]})) {
+  if (!in.has<int64_t>("head.step", {1}) || !in.has<int32_t>("head.living_count", {1}) ||
+      !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("head.step", 0, UINT32_MAX) ||
+      !in.within<int32_t>("head.living_count", 0, shape.capacity) ||
+      !in.within<int32_t>("food.slot", 0, shape.foods - 1) || !in.has<int32_t>("head.births_in_window", {1}) ||
+      !in.has<int32_t>("head.ghost_count", {1}) || !in.within<int32_t>("head.births_in_window", 0, INT32_MAX - 1.0) ||
+      !in.within<int32_t>("head.ghost_count", 0, static_cast<double>(in.world_.state.ghost.count)) ||
+      !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("head.living_count")[0]})) {
     return false;
   }
   extent.foods = in.numbers<int32_t>("food.slot");
   if (!rises(extent.foods, true)) return in.refuse("food.slot is out of order");
-  const int64_t step = in.numbers<int64_t>("clock.step")[0];
+  const int64_t step = in.numbers<int64_t>("head.step")[0];
   extent.filled = step % shape.steps;
   const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
   if (!rises(births, false)) return in.refuse("life.birth_step is out of order");
   if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
   for (const int64_t birth : births) extent.learners += birth <= step - extent.filled;
   extent.slots.resize(births.size());
-  extent.free.resize(static_cast<size_t>(shape.slots) - births.size());
-  extent.ghosts = in.numbers<int32_t>("clock.ghost_count")[0];
+  extent.free.resize(static_cast<size_t>(shape.capacity) - births.size());
+  extent.ghosts = in.numbers<int32_t>("head.ghost_count")[0];
   if (shape.newborns == 0) return true;
-  extent.newborns = in.numbers<int32_t>("clock.births_in_window")[0];
-  return in.within<int32_t>("clock.births_in_window", 0, shape.newborns);
+  extent.newborns = in.numbers<int32_t>("head.births_in_window")[0];
+  return in.within<int32_t>("head.births_in_window", 0, shape.newborns);
 }
 
 /// Checks that every array is there, that there are no others, and that all numbers are finite.
@@ -141,7 +141,7 @@ bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpo
 bool check_life(Inspector& in) {
   const WorldShape& shape = *in.world_.shape;
   const WorldConfig& config = *in.world_.config;
-  const double step = static_cast<double>(in.numbers<int64_t>("clock.step")[0]);
+  const double step = static_cast<double>(in.numbers<int64_t>("head.step")[0]);
   const std::vector<int32_t> ids = in.numbers<int32_t>("life.agent_id");
   const double nobody = ids.empty() ? 1 : 0;
   const double last_id = ids.empty() ? 0 : ids.back();
@@ -157,9 +157,9 @@ bool check_life(Inspector& in) {
     if (parents[i] >= ids[i]) return in.refuse("life.parent_id has an agent that is younger than its child");
     if (generations[i] > ids[i]) return in.refuse("life.generation counts more ancestors than there were agents");
   }
-  return in.within<int64_t>("clock.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
-         in.within<int32_t>("clock.next_agent_id", last_id + 1.0 - nobody, MOST) &&
-         in.within<int32_t>("clock.births_before", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
+  return in.within<int64_t>("head.extinct_step", nobody - 1.0, nobody > 0 ? step : -1.0) &&
+         in.within<int32_t>("head.next_agent_id", last_id + 1.0 - nobody, MOST) &&
+         in.within<int32_t>("head.births_before", 0, MOST) && in.within<int32_t>("life.agent_id", 0, MOST) &&
          in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
@@ -201,7 +201,7 @@ bool check_newborns(Inspector& in) {
       return in.refuse("newborn.parent is not an older newborn");
   }
   // Every agent that was born in this window waits: a parent is looked for among them.
-  const int64_t step = in.numbers<int64_t>("clock.step")[0];
+  const int64_t step = in.numbers<int64_t>("head.step")[0];
   const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
   const std::vector<int32_t> living = in.numbers<int32_t>("life.agent_id");
   for (size_t i = 0; i < births.size(); ++i) {
@@ -258,9 +258,9 @@ void restore_pairs(const Inspector& in, const World& world, const Extent& extent
   const NeighborList& list = world.state.physics.neighbors;
   NeighborHead& head = list.head[0];
   head.bodies = static_cast<int32_t>(extent.slots.size());
-  for (int32_t place = 0; place < head.bodies; ++place) {
-    list.slot[place] = extent.slots[static_cast<size_t>(place)];
-    list.place[list.slot[place]] = place;
+  for (int32_t index = 0; index < head.bodies; ++index) {
+    list.slot[index] = extent.slots[static_cast<size_t>(index)];
+    list.index[list.slot[index]] = index;
   }
   const PairList* lists[] = {&list.bodies, &list.circles, &list.walls};
   for (int kind = 0; kind < 3; ++kind) {
@@ -268,9 +268,9 @@ void restore_pairs(const Inspector& in, const World& world, const Extent& extent
     const std::vector<int32_t> who = in.numbers<int32_t>(PAIR_NAMES[kind]);
     const std::vector<float> impulse = in.numbers<float>(IMPULSE_NAMES[kind]);
     const int32_t count = static_cast<int32_t>(who.size() / 2);
-    for (int32_t pair = 0, place = 0; place <= head.bodies; ++place) {
-      while (pair < count && who[2 * static_cast<size_t>(pair)] < place) ++pair;
-      pairs.start[place] = pair;
+    for (int32_t pair = 0, index = 0; index <= head.bodies; ++index) {
+      while (pair < count && who[2 * static_cast<size_t>(pair)] < index) ++pair;
+      pairs.start[index] = pair;
     }
     for (int32_t pair = 0; pair < count; ++pair) {
       const size_t at = 2 * static_cast<size_t>(pair);
@@ -295,22 +295,22 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
     return in.complaint;
   }
   empty(target);
-  Clock& clock = target.clock();
+  WorldHead& head = target.head();
   for (size_t i = 0; i < extent.slots.size(); ++i) {
-    const int32_t slot = state.free[--clock.free_count];
+    const int32_t slot = state.free[--head.free_count];
     extent.slots[i] = slot;
     state.living[static_cast<int64_t>(i)] = slot;
     state.alive[slot] = 1;
   }
-  extent.free.assign(state.free.data, state.free.data + clock.free_count);
+  extent.free.assign(state.free.data, state.free.data + head.free_count);
   for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
-  for (const int32_t slot : extent.slots) target.kernel->derive(shape_.network, target.network(slot));
+  for (const int32_t slot : extent.slots) target.kernel->pack_weights(shape_.network, target.network(slot));
   if (inherits_late(target)) {
-    for (const int32_t slot : extent.free) target.kernel->derive(shape_.network, target.network(slot));
+    for (const int32_t slot : extent.free) target.kernel->pack_weights(shape_.network, target.network(slot));
   }
   restore_pairs(in, target, extent);
   return "";

@@ -41,10 +41,10 @@ struct SavedRows {
   }
 };
 
-/// Fields of `Clock` that follow from others, or that count what a reader has taken.
-inline bool is_derived(const char* clock_field) {
-  return strcmp(clock_field, "free_count") == 0 || strcmp(clock_field, "event_count") == 0 ||
-         strcmp(clock_field, "reserved") == 0;
+/// Fields of `WorldHead` that follow from others, or that count what a reader has taken.
+inline bool is_derived(const char* head_field) {
+  return strcmp(head_field, "free_count") == 0 || strcmp(head_field, "event_count") == 0 ||
+         strcmp(head_field, "reserved") == 0;
 }
 
 /// Calls visit(name, SavedRows) for each array of a checkpoint except `food.slot` and the impulses. Between two windows
@@ -74,7 +74,7 @@ void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
   };
   const auto keep_all = [](const char*) { return false; };
 
-  columns("clock.", state.clock.data, nullptr, 1, is_derived);
+  columns("head.", state.head.data, nullptr, 1, is_derived);
   columns("counters.", state.counters.data, nullptr, 1, keep_all);
   columns("food_stock.", state.food_stock.data, nullptr, shape.kinds, keep_all);
   const int64_t number = sizeof(float);

@@ -71,7 +71,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     memory_.emplace_back(lay_out_world(world, nullptr));
     lay_out_world(world, memory_.back().data());
     begin(world);
-    found(world);
+    init_population(world);
   }
   pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
@@ -90,7 +90,7 @@ MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, in
   const auto bytes = [](const auto&... arrays) { return (laid_out_bytes(arrays) + ...); };
   const WorldState& state = world.state;
   const int64_t networks =
-      bytes(state.params, state.folded_bias, state.paired_weights, state.first_moment, state.second_moment);
+      bytes(state.params, state.folded_bias, state.packed_weights, state.first_moment, state.second_moment);
   const int64_t rollouts = bytes(state.observation, state.action, state.log_prob, state.value, state.reward);
   const int64_t physics = lay_out(world.state.physics, nullptr) + lay_out(world.physics_scratch, nullptr);
   const int64_t rest = lay_out_world(world, nullptr) - networks - rollouts - physics;
@@ -100,10 +100,10 @@ MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, in
 
 /// Makes zeroed memory an empty world: all slots free, no agent, no food.
 void Simulation::begin(World& world) {
-  Clock& clock = world.clock();
-  clock.extinct_step = -1;
-  for (int32_t slot = shape_.slots - 1; slot >= 0; --slot) {
-    world.state.free[clock.free_count++] = slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)];
+  WorldHead& head = world.head();
+  head.extinct_step = -1;
+  for (int32_t slot = shape_.capacity - 1; slot >= 0; --slot) {
+    world.state.free[head.free_count++] = slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)];
   }
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
@@ -128,7 +128,7 @@ void Simulation::empty(World& world) {
 bool Simulation::set_scene(int index, const SceneInput& scene) {
   const FloatMode mode(flush_);
   World& target = world(index);
-  if (scene.x.count > shape_.slots) return false;
+  if (scene.x.count > shape_.capacity) return false;
   std::vector<int32_t> count(static_cast<size_t>(shape_.kinds));
   for (int64_t f = 0; f < scene.food_kind.count; ++f) {
     const int32_t kind = scene.food_kind[f];
@@ -145,7 +145,7 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
     place_food(target, scene.food_kind[f], {scene.food_x[f], scene.food_y[f]});
   }
   for (int32_t k = 0; k < shape_.kinds; ++k) target.state.food_stock[k].number = target.state.food_stock[k].present;
-  if (scene.x.count == 0) target.clock().extinct_step = 0;
+  if (scene.x.count == 0) target.head().extinct_step = 0;
   return true;
 }
 

@@ -15,11 +15,11 @@ template <class Group>
 HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
   const WorldState& state = world.state;
   const WorldShape& shape = *world.shape;
-  Clock& clock = world.clock();
-  const int64_t window_start = clock.step - shape.steps;
+  WorldHead& head = world.head();
+  const int64_t window_start = head.step - shape.steps;
 
   int32_t learners = 0;
-  for (int32_t i = 0; i < clock.living_count; ++i) {
+  for (int32_t i = 0; i < head.living_count; ++i) {
     if (state.life[state.living[i]].birth_step <= window_start) ++learners;
   }
   // The living are in the order of birth, so those that lived through the window come first.
@@ -42,10 +42,10 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
     const Learner learner{&state.params[first], &state.first_moment[first], &state.second_moment[first],
                           &state.updates[slot]};
     const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
-                              static_cast<uint32_t>(clock.step)};
+                              static_cast<uint32_t>(head.step)};
     learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride,
           learner);
-    world.kernel->derive(shape.network, world.network(slot));
+    world.kernel->pack_weights(shape.network, world.network(slot));
   });
   group.once([&] {
     world.counters().learners += learners;
@@ -63,13 +63,13 @@ HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch,
   const int64_t window = world.shape->steps;
   group.once([&] { prepare_step(world); });
   while (steps > 0 && !world.over()) {
-    const int64_t left = window - world.clock().step % window;
+    const int64_t left = window - world.head().step % window;
     const int64_t stretch = left < steps ? left : steps;
     steps -= pacer(group, stretch, [&](auto& members) {
-      step(members, world, world.clock().step % window, lap);
+      step(members, world, world.head().step % window, lap);
       return !world.over();
     });
-    if (world.clock().step % window == 0 && !world.over()) {
+    if (world.head().step % window == 0 && !world.over()) {
       learn_window(group, world, scratch, stride);
       lap(Part::learning);
       audit(group, world);

@@ -18,7 +18,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
   float output[16];
   world.kernel->forward(network, world.network(slot), observation, output);
   const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(state.life[slot].agent_id),
-                            static_cast<uint32_t>(world.clock().step)};
+                            static_cast<uint32_t>(world.head().step)};
   const Random4 bits = random.draw(0);
   const NormalPair noise = to_normal(bits.word[0], bits.word[1]);
   const float z[ACTIONS] = {noise.first, noise.second};
@@ -34,7 +34,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
 }
 
 /// Turns the action into the forces of the two motors, and the force and torque on the body.
-HEDON_FN void drive(World& world, int32_t slot, int64_t t) {
+HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const MotorConfig& motor = world.config->motor;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->steps} + t) * ACTIONS];

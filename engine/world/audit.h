@@ -27,39 +27,39 @@ HEDON_FN bool is_finite(double value) { return value - value == 0.0; }
 
 /// Every slot is either used by one of the living or free, and its flag says which.
 HEDON_FN void audit_slots(const World& world) {
-  const Clock& clock = world.clock();
+  const WorldHead& head = world.head();
   const WorldState& state = world.state;
-  const int32_t slots = world.shape->slots;
-  const bool sane = clock.living_count >= 0 && clock.free_count >= 0 && clock.living_count <= slots;
-  if (!sane || clock.living_count + clock.free_count != slots) {
-    return world.fail(Status::slots_inconsistent, -1, clock.living_count);
+  const int32_t capacity = world.shape->capacity;
+  const bool sane = head.living_count >= 0 && head.free_count >= 0 && head.living_count <= capacity;
+  if (!sane || head.living_count + head.free_count != capacity) {
+    return world.fail(Status::slots_inconsistent, -1, head.living_count);
   }
   const Array<uint8_t>& seen = world.scratch.starved;
-  for (int32_t slot = 0; slot < slots; ++slot) seen[slot] = 0;
+  for (int32_t slot = 0; slot < capacity; ++slot) seen[slot] = 0;
   const auto look = [&](int32_t slot, uint8_t alive) {
-    if (slot < 0 || slot >= slots || seen[slot] != 0 || state.alive[slot] != alive) {
+    if (slot < 0 || slot >= capacity || seen[slot] != 0 || state.alive[slot] != alive) {
       return world.fail(Status::slots_inconsistent, -1, slot);
     }
     seen[slot] = 1;
   };
-  for (int32_t i = 0; i < clock.living_count; ++i) look(state.living[i], 1);
-  for (int32_t i = 0; i < clock.free_count; ++i) look(state.free[i], 0);
+  for (int32_t i = 0; i < head.living_count; ++i) look(state.living[i], 1);
+  for (int32_t i = 0; i < head.free_count; ++i) look(state.free[i], 0);
 }
 
 /// Ids ascend in the order of the living and none is above the newest; counts of births, deaths and foods agree.
 HEDON_FN void audit_counts(const World& world) {
-  const Clock& clock = world.clock();
+  const WorldHead& head = world.head();
   const Counters& counters = world.counters();
   int32_t before = -1;
-  for (int32_t i = 0; i < clock.living_count; ++i) {
+  for (int32_t i = 0; i < head.living_count; ++i) {
     const Life& life = world.state.life[world.state.living[i]];
-    const bool good = life.agent_id > before && life.agent_id < clock.next_agent_id && life.parent_id < life.agent_id &&
-                      life.birth_step <= clock.step && life.death_step == -1;
+    const bool good = life.agent_id > before && life.agent_id < head.next_agent_id && life.parent_id < life.agent_id &&
+                      life.birth_step <= head.step && life.death_step == -1;
     if (!good) return world.fail(Status::ids_inconsistent, life.agent_id, before, life.parent_id);
     before = life.agent_id;
   }
   // Every id was given once, to a founder or to a child.
-  if (clock.next_agent_id - counters.deaths != clock.living_count || counters.births > clock.next_agent_id) {
+  if (head.next_agent_id - counters.deaths != head.living_count || counters.births > head.next_agent_id) {
     return world.fail(Status::counts_inconsistent, -1, static_cast<double>(counters.deaths));
   }
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
@@ -76,14 +76,14 @@ HEDON_FN void audit_counts(const World& world) {
 HEDON_FN void audit_capacity(const World& world) {
   const NeighborList& list = world.state.physics.neighbors;
   const int32_t bodies = list.head[0].bodies;
-  if (bodies < 0 || bodies > world.shape->slots) return world.fail(Status::neighbor_overflow, -1, bodies);
+  if (bodies < 0 || bodies > world.shape->capacity) return world.fail(Status::neighbor_overflow, -1, bodies);
   for (const PairList* pairs : {&list.bodies, &list.circles, &list.walls}) {
     const int32_t count = pairs->start[bodies];
     if (count < 0 || count > pairs->first.count) return world.fail(Status::neighbor_overflow, -1, count);
   }
-  const int32_t ghosts = world.clock().ghost_count;
+  const int32_t ghosts = world.head().ghost_count;
   if (ghosts < 0 || ghosts > world.state.ghost.count) world.fail(Status::counts_inconsistent, -1, ghosts);
-  const int32_t events = world.clock().event_count;
+  const int32_t events = world.head().event_count;
   if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
 }
 
@@ -93,20 +93,20 @@ HEDON_FN void audit_ledger(const World& world) {
   constexpr double ROUNDING = 8.0 * 0x1p-53;
   const Counters& c = world.counters();
   double held = 0.0;
-  for (int32_t i = 0; i < world.clock().living_count; ++i) held += world.state.life[world.state.living[i]].energy;
+  for (int32_t i = 0; i < world.head().living_count; ++i) held += world.state.life[world.state.living[i]].energy;
   const double eaten = c.energy_eaten < 0.0 ? -c.energy_eaten : c.energy_eaten;
   const double moved = c.energy_initial + eaten + c.energy_forgiven + c.energy_basic + c.energy_action +
                        c.energy_capped + c.energy_lost + c.energy_shared + world.config->energy.capacity;
   const double due = c.energy_initial + c.energy_eaten + c.energy_forgiven - c.energy_basic - c.energy_action -
                      c.energy_capped - c.energy_lost;
   const double gap = held > due ? held - due : due - held;
-  const double steps = static_cast<double>(c.agent_steps + c.births + world.clock().next_agent_id);
+  const double steps = static_cast<double>(c.agent_steps + c.births + world.head().next_agent_id);
   if (!(gap <= ROUNDING * steps * moved)) world.fail(Status::ledger_open, -1, held - due);
 }
 
 /// Id of the agent whose circle has this index in the scene; -1 for a food.
 HEDON_FN int32_t agent_at(const World& world, int32_t index) {
-  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = world.state.living[i];
     if (world.scene.own[slot] == index) return world.state.life[slot].agent_id;
   }
@@ -119,8 +119,8 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
 /// a pair was missed. The solver jacobi leaves overlaps of 1 to 10 u in crowds, and its contacts are well-defined up to
 /// the center. With it, the distance of centers must be at least a quarter of the distance at which the two just touch.
 HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
-  const Scene& scene = world.scene;
-  const SceneGrid& grid = world.shape->scene;
+  const RayScene& scene = world.scene;
+  const RayGrid& grid = world.shape->scene;
   const BodyConfig& config = world.config->body;
   const int32_t own = scene.own[slot];
   const float x = scene.x[own], y = scene.y[own];
@@ -177,7 +177,7 @@ HEDON_FN void audit(Group& group, World& world) {
     audit_capacity(world);
   });
   if (world.fault().status != Status::ok) return;
-  const int32_t living = world.clock().living_count;
+  const int32_t living = world.head().living_count;
   group.for_each(living, [&](int32_t i) { world.scratch.finding[i] = audit_agent(world, world.state.living[i]); });
   group.once([&] {
     for (int32_t i = 0; i < living; ++i) {

@@ -10,8 +10,8 @@
 
 namespace hedon {
 
-/// A candidate place for a food of kind `k`; it may lie outside the arena.
-HEDON_FN Vec2 draw_food_place(const World& world, int32_t k, const RandomStream& random, uint32_t index) {
+/// A candidate position for a food of kind `k`; it may lie outside the arena.
+HEDON_FN Vec2 draw_food_position(const World& world, int32_t k, const RandomStream& random, uint32_t index) {
   const PlacementConfig& placement = world.config->food[k].placement;
   const Random4 bits = random.draw(index);
   if (placement.form == PlacementForm::uniform) {
@@ -24,15 +24,15 @@ HEDON_FN Vec2 draw_food_place(const World& world, int32_t k, const RandomStream&
 }
 
 /// Puts a food of kind `k` into a free slot of its kind.
-HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
+HEDON_FN void place_food(World& world, int32_t k, Vec2 position) {
   WorldState& state = world.state;
   int32_t f = world.shape->food_offset[k];
   while (state.physics.circles.present[f]) ++f;
-  state.physics.circles.x[f] = place.x;
-  state.physics.circles.y[f] = place.y;
+  state.physics.circles.x[f] = position.x;
+  state.physics.circles.y[f] = position.y;
   state.physics.circles.present[f] = 1;
   state.food_stock[k].present += 1;
-  insert(state.physics.circle_grid, f, place.x, place.y);
+  insert(state.physics.circle_grid, f, position.x, position.y);
   mark_stale(state.physics);
 }
 
@@ -40,8 +40,8 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 place) {
 HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& random, int32_t candidates) {
   FoodStock& stock = world.state.food_stock[k];
   for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
-    const Vec2 place = draw_food_place(world, k, random, static_cast<uint32_t>(i));
-    if (can_place(world, place, world.config->body.food_radius)) place_food(world, k, place);
+    const Vec2 position = draw_food_position(world, k, random, static_cast<uint32_t>(i));
+    if (can_place(world, position, world.config->body.food_radius)) place_food(world, k, position);
   }
 }
 
@@ -67,10 +67,10 @@ HEDON_FN void eat(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
   const BodyState& body = state.physics.bodies;
-  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     for (int32_t k = 0; k < world.shape->kinds; ++k) world.meal(state.living[i])[k] = 0;
   }
-  world.clock().ghost_count = 0;
+  world.head().ghost_count = 0;
   const bool all = world.config->sensor.mouths == Mouths::all;
   const bool seen = world.config->sensor.eaten_food == EatenFood::seen;
   int32_t found = 0;
@@ -97,7 +97,7 @@ HEDON_FN void eat(World& world) {
       stock.present -= 1;
       stock.number -= 1.0;
       feed(world, slot, k);
-      if (seen) state.ghost[world.clock().ghost_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
+      if (seen) state.ghost[world.head().ghost_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
     }
   }
 }
@@ -110,7 +110,7 @@ HEDON_FN void grow(World& world) {
     stock.number += static_cast<double>(config.growth_rate);
     if (stock.number > config.capacity) stock.number = config.capacity;
     const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k),
-                              static_cast<uint32_t>(world.clock().step)};
+                              static_cast<uint32_t>(world.head().step)};
     place_missing_food(world, k, random, config.candidates);
   }
 }

@@ -28,7 +28,7 @@ HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
 /// Decides whether an agent dies at the end of this step, from its draw and its age and energy then.
 HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
-  const double age = static_cast<double>(world.clock().step + 1 - life.birth_step);
+  const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
   world.scratch.dies[slot] = world.scratch.starved[slot] != 0 ||
                              world.scratch.death_draw[slot] < hazard(world.config->hazard, age, life.energy);
 }
@@ -74,7 +74,7 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   life.reward += r;
 
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
-                            static_cast<uint32_t>(world.clock().step)};
+                            static_cast<uint32_t>(world.head().step)};
   const Random4 bits = random.draw(0);
   scratch.breeds[slot] =
       scratch.starved[slot] == 0 && to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(config.birth, life.energy);
@@ -86,7 +86,7 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
 HEDON_FN void keep_ledger(World& world) {
   Counters& counters = world.counters();
   const StepScratch& scratch = world.scratch;
-  const int32_t living = world.clock().living_count;
+  const int32_t living = world.head().living_count;
   counters.agent_steps += living;
   for (int32_t i = 0; i < living; ++i) {
     const int32_t slot = world.state.living[i];
@@ -98,18 +98,18 @@ HEDON_FN void keep_ledger(World& world) {
   }
 }
 
-/// Looks for a place for the child of `parent` around it.
-HEDON_FN bool find_child_place(const World& world, int32_t parent, Vec2* place) {
+/// Looks for a free position for the child of `parent` around it.
+HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* position) {
   const BirthConfig& birth = world.config->birth;
   const BodyState& body = world.state.physics.bodies;
   const RandomStream random{world.seed, Purpose::child_place, static_cast<uint32_t>(world.state.life[parent].agent_id),
-                            static_cast<uint32_t>(world.clock().step)};
+                            static_cast<uint32_t>(world.head().step)};
   for (int32_t i = 0; i < birth.attempts; ++i) {
     const Random4 bits = random.draw(static_cast<uint32_t>(i));
     const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
-    *place = {body.x[parent] + birth.distance_sd.x * normal.first,
-              body.y[parent] + birth.distance_sd.y * normal.second};
-    if (can_place(world, *place, world.config->body.radius)) return true;
+    *position = {body.x[parent] + birth.distance_sd.x * normal.first,
+                 body.y[parent] + birth.distance_sd.y * normal.second};
+    if (can_place(world, *position, world.config->body.radius)) return true;
   }
   return false;
 }
@@ -119,9 +119,9 @@ HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
   Counters& counters = world.counters();
-  const uint32_t step = static_cast<uint32_t>(world.clock().step);
+  const uint32_t step = static_cast<uint32_t>(world.head().step);
   int32_t parents = 0;
-  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = state.living[i];
     if (scratch.breeds[slot] == 0 || !may_breed(world, slot)) continue;
     const RandomStream random{world.seed, Purpose::parent_order, static_cast<uint32_t>(state.life[slot].agent_id),
@@ -137,33 +137,33 @@ HEDON_FN void breed(World& world) {
   }
   for (int32_t p = 0; p < parents; ++p) {
     const int32_t parent = scratch.parent[p];
-    Vec2 place;
-    if (world.clock().free_count == 0) {
+    Vec2 position;
+    if (world.head().free_count == 0) {
       counters.births_failed_full += 1;
-    } else if (!find_child_place(world, parent, &place)) {
+    } else if (!find_child_position(world, parent, &position)) {
       counters.births_failed_space += 1;
     } else {
-      bear(world, parent, place);
+      spawn_child(world, parent, position);
       decide_death(world, parent);  // again, since the parent gave energy to the child
     }
   }
 }
 
 /// Removes the agents that die from the living. Newborns cannot die in the step of their birth.
-HEDON_FN void reap(World& world) {
+HEDON_FN void apply_deaths(World& world) {
   const WorldState& state = world.state;
-  Clock& clock = world.clock();
+  WorldHead& head = world.head();
   int32_t kept = 0;
-  for (int32_t i = 0; i < clock.living_count; ++i) {
+  for (int32_t i = 0; i < head.living_count; ++i) {
     const int32_t slot = state.living[i];
     if (world.scratch.dies[slot] != 0) {
-      bury(world, slot);
+      kill(world, slot);
     } else {
       state.living[kept++] = slot;
     }
   }
-  clock.living_count = kept;
-  if (kept == 0 && clock.extinct_step < 0) clock.extinct_step = clock.step + 1;
+  head.living_count = kept;
+  if (kept == 0 && head.extinct_step < 0) head.extinct_step = head.step + 1;
 }
 
 }  // namespace hedon

@@ -17,7 +17,7 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
   const WorldState& state = world.state;
   const NetworkShape& network = world.shape->network;
   init_network(network, random, world.params(slot));
-  world.kernel->derive(network, world.network(slot));
+  world.kernel->pack_weights(network, world.network(slot));
   const int64_t first = int64_t{slot} * network.size();
   for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
   state.updates[slot] = 0;
@@ -35,11 +35,11 @@ HEDON_FN bool inherits_late(const World& world) {
 
 /// Puts a network and a genome into every free slot of a new world, for the newborns that come first.
 HEDON_FN void fill_vacancies(World& world) {
-  for (int32_t i = 0; i < world.clock().free_count; ++i) {
+  for (int32_t i = 0; i < world.head().free_count; ++i) {
     const int32_t slot = world.state.free[i];
-    const uint32_t place = static_cast<uint32_t>(i);
-    give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, place, 0});
-    init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::vacant_genome, place, 0},
+    const uint32_t number = static_cast<uint32_t>(i);
+    give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
+    init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::vacant_genome, number, 0},
                 world.genome(slot));
   }
 }
@@ -51,7 +51,7 @@ HEDON_FN float* newborn_genome(const World& world, int32_t index) {
 /// Notes who the parent of the newest agent is, until the window ends.
 HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
   const WorldState& state = world.state;
-  const int32_t at = world.clock().births_in_window;
+  const int32_t at = world.head().births_in_window;
   if (at >= world.shape->newborns) return world.fail(Status::birth_overflow, child_id, at);
   const Life& life = state.life[parent];
   Newborn& newborn = state.newborn[at] = {child_id, -1};
@@ -66,9 +66,9 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
 /// networks. A newborn that was itself a parent passes on the genome that it gets here.
 HEDON_FN void settle_newborns(World& world) {
   const WorldState& state = world.state;
-  const Clock& clock = world.clock();
+  const WorldHead& head = world.head();
   const GenomeShape& shape = world.shape->genome;
-  const int32_t births = clock.births_in_window;
+  const int32_t births = head.births_in_window;
   for (int32_t i = 0; i < births; ++i) {
     const Newborn& newborn = state.newborn[i];
     const float* parent = newborn_genome(world, newborn.parent < 0 ? i : newborn.parent);
@@ -76,7 +76,7 @@ HEDON_FN void settle_newborns(World& world) {
             {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent, newborn_genome(world, i));
   }
   // Both lists are in the order of ids, and the newborns are the youngest of the living.
-  for (int32_t i = births - 1, at = clock.living_count - 1; i >= 0 && at >= 0; --i) {
+  for (int32_t i = births - 1, at = head.living_count - 1; i >= 0 && at >= 0; --i) {
     const int32_t slot = state.living[at];
     if (state.life[slot].agent_id != state.newborn[i].agent_id) continue;  // it has died
     for (int32_t g = 0; g < shape.size(); ++g) world.genome(slot)[g] = newborn_genome(world, i)[g];
@@ -87,11 +87,11 @@ HEDON_FN void settle_newborns(World& world) {
 
 /// Begins a window: notes which slots are taken, and counts births from 0.
 HEDON_FN void open_window(World& world) {
-  Clock& clock = world.clock();
-  clock.births_before = clock.births_in_window;
-  clock.births_in_window = 0;
+  WorldHead& head = world.head();
+  head.births_before = head.births_in_window;
+  head.births_in_window = 0;
   if (world.config->birth.parents == Parents::all) return;
-  for (int32_t slot = 0; slot < world.shape->slots; ++slot) world.state.old_slot[slot] = world.state.alive[slot];
+  for (int32_t slot = 0; slot < world.shape->capacity; ++slot) world.state.old_slot[slot] = world.state.alive[slot];
 }
 
 /// Whether the agent in `slot` may have children in this window.

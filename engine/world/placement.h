@@ -11,40 +11,40 @@
 namespace hedon {
 
 /// Whether a disc is completely inside the outer polygon (clockwise, convex) and touches no inner wall.
-HEDON_FN bool inside_arena(const World& world, Vec2 place, float radius) {
+HEDON_FN bool inside_arena(const World& world, Vec2 position, float radius) {
   const Array<Segment>& walls = world.state.physics.walls;
   for (int32_t w = 0; w < world.shape->outer_walls; ++w) {
     // The outer walls run clockwise, so the inside is to their right.
     const Vec2 along = walls[w].b - walls[w].a;
-    if (cross(place - walls[w].a, along) < radius * length(along)) return false;
+    if (cross(position - walls[w].a, along) < radius * length(along)) return false;
   }
   for (int32_t w = world.shape->outer_walls; w < world.shape->walls; ++w) {
-    const Vec2 near = nearest_on_segment(walls[w].a, walls[w].b, place);
-    if (squared_length(place - near) < radius * radius) return false;
+    const Vec2 near = nearest_on_segment(walls[w].a, walls[w].b, position);
+    if (squared_length(position - near) < radius * radius) return false;
   }
   return true;
 }
 
 /// Whether a disc overlaps no living agent and no food present.
-HEDON_FN bool free_of_bodies(const World& world, Vec2 place, float radius) {
+HEDON_FN bool free_of_bodies(const World& world, Vec2 position, float radius) {
   const WorldState& state = world.state;
   const PhysicsState& physics = state.physics;
   bool is_free = true;
   const float agent_reach = radius + world.config->body.radius;
-  for_each_body_near(physics, place.x, place.y, agent_reach, [&](int32_t slot) {
-    const Vec2 apart{physics.bodies.x[slot] - place.x, physics.bodies.y[slot] - place.y};
+  for_each_body_near(physics, position.x, position.y, agent_reach, [&](int32_t slot) {
+    const Vec2 apart{physics.bodies.x[slot] - position.x, physics.bodies.y[slot] - position.y};
     if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
   });
   const float food_reach = radius + world.config->body.food_radius;
-  for_each_circle_near(physics, place.x, place.y, food_reach, [&](int32_t f) {
-    const Vec2 apart{physics.circles.x[f] - place.x, physics.circles.y[f] - place.y};
+  for_each_circle_near(physics, position.x, position.y, food_reach, [&](int32_t f) {
+    const Vec2 apart{physics.circles.x[f] - position.x, physics.circles.y[f] - position.y};
     if (physics.circles.present[f] && squared_length(apart) < food_reach * food_reach) is_free = false;
   });
   return is_free;
 }
 
-HEDON_FN bool can_place(const World& world, Vec2 place, float radius) {
-  return inside_arena(world, place, radius) && free_of_bodies(world, place, radius);
+HEDON_FN bool can_place(const World& world, Vec2 position, float radius) {
+  return inside_arena(world, position, radius) && free_of_bodies(world, position, radius);
 }
 
 }  // namespace hedon

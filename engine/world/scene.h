@@ -13,9 +13,9 @@ namespace hedon {
 /// the foods, then those just eaten if they are seen. (A counting sort: its time is in proportion to the circles and
 /// cells.)
 HEDON_FN void gather_scene(World& world) {
-  Scene& scene = world.scene;
+  RayScene& scene = world.scene;
   const WorldState& state = world.state;
-  const SceneGrid& grid = world.shape->scene;
+  const RayGrid& grid = world.shape->scene;
   const int32_t cells = grid.columns * grid.rows;
   for (int32_t cell = 0; cell <= cells; ++cell) scene.start[cell] = 0;
   const auto find_cell = [&](int32_t circle, float x, float y) {
@@ -24,14 +24,14 @@ HEDON_FN void gather_scene(World& world) {
     scene.cell[circle] = cell;
     ++scene.start[cell];
   };
-  const int32_t living = world.clock().living_count, slots = world.shape->slots;
+  const int32_t living = world.head().living_count, capacity = world.shape->capacity;
   const BodyState& body = state.physics.bodies;
   const StaticCircles& food = state.physics.circles;
   for (int32_t i = 0; i < living; ++i) find_cell(i, body.x[state.living[i]], body.y[state.living[i]]);
   for (int32_t f = 0; f < world.shape->foods; ++f) {
-    if (food.present[f]) find_cell(slots + f, food.x[f], food.y[f]);
+    if (food.present[f]) find_cell(capacity + f, food.x[f], food.y[f]);
   }
-  const int32_t ghosts = world.clock().ghost_count, first_ghost = slots + world.shape->foods;
+  const int32_t ghosts = world.head().ghost_count, first_ghost = capacity + world.shape->foods;
   for (int32_t g = 0; g < ghosts; ++g) find_cell(first_ghost + g, state.ghost[g].x, state.ghost[g].y);
 
   int32_t sum = 0;
@@ -54,7 +54,7 @@ HEDON_FN void gather_scene(World& world) {
   }
   for (int32_t k = world.shape->kinds - 1; k >= 0; --k) {
     for (int32_t f = world.shape->food_offset[k + 1] - 1; f >= world.shape->food_offset[k]; --f) {
-      if (food.present[f]) put(slots + f, food.x[f], food.y[f], world.config->body.food_radius, 1 + k);
+      if (food.present[f]) put(capacity + f, food.x[f], food.y[f], world.config->body.food_radius, 1 + k);
     }
   }
   for (int32_t i = living - 1; i >= 0; --i) {
@@ -64,8 +64,8 @@ HEDON_FN void gather_scene(World& world) {
 }
 
 /// The scene in the form for the kernels.
-HEDON_FN RayScene ray_scene(const World& world) {
-  const Scene& scene = world.scene;
+HEDON_FN RayTargets ray_targets(const World& world) {
+  const RayScene& scene = world.scene;
   return {scene.x.data,       scene.y.data,
           scene.radius.data,  scene.type.data,
           scene.wall_ax.data, scene.wall_ay.data,
@@ -73,12 +73,13 @@ HEDON_FN RayScene ray_scene(const World& world) {
           world.shape->walls, static_cast<float>(world.shape->wall_type())};
 }
 
-/// Empty lists of sighted circles in the memory of one member of the team.
-HEDON_FN Sighted no_circles(const World& world, int rank) {
+/// Empty lists of candidates circles in the memory of one member of the team.
+HEDON_FN RayCandidates no_candidates(const World& world, int rank) {
   const int64_t room = int64_t{world.shape->circles} + 16;
-  Sighted sighted{};
-  for (int32_t a = 0; a < RAY_ARCS; ++a) sighted.circle[a] = world.scene.sighted.data + (rank * RAY_ARCS + a) * room;
-  return sighted;
+  RayCandidates candidates{};
+  for (int32_t a = 0; a < RAY_ARCS; ++a)
+    candidates.circle[a] = world.scene.candidates.data + (rank * RAY_ARCS + a) * room;
+  return candidates;
 }
 
 /// A rectangle around the agent, in its own frame [u].
@@ -103,19 +104,19 @@ HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
   return {box.low_x * reach, box.low_y * reach, box.high_x * reach, box.high_y * reach};
 }
 
-/// Finds the circles in the cells that a rectangle around the eye touches, grown by the radius of the largest circle.
-HEDON_FN void find_circles(const World& world, const RayScene& scene, const Eye& eye, const Box& box,
-                           Sighted& sighted) {
-  const SceneGrid& grid = world.shape->scene;
+/// Finds the circles in the cells that a rectangle around the fan touches, grown by the radius of the largest circle.
+HEDON_FN void find_circles(const World& world, const RayTargets& targets, const RayFan& fan, const Box& box,
+                           RayCandidates& candidates) {
+  const RayGrid& grid = world.shape->scene;
   const BodyConfig& body = world.config->body;
   const float margin = body.radius > body.food_radius ? body.radius : body.food_radius;
-  const int32_t first_column = cell_along(eye.x + box.low_x - margin, grid.inverse_cell, grid.columns);
-  const int32_t last_column = cell_along(eye.x + box.high_x + margin, grid.inverse_cell, grid.columns);
-  const int32_t first_row = cell_along(eye.y + box.low_y - margin, grid.inverse_cell, grid.rows);
-  const int32_t last_row = cell_along(eye.y + box.high_y + margin, grid.inverse_cell, grid.rows);
+  const int32_t first_column = cell_along(fan.x + box.low_x - margin, grid.inverse_cell, grid.columns);
+  const int32_t last_column = cell_along(fan.x + box.high_x + margin, grid.inverse_cell, grid.columns);
+  const int32_t first_row = cell_along(fan.y + box.low_y - margin, grid.inverse_cell, grid.rows);
+  const int32_t last_row = cell_along(fan.y + box.high_y + margin, grid.inverse_cell, grid.rows);
   for (int32_t row = first_row; row <= last_row; ++row) {
     const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
-    world.kernel->cull_circles(scene, eye, start[first_column], start[last_column + 1], sighted);
+    world.kernel->cull_circles(targets, fan, start[first_column], start[last_column + 1], candidates);
   }
 }
 

@@ -16,45 +16,46 @@ namespace hedon {
 HEDON_FN Rows square_layer(const World& world, int32_t slot) {
   const ActingNetwork network = world.network(slot);
   const int32_t at = world.shape->network.w2();
-  if (network.paired == nullptr) return {network.params + at, HIDDEN};
-  return {network.paired + at / 2, HIDDEN / 2};
+  if (network.packed_weights == nullptr) return {network.params + at, HIDDEN};
+  return {network.packed_weights + at / 2, HIDDEN / 2};
 }
 
-/// The eye of the agent in `slot`, whose heading is `forward`.
-HEDON_FN Eye make_eye(const World& world, int32_t slot, Vec2 forward) {
+/// The fan of the agent in `slot`, whose heading is `forward`.
+HEDON_FN RayFan make_fan(const World& world, int32_t slot, Vec2 forward) {
   const SensorConfig& sensor = world.config->sensor;
   const WorldConstants& constants = *world.constants;
-  Eye eye{world.state.physics.bodies.x[slot],
-          world.state.physics.bodies.y[slot],
-          forward.x,
-          forward.y,
-          constants.ray_cosine,
-          constants.ray_sine,
-          sensor.ray_count,
-          world.config->body.radius,
-          sensor.ray_length,
-          world.scene.own[slot],
-          sensor.ray_inside == RayInside::behind ? -1.0f : 1.0f,
-          sensor.ray_inside == RayInside::behind ? world.config->body.radius : 0.0f,
-          {},
-          square_layer(world, slot)};
-  if (!constants.arc_convex) return eye;
-  for (int32_t a = 0; a < eye.arcs(); ++a) {
+  RayFan fan{world.state.physics.bodies.x[slot],
+             world.state.physics.bodies.y[slot],
+             forward.x,
+             forward.y,
+             constants.ray_cosine,
+             constants.ray_sine,
+             sensor.ray_count,
+             world.config->body.radius,
+             sensor.ray_length,
+             world.scene.own[slot],
+             sensor.ray_inside == RayInside::behind ? -1.0f : 1.0f,
+             sensor.ray_inside == RayInside::behind ? world.config->body.radius : 0.0f,
+             {},
+             square_layer(world, slot)};
+  if (!constants.arc_convex) return fan;
+  for (int32_t a = 0; a < fan.arcs(); ++a) {
     const Vec2 right = ray_direction(constants, a * 16, forward), left = ray_direction(constants, a * 16 + 15, forward);
-    eye.arc[a] = {right.x, right.y, left.x, left.y};
+    fan.arc[a] = {right.x, right.y, left.x, left.y};
   }
-  return eye;
+  return fan;
 }
 
 /// Casts the rays of the agent in `slot`; `rank` is that of the calling member.
 HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, int rank, PackedObservation& out) {
-  const RayScene scene = ray_scene(world);
-  const Eye eye = make_eye(world, slot, forward);
+  const RayTargets targets = ray_targets(world);
+  const RayFan fan = make_fan(world, slot, forward);
   const Vec2 right = ray_direction(*world.constants, 0, forward);
-  const Vec2 left = ray_direction(*world.constants, eye.rays - 1, forward);
-  Sighted sighted = no_circles(world, rank);
-  find_circles(world, scene, eye, box_of(right, left, eye.start + eye.length, world.constants->fan_convex), sighted);
-  world.kernel->cast_rays(scene, eye, sighted, out.ray, out.ray_type);
+  const Vec2 left = ray_direction(*world.constants, fan.rays - 1, forward);
+  RayCandidates candidates = no_candidates(world, rank);
+  find_circles(world, targets, fan, box_of(right, left, fan.start + fan.length, world.constants->fan_convex),
+               candidates);
+  world.kernel->cast_rays(targets, fan, candidates, out.ray, out.ray_type);
 }
 
 /// Keeps the position of an agent at the start of a step.

@@ -18,7 +18,7 @@ namespace hedon {
 inline constexpr int AGENT_TYPE = 0;
 
 /// The grid for sorting the circles that rays may hit.
-struct SceneGrid {
+struct RayGrid {
   float inverse_cell;  ///< cells per length [1/u]
   int32_t columns;
   int32_t rows;
@@ -26,7 +26,7 @@ struct SceneGrid {
 
 /// Cells are a third as wide as a ray is long, so that the cells around a fan are few and hold few other circles. They
 /// are wider if an arena is so empty that there would be more cells than circles.
-HEDON_FN SceneGrid make_scene_grid(const WorldConfig& config, int32_t circles) {
+HEDON_FN RayGrid make_ray_grid(const WorldConfig& config, int32_t circles) {
   const float width = config.arena.width, height = config.arena.height;
   const float reach = (config.body.radius + config.sensor.ray_length) / 3.0f;
   const float even = sqrtf(width * height / static_cast<float>(circles));
@@ -36,9 +36,9 @@ HEDON_FN SceneGrid make_scene_grid(const WorldConfig& config, int32_t circles) {
 }
 
 struct WorldShape {
-  int32_t slots;  ///< most agents alive at a time
-  int32_t kinds;  ///< food kinds
-  int32_t foods;  ///< most foods present at a time, all kinds
+  int32_t capacity;  ///< most agents alive at a time
+  int32_t kinds;     ///< food kinds
+  int32_t foods;     ///< most foods present at a time, all kinds
   int32_t walls;
   int32_t outer_walls;  ///< the first walls, a closed convex polygon
   int32_t circles;      ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
@@ -48,7 +48,7 @@ struct WorldShape {
   GenomeShape genome;
   NetworkShape network;
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
-  SceneGrid scene;
+  RayGrid scene;
 
   HEDON_FN int32_t wall_type() const { return 1 + kinds; }
   HEDON_FN int32_t types() const { return kinds + 2; }
@@ -60,17 +60,17 @@ inline constexpr int EVENTS_PER_SLOT = 16;
 
 HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t outer_walls) {
   WorldShape shape{};
-  shape.slots = config.population.capacity;
+  shape.capacity = config.population.capacity;
   shape.kinds = config.food.count;
   shape.walls = walls;
   shape.outer_walls = outer_walls;
-  shape.events = EVENTS_PER_SLOT * shape.slots;
+  shape.events = EVENTS_PER_SLOT * shape.capacity;
   shape.steps = config.learning.rollout_steps;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
-  shape.circles = shape.slots + shape.foods + (config.sensor.eaten_food == EatenFood::seen ? shape.foods : 0);
+  shape.circles = shape.capacity + shape.foods + (config.sensor.eaten_food == EatenFood::seen ? shape.foods : 0);
   shape.newborns = config.birth.inheritance == Inheritance::at_window_end ? shape.events : 0;
-  shape.scene = make_scene_grid(config, shape.slots + shape.foods);
+  shape.scene = make_ray_grid(config, shape.capacity + shape.foods);
   shape.genome = {shape.kinds, config.genome.neutral_count};
   const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
   shape.network = {{config.sensor.ray_count, shape.types(), shape.types() * config.sensor.touch_sectors, dense}};

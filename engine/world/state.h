@@ -71,7 +71,7 @@ struct FoodStock {
 };
 
 /// Single numbers of a world.
-struct Clock {
+struct WorldHead {
   int64_t step;          ///< steps completed
   int64_t extinct_step;  ///< -1 while any agent lives
   int32_t next_agent_id;
@@ -83,7 +83,7 @@ struct Clock {
   int32_t event_count;  ///< deaths not yet taken by the reader
   int32_t reserved;
 
-  HEDON_FIELDS(Clock, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, births_before,
+  HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, births_before,
                ghost_count, event_count, reserved)
 };
 
@@ -104,7 +104,7 @@ struct Ghost {
 };
 
 struct WorldState {
-  Array<Clock> clock;        // (1)
+  Array<WorldHead> head;     // (1)
   Array<Fault> fault;        // (1) the first error
   Array<Counters> counters;  // (1)
 
@@ -129,7 +129,7 @@ struct WorldState {
   // Learners, by slot.
   Array<float> params;          // (slots, params)
   Array<float> folded_bias;     // (slots, 64) derived from params
-  Array<float> paired_weights;  // (slots, pairs) derived from params; none where agents act with params themselves
+  Array<float> packed_weights;  // (slots, pairs) derived from params; none where agents act with params themselves
   Array<float> first_moment;    // (slots, params)
   Array<float> second_moment;   // (slots, params)
   Array<int64_t> updates;       // (slots) Adam steps done in this life
@@ -146,8 +146,8 @@ struct WorldState {
   Array<int32_t> event_eaten;  // (events, kinds)
   Array<float> event_genome;   // (events, genes)
 
-  HEDON_FIELDS(WorldState, clock, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
-               ghost, old_slot, newborn, newborn_genome, params, folded_bias, paired_weights, first_moment,
+  HEDON_FIELDS(WorldState, head, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
+               ghost, old_slot, newborn, newborn_genome, params, folded_bias, packed_weights, first_moment,
                second_moment, updates, observation, action, log_prob, value, reward, event, event_eaten, event_genome)
 };
 

@@ -20,9 +20,9 @@ inline constexpr const char* PART_NAMES[] = {"sense_and_act", "physics", "life",
 /// Adds to a fault of the physics its step and agent: the first agent whose forces were not finite.
 HEDON_FN void name_fault(World& world) {
   Fault& fault = world.fault();
-  fault.step = world.clock().step;
+  fault.step = world.head().step;
   if (fault.status != Status::not_finite) return;
-  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = world.state.living[i];
     const float sum = world.scratch.force_left[slot] + world.scratch.force_right[slot];
     if (sum - sum == 0.0f) continue;
@@ -36,7 +36,7 @@ HEDON_FN void name_fault(World& world) {
 HEDON_FN void check_inside(World& world) {
   const BodyState& body = world.state.physics.bodies;
   const ArenaConfig& arena = world.config->arena;
-  for (int32_t i = 0; i < world.clock().living_count; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = world.state.living[i];
     const float x = body.x[slot], y = body.y[slot];
     if (x >= 0.0f && x <= arena.width && y >= 0.0f && y <= arena.height) continue;
@@ -54,7 +54,7 @@ HEDON_FN void prepare_step(World& world) {
 /// within the window. `lap(part)` is called at the end of each part.
 template <class Group, class Lap>
 HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
-  Clock& clock = world.clock();
+  WorldHead& head = world.head();
   const WorldState& state = world.state;
 
   const Array<int32_t>& by_slot = world.scratch.by_slot;
@@ -64,19 +64,19 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     const PackedObservation observation = observe(world, slot, group.rank());
     world.observation(slot, t) = observation;
     sample_action(world, slot, t, observation);
-    drive(world, slot, t);
+    apply_motors(world, slot, t);
   };
   if (t % 2 == 0) {
-    group.for_each(clock.living_count, sense_and_act);
+    group.for_each(head.living_count, sense_and_act);
   } else {
-    group.for_each_backward(clock.living_count, sense_and_act);
+    group.for_each_backward(head.living_count, sense_and_act);
   }
   lap(Part::sense_and_act);
 
   TouchVisitor touch{&world};
   const StepScratch& scratch = world.scratch;
   physics_step(group, world.config->physics, world.constants->body, world.state.physics, world.physics_scratch,
-               state.living, clock.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
+               state.living, head.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
                world.fault());
   if (world.fault().status != Status::ok) {
     group.once([&] { name_fault(world); });
@@ -89,16 +89,16 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     eat(world);
   });
   if (world.fault().status != Status::ok) return;
-  group.for_each(clock.living_count, [&](int32_t i) { metabolize(world, by_slot[i], t); });
+  group.for_each(head.living_count, [&](int32_t i) { metabolize(world, by_slot[i], t); });
   group.once([&] {
     keep_ledger(world);
     if (world.config->birth.order == BirthOrder::before_deaths) breed(world);
-    reap(world);
+    apply_deaths(world);
     if (world.config->birth.order == BirthOrder::after_deaths) breed(world);
     grow(world);
-    clock.step += 1;
+    head.step += 1;
     prepare_step(world);
-    if (clock.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(clock.step));
+    if (head.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(head.step));
   });
   lap(Part::life);
 }

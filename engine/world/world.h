@@ -14,15 +14,15 @@ namespace hedon {
 
 /// The circles of the living and of the foods, sorted by the cells of a grid, and the walls: all that rays may
 /// hit. `gather_scene` computes it from the state.
-struct Scene {
+struct RayScene {
   Array<float> x, y, radius, type;                  ///< (circles) of the circles: cell by cell, row by row of cells
   Array<int32_t> start;                             ///< (cells + 1) first circle of each cell
   Array<int32_t> own;                               ///< (slots) index of the circle of the agent in each slot
   Array<int32_t> cell;                              ///< (circles) of each circle, before sorting
   Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< (walls)
-  Array<int32_t> sighted;  ///< (members, RAY_ARCS, circles + 16) for each member of the team: see `Sighted`
+  Array<int32_t> candidates;  ///< (members, RAY_ARCS, circles + 16) for each member of the team: see `RayCandidates`
 
-  HEDON_FIELDS(Scene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, sighted)
+  HEDON_FIELDS(RayScene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, candidates)
 };
 
 /// The result of an audit of one agent: `status` is ok if nothing is wrong.
@@ -64,26 +64,26 @@ struct World {
   WorldState state;
   PhysicsScratch physics_scratch;
   StepScratch scratch;
-  Scene scene;
+  RayScene scene;
 
-  HEDON_FN Clock& clock() const { return state.clock[0]; }
+  HEDON_FN WorldHead& head() const { return state.head[0]; }
   HEDON_FN Counters& counters() const { return state.counters[0]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
   /// The step at which the window of the current step began.
-  HEDON_FN int64_t window_start() const { return clock().step - clock().step % shape->steps; }
-  HEDON_FN bool over() const { return clock().extinct_step >= 0 || fault().status != Status::ok; }
+  HEDON_FN int64_t window_start() const { return head().step - head().step % shape->steps; }
+  HEDON_FN bool over() const { return head().extinct_step >= 0 || fault().status != Status::ok; }
 
   /// Keeps the first error; later ones are usually its consequences.
   HEDON_FN void fail(Status status, int32_t agent_id, double value, int32_t other_id = -1) const {
-    if (fault().status == Status::ok) fault() = {status, agent_id, clock().step, value, other_id, 0};
+    if (fault().status == Status::ok) fault() = {status, agent_id, head().step, value, other_id, 0};
   }
 
   HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->network.size()]; }
   /// What the agent in `slot` acts with.
   HEDON_FN ActingNetwork network(int32_t slot) const {
     const bool rounded = config->learning.acting_weights == ActingWeights::bfloat16;
-    float* paired = rounded ? &state.paired_weights[int64_t{slot} * shape->network.pairs()] : nullptr;
-    return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], paired};
+    float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->network.pairs()] : nullptr;
+    return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genome.size()]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->kinds]; }

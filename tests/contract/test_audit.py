@@ -4,6 +4,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from memory import overwrite
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 from hedon.error import EngineError
@@ -28,7 +29,7 @@ def slot_of(world: Simulation, agent: int) -> int:
 
 
 def poke(world: Simulation, path: str, index: int, value: float) -> None:
-    world.engine.poke(0, path, index, value)
+    overwrite(world, 0, path, index, value)
 
 
 def test_a_sound_world_passes(world):
@@ -87,7 +88,7 @@ def test_a_slot_held_twice_is_named(world):
         world.engine.save(0)
 
 
-@pytest.mark.parametrize(("path", "index", "value"), [("free", 0, 0), ("alive", 150, 1), ("clock.free_count", 0, 3)])
+@pytest.mark.parametrize(("path", "index", "value"), [("free", 0, 0), ("alive", 150, 1), ("head.free_count", 0, 3)])
 def test_slots_that_do_not_fit_are_named(world, path, index, value):
     poke(world, path, index, value)
     with pytest.raises(EngineError, match="slots_inconsistent"):
@@ -129,7 +130,7 @@ def test_lists_beyond_their_room_are_named(world):
 
 
 def test_more_deaths_than_the_buffer_holds_are_named(world):
-    poke(world, "clock.event_count", 0, 10**6)
+    poke(world, "head.event_count", 0, 10**6)
     with pytest.raises(EngineError, match="event_overflow"):
         world.run(1)
     assert len(world.engine.take_rows(0)["agent_id"]) <= 16 * 200

@@ -8,7 +8,7 @@ LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 WINDOW = 64
 
 # How each array of the state gets into a checkpoint. An array that stands nowhere here would be forgotten.
-DERIVED = {"alive", "living", "free", "folded_bias", "paired_weights"}
+DERIVED = {"alive", "living", "free", "folded_bias", "packed_weights"}
 TAKEN_BY_READER = {"event", "event_eaten", "event_genome"}
 FROM_CONFIG = {"physics.walls"}
 IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}
@@ -136,7 +136,7 @@ def test_slots_and_reads_are_no_part_of_a_digest(settings):
         plain.run(50)
         shuffled.run(50)
         shuffled.take_rows(0)
-    assert plain.clock(0)["event_count"] > shuffled.clock(0)["event_count"]
+    assert plain.head(0)["event_count"] > shuffled.head(0)["event_count"]
     assert plain.digest(0) == shuffled.digest(0)
 
 
@@ -162,5 +162,5 @@ def test_every_array_of_the_state_is_saved_or_known_to_follow_from_others():
             if path.startswith(prefix):
                 path = None if name is None else path.replace(prefix, name)
                 break
-        derived = path in (None, "clock.free_count", "clock.event_count", "clock.reserved", "food.present")
+        derived = path in (None, "head.free_count", "head.event_count", "head.reserved", "food.present")
         assert derived or path in saved, path

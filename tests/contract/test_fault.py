@@ -1,6 +1,7 @@
 """A run that stops at a fault keeps what it was, and shows it again."""
 
 import pytest
+from memory import overwrite
 from resumed_run import WINDOW, small_run
 from typer.testing import CliRunner
 
@@ -64,7 +65,7 @@ def break_at(monkeypatch, step, path, value):
         run(self, steps)
         if self.worlds[1].step >= step:
             monkeypatch.undo()
-            self.engine.poke(1, path, 0, value)
+            overwrite(self, 1, path, 0, value)
 
     monkeypatch.setattr(Simulation, "run", broken)
 

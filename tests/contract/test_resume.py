@@ -256,7 +256,7 @@ def test_a_branch_cannot_change_the_shape_of_a_world(half, setting):
 
 
 def test_a_branch_into_fewer_slots_than_live_is_refused(half):
-    with pytest.raises(RecordError, match=r"does not fit: world 0: clock\.living_count"):
+    with pytest.raises(RecordError, match=r"does not fit: world 0: head\.living_count"):
         branch(half, half.with_name("branch"), ["population.capacity=4", "population.initial_count=4"], steps=STEPS)
 
 

@@ -104,10 +104,10 @@ def read_world(simulation: Simulation) -> World:
         here = foods["kind"] == k
         stocks[k].foods = list(zip(foods["x"][here].tolist(), foods["y"][here].tolist(), strict=True))
         assert world.view("food_stock.present")[k] == len(stocks[k].foods)
-    clock = simulation.engine.clock(0)
+    head = simulation.engine.head(0)
     counters = {name: world.counters[name] for name in COUNTED}
     genome, old = world.view("genome").reshape(-1, rows["genome"].shape[1]).astype(float), np.zeros(0, bool)
-    free = world.view("free")[: clock["free_count"]].tolist()
+    free = world.view("free")[: head["free_count"]].tolist()
     vacancies = [Vacancy(genome[slot]) for slot in free]
     if world.config.birth.parents == "old_slots":
         old = world.view("old_slot") != 0
@@ -120,10 +120,10 @@ def read_world(simulation: Simulation) -> World:
         waiting = world.view("newborn_genome").reshape(-1, genome.shape[1]).astype(float)
         newborns = [
             Newborn(world.view("newborn.agent_id")[i], world.view("newborn.parent")[i], waiting[i])
-            for i in range(clock["births_in_window"])
+            for i in range(head["births_in_window"])
         ]
-    ghosts = [(world.view("ghost.x")[i], world.view("ghost.y")[i]) for i in range(clock["ghost_count"])]
-    numbers = {name: clock[name] for name in ("step", "next_agent_id", "births_in_window", "births_before")}
+    ghosts = [(world.view("ghost.x")[i], world.view("ghost.y")[i]) for i in range(head["ghost_count"])]
+    numbers = {name: head[name] for name in ("step", "next_agent_id", "births_in_window", "births_before")}
     return World(
         **numbers,
         agents=agents,

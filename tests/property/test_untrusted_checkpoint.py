@@ -21,13 +21,13 @@ LIVELY = (
     "population.initial_count=35",
 )
 BOUNDED = {  # array: a value that no world has
-    "clock.step": -1,
-    "clock.living_count": 61,
-    "clock.next_agent_id": 0,
-    "clock.extinct_step": 3,
-    "clock.births_in_window": -1,
-    "clock.births_before": -1,
-    "clock.ghost_count": -1,
+    "head.step": -1,
+    "head.living_count": 61,
+    "head.next_agent_id": 0,
+    "head.extinct_step": 3,
+    "head.births_in_window": -1,
+    "head.births_before": -1,
+    "head.ghost_count": -1,
     "ghost.kind": 1,
     "newborn.agent_id": 0,
     "newborn.parent": 30_000,
@@ -118,7 +118,7 @@ def test_a_checkpoint_of_another_shape_says_so(saved):
     for setting, array in (
         ("sensor.ray_count=12", "params"),
         ("genome.neutral_count=3", "genome"),
-        ("population.capacity=20", "clock.living_count"),
+        ("population.capacity=20", "head.living_count"),
         ("food.normal.capacity=20", "food.slot|food_stock.number"),
     ):
         other = make_simulation(*LIVELY, "population.initial_count=20", "food.normal.initial_count=5", setting)

@@ -100,7 +100,7 @@ def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_number_of_birth(no
     for _ in range(2):
         # Frozen noise depends on the number of births in the window before, so make it the same.
         arrays = simulation.engine.save(0)
-        arrays["clock.births_before"][:] = 5
+        arrays["head.births_before"][:] = 5
         simulation.engine.restore(0, arrays)
         first = simulation.worlds[0].counters["births"]
         simulation.run(64)

@@ -28,7 +28,7 @@ def test_the_estimate_is_what_is_reserved():
 def test_each_part_is_of_the_size_that_its_arrays_have():
     simulation, need = make_simulation(), memory_needed(load_config("baseline"), 1, 1)
     view = simulation.worlds[0].view
-    acting = ("params", "folded_bias", "paired_weights")
+    acting = ("params", "folded_bias", "packed_weights")
     networks = sum(view(name).nbytes for name in (*acting, "first_moment", "second_moment"))
     rollouts = sum(view(name).nbytes for name in ("observation", "action", "log_prob", "value", "reward"))
     assert need["networks and moments"] == pytest.approx(networks, rel=1e-3)

@@ -75,14 +75,9 @@ class Simulation:
     def view_names(self) -> list:
         """Paths that `view` knows."""
 
-    def poke(self, world: int, path: str, index: int, value: float) -> None:
-        """
-        For tests: overwrites one number of a world's state, as a memory error would.
-        """
-
     def counters(self, world: int) -> dict: ...
 
-    def clock(self, world: int) -> dict: ...
+    def head(self, world: int) -> dict: ...
 
     def digest(self, world: int) -> int: ...
 

@@ -110,17 +110,17 @@ class World:
     @property
     def step(self) -> int:
         """Steps completed; it does not change after extinction."""
-        return self._engine.clock(self.index)["step"]
+        return self._engine.head(self.index)["step"]
 
     @property
     def alive(self) -> int:
         """Agents alive."""
-        return self._engine.clock(self.index)["living_count"]
+        return self._engine.head(self.index)["living_count"]
 
     @property
     def extinct_step(self) -> int | None:
         """Steps completed when the last agent died, or None."""
-        step = self._engine.clock(self.index)["extinct_step"]
+        step = self._engine.head(self.index)["extinct_step"]
         return None if step < 0 else step
 
     @property
@@ -131,7 +131,7 @@ class World:
     @property
     def waiting_deaths(self) -> float:
         """Deaths that have not been read, as a share of the engine's room for them."""
-        return self._engine.clock(self.index)["event_count"] / len(self.view("event.birth_step"))
+        return self._engine.head(self.index)["event_count"] / len(self.view("event.birth_step"))
 
     @property
     def counters(self) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from hedon.record.folder import checkpoint_path, checkpoint_paths
 
 ARRAYS = {
     "0/params": np.arange(12, dtype=np.float32).reshape(3, 4),
-    "0/clock.step": np.array([7]),
+    "0/head.step": np.array([7]),
     "1/touch": np.zeros(0, np.uint64),
     "1/observation": np.zeros((0, 192), np.uint8),
 }
@@ -39,7 +39,7 @@ def test_a_checkpoint_comes_back_as_it_was_written(tmp_path: Path) -> None:
     assert found.arrays.keys() == ARRAYS.keys()
     for name, array in ARRAYS.items():
         np.testing.assert_array_equal(found.arrays[name], array, strict=True)
-    assert set(found.world(0)) == {"params", "clock.step"}
+    assert set(found.world(0)) == {"params", "head.step"}
 
 
 def test_numpy_reads_it_too(tmp_path: Path) -> None:
