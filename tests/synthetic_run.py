@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hedon.record.manifest import Manifest
-from hedon.record.schema import weight_names
+from hedon.record.schema import Columns
 from hedon.record.snapshot import Snapshot, save_snapshot
 from hedon.record.writer import Writer
 
@@ -41,7 +41,7 @@ class SyntheticWorld:
 
     def __post_init__(self) -> None:
         self.rng = np.random.default_rng(self.seed)
-        self.names = weight_names(self.food_kinds, self.neutral_count)
+        self.names = Columns(self.food_kinds, self.neutral_count).gene_names
         self.now = 0
         self.next_id = 0
         self.living = self._spawn(self.initial_count, 0)

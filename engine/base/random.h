@@ -47,6 +47,7 @@ enum class Purpose : uint32_t {
   initial_food = 13,
   vacant_network = 14,
   vacant_genome = 15,
+  hunt = 16,
 };
 
 /// The draws of one world for one purpose, one id (agent, food kind) and one step, counted by `index`.
@@ -92,6 +93,14 @@ HEDON_FN float to_cauchy(uint32_t word) {
   double sine, cosine;
   sincos_double(PI * (to_open_uniform(word) - 0.5), &sine, &cosine);
   return static_cast<float>(sine / cosine);
+}
+
+/// Student's t with `df` degrees of freedom (Bailey 1994, the polar method).
+HEDON_FN float to_student_t(double df, uint32_t word0, uint32_t word1) {
+  const double radius = sqrt(df * (exp_double(-2.0 / df * log_double(to_open_uniform(word0))) - 1.0));
+  double sine, cosine;
+  sincos_double(2.0 * PI * to_open_uniform(word1), &sine, &cosine);
+  return static_cast<float>(radius * cosine);
 }
 
 }  // namespace hedon

@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <tuple>
@@ -28,7 +29,7 @@ using FloatPairs = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::
 using FloatRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Ints = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using IntRows = nb::ndarray<const int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Bytes = nb::ndarray<const uint8_t, nb::shape<-1, sizeof(PackedObservation)>, nb::c_contig, nb::device::cpu>;
+using Bytes = nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using FloatsOut = nb::ndarray<nb::numpy, float>;
 using BytesOut = nb::ndarray<nb::numpy, uint8_t>;
 using ObservationSizes = std::tuple<int32_t, int32_t, int32_t, int32_t>;
@@ -37,19 +38,38 @@ NetworkShape to_shape(const ObservationSizes& sizes) {
   const auto [rays, types, touches, dense] = sizes;
   if (rays < 0 || rays > PACKED_RAYS) throw nb::value_error("shape: rays must be 0 to 32");
   if (types < 1 || types > 255) throw nb::value_error("shape: types must be 1 to 255");
-  if (touches < 0 || touches > 64) throw nb::value_error("shape: touches must be 0 to 64");
-  if (dense < 0 || dense > MAX_DENSE) throw nb::value_error("shape: dense must be 0 to 6");
-  return {{rays, types, touches, dense}};
+  constexpr int32_t MOST = MAX_DENSE + MAX_EXTRA_DENSE;
+  if (touches < 0 || touches > 128) throw nb::value_error("shape: touches must be 0 to 128");
+  if (dense < 0 || dense > MOST) throw nb::value_error("shape: dense must be 0 to 20");
+  ObservationShape shape{rays, types, touches, dense, NARROW_LINES};
+  if (shape.wide()) shape.lines = WIDE_LINES;
+  return {shape};
 }
+
+/// Packed observations in aligned memory, after a check of their width.
+struct Observations {
+  Aligned<ObservationLine> lines;
+  const ObservationShape& shape;
+
+  Observations(const NetworkShape& network, const Bytes& packed)
+      : lines(reinterpret_cast<const ObservationLine*>(packed.data()),
+              packed.shape(0) * static_cast<size_t>(network.observation.lines)),
+        shape(network.observation) {
+    check_length(packed.shape(1), static_cast<size_t>(shape.lines) * sizeof(ObservationLine), "observation's bytes");
+  }
+
+  const PackedObservation* first() const { return reinterpret_cast<const PackedObservation*>(lines.get()); }
+  const PackedObservation& at(size_t i) const { return *observation_at(shape, first(), static_cast<int64_t>(i)); }
+};
 
 /// A rollout's arrays, copied to aligned memory after a check of their sizes and indices.
 struct BatchArrays {
-  Aligned<PackedObservation> observation;
+  Observations observation;
   PpoBatch batch;
 
   BatchArrays(const NetworkShape& shape, const Bytes& packed, const FloatPairs& action, const Floats& log_prob,
               const Floats& first, const Floats& second)
-      : observation(reinterpret_cast<const PackedObservation*>(packed.data()), packed.shape(0)) {
+      : observation(shape, packed) {
     const size_t count = packed.shape(0);
     check_length(action.shape(0), count, "action");
     check_length(log_prob.shape(0), count, "log_prob");
@@ -57,13 +77,13 @@ struct BatchArrays {
     check_length(second.shape(0), count, "target or reward");
     const uint64_t touches = static_cast<uint64_t>(shape.observation.touches);
     for (size_t i = 0; i < count; ++i) {
-      const PackedObservation& one = observation.get()[i];
+      const PackedObservation& one = observation.at(i);
       for (int r = 0; r < shape.observation.rays; ++r) {
         if (one.ray_type[r] >= shape.observation.types) throw nb::value_error("observation: ray_type out of range");
       }
       if (touches < 64 && (one.touch >> touches) != 0) throw nb::value_error("observation: touch out of range");
     }
-    batch = {observation.get(),          action.data(), log_prob.data(), first.data(), second.data(), nullptr,
+    batch = {observation.first(),          action.data(), log_prob.data(), first.data(), second.data(), nullptr,
              static_cast<int32_t>(count)};
   }
 };
@@ -105,30 +125,36 @@ struct LearnerArrays {
 };
 
 BytesOut pack(FloatRows ray, nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu> ray_type,
-              nb::ndarray<const uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu> touch, FloatRows dense) {
-  const size_t count = ray.shape(0), rays = ray.shape(1), width = dense.shape(1);
+              nb::ndarray<const uint64_t, nb::c_contig, nb::device::cpu> touch, FloatRows dense) {
+  const size_t count = ray.shape(0), rays = ray.shape(1), words = touch.ndim() == 2 ? touch.shape(1) : 1, width = dense.shape(1);
+  constexpr size_t NARROW = MAX_DENSE, MOST = MAX_DENSE + MAX_EXTRA_DENSE;
   if (rays > PACKED_RAYS || ray_type.shape(1) != rays) throw nb::value_error("ray: at most 32 columns, as ray_type");
-  if (width > MAX_DENSE) throw nb::value_error("dense: at most 6 columns");
+  if (width > MOST) throw nb::value_error("dense: at most 20 columns");
+  if (words < 1 || words > 2) throw nb::value_error("touch: 1 or 2 columns of 64 bits");
   check_length(ray_type.shape(0), count, "ray_type");
   check_length(touch.shape(0), count, "touch");
   check_length(dense.shape(0), count, "dense");
-  Aligned<PackedObservation> packed(count);
+  const size_t lines = words > 1 || width > NARROW ? WIDE_LINES : NARROW_LINES;
+  Aligned<ObservationLine> packed(count * lines);
   for (size_t i = 0; i < count; ++i) {
-    PackedObservation& one = packed.get()[i];
+    PackedObservation& one = *reinterpret_cast<PackedObservation*>(packed.get() + i * lines);
     std::memcpy(one.ray, ray.data() + i * rays, rays * sizeof(float));
     std::memcpy(one.ray_type, ray_type.data() + i * rays, rays);
-    one.touch = touch.data()[i];
-    std::memcpy(one.dense, dense.data() + i * width, width * sizeof(float));
+    one.touch = touch.data()[i * words];
+    std::memcpy(one.dense, dense.data() + i * width, std::min(width, NARROW) * sizeof(float));
+    if (words > 1) extra_of(one).touch = touch.data()[i * words + 1];
+    if (width > NARROW)
+      std::memcpy(extra_of(one).dense, dense.data() + i * width + NARROW, (width - NARROW) * sizeof(float));
   }
-  return to_numpy(reinterpret_cast<const uint8_t*>(packed.get()), {count, sizeof(PackedObservation)});
+  return to_numpy(reinterpret_cast<const uint8_t*>(packed.get()), {count, lines * sizeof(ObservationLine)});
 }
 
 FloatsOut unpack_all(ObservationSizes sizes, Bytes packed) {
   const NetworkShape shape = to_shape(sizes);
   const size_t count = packed.shape(0), width = static_cast<size_t>(shape.observation.size());
-  Aligned<PackedObservation> aligned(reinterpret_cast<const PackedObservation*>(packed.data()), count);
+  const Observations observation(shape, packed);
   std::vector<float> full(count * width);
-  for (size_t i = 0; i < count; ++i) unpack(shape.observation, aligned.get()[i], full.data() + i * width);
+  for (size_t i = 0; i < count; ++i) unpack(shape.observation, observation.at(i), full.data() + i * width);
   return to_numpy(full.data(), {count, width});
 }
 
@@ -145,7 +171,7 @@ FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Fl
   const NetworkShape shape = to_shape(sizes);
   check_length(params.size(), static_cast<size_t>(shape.size()), "params");
   const size_t count = packed.shape(0);
-  Aligned<PackedObservation> observation(reinterpret_cast<const PackedObservation*>(packed.data()), count);
+  const Observations observation(shape, packed);
   Aligned<float> weights(params.data(), params.size());
   Aligned<float> folded_bias(HIDDEN);
   Aligned<float> packed_weights(static_cast<size_t>(shape.pairs()));
@@ -153,7 +179,7 @@ FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Fl
   std::vector<float> output(count * OUTPUTS);
   kernel.pack_weights(shape, network);
   for (size_t i = 0; i < count; ++i) {
-    kernel.forward(shape, network, observation.get()[i], output.data() + i * OUTPUTS);
+    kernel.forward(shape, network, observation.at(i), output.data() + i * OUTPUTS);
   }
   return to_numpy(output.data(), {count, size_t{OUTPUTS}});
 }
@@ -233,7 +259,8 @@ void bind_learning(nb::module_& module) {
       "param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
       "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
   learning.def("pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
-               "Packed observations (n, 192) from reading + 1 and type of each ray, touch bits and dense entries.");
+               "Packed observations (n, 192), or (n, 256) if they are wide, from reading + 1 and type of each ray, touch bits "
+               "(n, 1 or 2) and dense entries.");
   learning.def("unpack", unpack_all, nb::arg("shape"), nb::arg("observation"), "Full observations (n, size).");
   learning.def("pair_weights", pair_all, nb::arg("first"), nb::arg("second"),
                "Two weights in the bits of each float: the lower 16 are the second in bfloat16, the whole is near the "

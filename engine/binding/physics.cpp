@@ -36,7 +36,7 @@ struct Recorder {
   bool record = true;
 
   void on_start(int32_t slot) { rows[static_cast<size_t>(slot)].clear(); }
-  void on_contact(PairKind kind, int32_t body, int32_t other, Vec2 direction, float angle, uint8_t& mark) {
+  void on_contact(PairKind kind, int32_t body, int32_t other, Vec2 direction, float angle, uint8_t, uint8_t& mark) {
     if (mark < 255) ++mark;
     if (record) {
       rows[static_cast<size_t>(body)].push_back(
@@ -50,8 +50,10 @@ class Scene {
  public:
   Scene(nb::dict config, float width, float height, float radius, float density, float circle_radius, int64_t bodies,
         int64_t circles, const std::vector<std::array<float, 4>>& walls, int64_t pair_limit, int32_t outer_walls)
-      : config_(to_config<PhysicsConfig>(config)), shape_(make_disc(radius, density, circle_radius)) {
-    capacity_ = physics_capacity(bodies, circles, static_cast<int64_t>(walls.size()), width, height, shape_, config_);
+      : config_(to_config<PhysicsConfig>(config)),
+        shape_(make_disc(radius, density)),
+        table_(uniform_bodies(shape_, circle_radius, bodies, circles)) {
+    capacity_ = physics_capacity(bodies, circles, static_cast<int64_t>(walls.size()), width, height, table_, config_);
     if (pair_limit > 0) capacity_.body_pairs = pair_limit;
     const auto allocate = [this](const char*, auto& array, int64_t count) {
       using Item = std::remove_reference_t<decltype(array[0])>;
@@ -83,7 +85,7 @@ class Scene {
     const auto member = [&](int rank) {
       Team team(shared, rank);
       for (int i = 0; i < steps && fault_.status == Status::ok; ++i) {
-        physics_step(team, config_, shape_, state_, scratch_, order_, count_, force_, recorder_, fault_);
+        physics_step(team, config_, table_, state_, scratch_, order_, count_, force_, recorder_, fault_);
       }
     };
     std::vector<std::thread> others;
@@ -195,6 +197,7 @@ class Scene {
  private:
   PhysicsConfig config_;
   BodyShape shape_;
+  BodyTable table_;
   PhysicsCapacity capacity_{};
   PhysicsState state_{};
   PhysicsScratch scratch_{};

@@ -48,8 +48,8 @@ nb::dict columns(const Life* life, const int32_t* eaten, const float* genome, co
     for (const int64_t row : rows) values.insert(values.end(), data + row * width, data + (row + 1) * width);
     return copy_array(std::move(values), {rows.size(), static_cast<size_t>(width)});
   };
-  out["eaten"] = table(eaten, shape.kinds);
-  out["genome"] = table(genome, shape.genome.size());
+  out["eaten"] = table(eaten, shape.meals());
+  out["genome"] = table(genome, shape.genes);
   return out;
 }
 
@@ -73,6 +73,10 @@ nb::dict take_rows(PythonSimulation& self, int index) {
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
   nb::dict out =
       columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
+  out["species"] = copy_array(
+      std::vector<int32_t>(from.state.event_species.data, from.state.event_species.data + rows.size()), {rows.size()});
+  out["cause"] = copy_array(
+      std::vector<int32_t>(from.state.event_cause.data, from.state.event_cause.data + rows.size()), {rows.size()});
   from.head().event_count = 0;
   return out;
 }
@@ -81,40 +85,53 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   const World& from = self.slotted(index);
   std::vector<int64_t> rows;
   for (int32_t i = 0; i < from.head().living_count; ++i) rows.push_back(from.state.living[i]);
-  return columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
+  nb::dict out = columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
+  std::vector<int32_t> species;
+  for (const int64_t slot : rows) species.push_back(from.shape->species_of(static_cast<int32_t>(slot)));
+  out["species"] = copy_array(std::move(species), {rows.size()});
+  return out;
 }
 
-/// Full observations of the living, in their order, from the present state.
-nb::object observations(PythonSimulation& self, int index) {
+/// Full observations of the living of one species, in their order, from the present state.
+nb::object observations(PythonSimulation& self, int index, int32_t species) {
   World& from = self.slotted(index);
+  if (species < 0 || species >= from.shape->species) throw nb::index_error("no species has this index");
   const FloatMode mode(self.get().flush());
-  const ObservationShape& shape = from.shape->network.observation;
-  const size_t count = static_cast<size_t>(from.head().living_count), size = static_cast<size_t>(shape.size());
-  std::vector<float> full(count * size);
+  const ObservationShape& shape = from.shape->of[species].network.observation;
+  const size_t size = static_cast<size_t>(shape.size());
+  std::vector<float> full;
   gather_scene(from);
-  for (size_t i = 0; i < count; ++i) {
-    const int32_t slot = from.state.living[static_cast<int64_t>(i)];
+  size_t count = 0;
+  for (int32_t i = 0; i < from.head().living_count; ++i) {
+    const int32_t slot = from.state.living[i];
+    if (from.shape->species_of(slot) != species) continue;
     note_start(from, slot);
-    unpack(shape, observe(from, slot, 0), &full[i * size]);
+    full.resize(++count * size);
+    ObservationLine lines[WIDE_LINES];
+    PackedObservation& seen = *reinterpret_cast<PackedObservation*>(lines);
+    observe(from, slot, 0, seen);
+    unpack(shape, seen, &full[(count - 1) * size]);
   }
   return copy_array(std::move(full), {count, size});
 }
 
 void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, FloatsIn angle, FloatsIn energy,
-               FloatsIn food_x, FloatsIn food_y, IntsIn food_kind) {
+               IntsIn species, FloatsIn food_x, FloatsIn food_y, IntsIn food_kind) {
   self.world(index);
   const size_t agents = x.shape(0), foods = food_x.shape(0);
-  if (y.shape(0) != agents || angle.shape(0) != agents || energy.shape(0) != agents || food_y.shape(0) != foods ||
-      food_kind.shape(0) != foods) {
+  if (y.shape(0) != agents || angle.shape(0) != agents || energy.shape(0) != agents || species.shape(0) != agents ||
+      food_y.shape(0) != foods || food_kind.shape(0) != foods) {
     throw nb::value_error("all arrays of agents must have the same length, and all arrays of foods too");
   }
   const auto view = []<class T>(const T& array) {
     return Array<const typename T::Scalar>{array.data(), static_cast<int64_t>(array.shape(0))};
   };
-  if (!self.get().set_scene(
-          index, {view(x), view(y), view(angle), view(energy), view(food_x), view(food_y), view(food_kind)})) {
+  if (!self.get().set_scene(index, {view(x), view(y), view(angle), view(energy), view(species), view(food_x),
+                                    view(food_y), view(food_kind)})) {
     throw nb::value_error(
-        "there are more agents than slots, more foods of a kind than its capacity, or an unknown kind");
+        "there are more agents of a species than slots, more foods of a kind than its capacity, or an unknown species "
+        "or "
+        "kind");
   }
 }
 
@@ -122,16 +139,21 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
 void set_genomes(PythonSimulation& self, int index,
                  nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> genomes) {
   const World& from = self.slotted(index);
-  const size_t genes = static_cast<size_t>(from.shape->genome.size());
-  const float limit = from.config->genome.weight_limit;
-  if (genomes.shape(0) != static_cast<size_t>(from.head().living_count) || genomes.shape(1) != genes)
+  const size_t width = static_cast<size_t>(from.shape->genes);
+  if (genomes.shape(0) != static_cast<size_t>(from.head().living_count) || genomes.shape(1) != width)
     throw nb::value_error("there must be one genome for each living agent, with all genes");
-  for (size_t i = 0; i < genomes.shape(0) * genes; ++i) {
-    if (!(std::fabs(genomes.data()[i]) <= limit)) throw nb::value_error("genes must be within ± weight_limit");
-  }
-  for (size_t i = 0; i < genomes.shape(0); ++i) {
-    std::copy_n(genomes.data() + i * genes, genes, from.genome(from.state.living[static_cast<int64_t>(i)]));
-  }
+  const auto each = [&](auto&& visit) {
+    for (size_t i = 0; i < genomes.shape(0); ++i) {
+      const int32_t slot = from.state.living[static_cast<int64_t>(i)];
+      const GenomeConfig& layout = from.species(slot).config->genome;
+      for (int32_t g = 0; g < layout.genes.count; ++g)
+        visit(genomes.data()[i * width + static_cast<size_t>(g)], layout.genes[g].limit, from.genome(slot)[g]);
+    }
+  };
+  each([](float value, float limit, float&) {
+    if (!(std::fabs(value) <= limit)) throw nb::value_error("genes must be within ± weight_limit");
+  });
+  each([](float value, float, float& gene) { gene = value; });
 }
 
 /// `FloatMode` as a context manager.
@@ -182,9 +204,9 @@ void bind_simulation(nb::module_& module) {
       .def("living_rows", &living_rows, nb::arg("world"),
            nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
            "Columns of the living, in the order of their ids.")
-      .def("observations", &observations, nb::arg("world"),
-           nb::sig("def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]"),
-           "Full observations of the living: (living, size).")
+      .def("observations", &observations, nb::arg("world"), nb::arg("species") = 0,
+           nb::sig("def observations(self, world: int, species: int = 0) -> numpy.typing.NDArray[numpy.float32]"),
+           "Full observations of the living of a species: (living, size).")
       .def(
           "save",
           [](S& s, int world) {
@@ -197,7 +219,7 @@ void bind_simulation(nb::module_& module) {
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
-           nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
+           nb::arg("species"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")
       .def("set_genomes", &set_genomes, nb::arg("world"), nb::arg("genomes"),
            nb::sig("def set_genomes(self, world: int, genomes: numpy.typing.NDArray[numpy.float32]) -> None"),
@@ -209,7 +231,13 @@ void bind_simulation(nb::module_& module) {
           "One array of a world's state, by slot.")
       .def("view_names", &state_names, "Paths that `view` knows.")
       .def(
-          "counters", [](S& s, int world) { return to_dict(s.world(world).counters()); }, nb::arg("world"))
+          "counters",
+          [](S& s, int world, int species) {
+            const Array<Counters>& counters = s.world(world).state.counters;
+            if (species < 0 || species >= counters.count) throw nb::index_error("no species has this index");
+            return to_dict(counters[species]);
+          },
+          nb::arg("world"), nb::arg("species") = 0, "Counts and the energy ledger of one species.")
       .def(
           "head", [](S& s, int world) { return to_dict(s.world(world).head()); }, nb::arg("world"))
       .def(

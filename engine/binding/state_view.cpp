@@ -3,19 +3,20 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
-#include <set>
+#include <string>
 
 namespace nb = nanobind;
 
 namespace hedon {
 namespace {
 
-/// Arrays that have one row per slot. All others are flat.
-bool is_by_slot(const std::string& name) {
-  static const std::set<std::string> names = {
-      "alive",          "living",       "free",          "eaten",   "genome", "touch",    "params", "folded_bias",
-      "packed_weights", "first_moment", "second_moment", "updates", "action", "log_prob", "value",  "reward"};
-  return names.contains(name) || name.rfind("physics.bodies.", 0) == 0;
+/// The number of rows of an array that has several values in each; 0 for all other arrays.
+int64_t table_rows(const World& world, const std::string& wanted) {
+  int64_t rows = 0;
+  WorldState::for_each_shape([&](const char* name, auto, ArrayShape size) {
+    if (name == wanted && size.width != Extent::one) rows = extent(*world.shape, size.rows, 1);
+  });
+  return rows;
 }
 
 }  // namespace
@@ -28,12 +29,13 @@ nb::object view_state(nb::handle self, int index, const std::string& path) {
     const size_t count = static_cast<size_t>(array.count);
     if constexpr (std::is_arithmetic_v<T>) {
       if (name != path) return;
-      const bool table = is_by_slot(name) && count != capacity;
-      const size_t shape[2] = {table ? capacity : count, table ? count / capacity : 1};
-      out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, table ? 2 : 1, shape, self));
-    } else if constexpr (std::is_same_v<T, PackedObservation>) {
+      const size_t rows = static_cast<size_t>(table_rows(world, name));
+      const size_t shape[2] = {rows > 0 ? rows : count, rows > 0 ? count / rows : 1};
+      out = nb::cast(nb::ndarray<nb::numpy, const T>(array.data, rows > 0 ? 2 : 1, shape, self));
+    } else if constexpr (std::is_same_v<T, ObservationLine>) {
       if (name != path) return;
-      const size_t shape[3] = {capacity, count / capacity, sizeof(T)};
+      const size_t bytes = static_cast<size_t>(world.shape->lines) * sizeof(T);
+      const size_t shape[3] = {capacity, count * sizeof(T) / (capacity * bytes), bytes};
       out =
           nb::cast(nb::ndarray<nb::numpy, const uint8_t>(reinterpret_cast<const uint8_t*>(array.data), 3, shape, self));
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
@@ -54,7 +56,7 @@ nb::object view_state(nb::handle self, int index, const std::string& path) {
 nb::list state_names(PythonSimulation& self) {
   nb::list names;
   for_each_array(self.world(0).state, "", [&]<class T>(const std::string& name, Array<T>&) {
-    if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, PackedObservation>) {
+    if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, ObservationLine>) {
       names.append(name);
     } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
       T::for_each_field([&](const char* column, auto member) {

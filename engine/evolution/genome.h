@@ -1,4 +1,4 @@
-/// The genome: one reward weight per food kind, one for action, then neutral markers without effect on rewards.
+/// The genome: how founders draw it and how a child inherits it.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,15 @@
 
 namespace hedon {
 
-/// The index of each gene. Neutral markers mutate like the others: they are the control for drift.
-struct GenomeShape {
-  int32_t kinds;
-  int32_t neutral;
-
-  HEDON_FN int32_t action() const { return kinds; }
-  HEDON_FN int32_t size() const { return kinds + 1 + neutral; }
-};
-
 HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
-/// The law from which founders draw gene `g`.
-HEDON_FN const GeneConfig& initial_gene(const GenomeShape& shape, const GenomeConfig& config, int32_t g) {
-  return g < shape.kinds ? config.food[g] : g == shape.action() ? config.action : config.neutral;
-}
-
 /// A founder's genome: independent normals around the configured means.
-HEDON_FN void init_genome(const GenomeShape& shape, const GenomeConfig& config, const RandomStream& random,
-                          float* genome) {
-  for (int32_t g = 0; g < shape.size(); ++g) {
-    const GeneConfig& gene = initial_gene(shape, config, g);
+HEDON_FN void init_genome(const GenomeConfig& config, const RandomStream& random, float* genome) {
+  for (int32_t g = 0; g < config.genes.count; ++g) {
+    const GeneConfig& gene = config.genes[g];
     const Random4 bits = random.draw(static_cast<uint32_t>(g));
-    genome[g] = clip(gene.initial_mean + gene.initial_sd * to_normal(bits.word[0], bits.word[1]).first,
-                     -config.weight_limit, config.weight_limit);
+    const float normal = to_normal(bits.word[0], bits.word[1]).first;
+    genome[g] = clip(gene.initial_mean + gene.initial_sd * normal, -gene.limit, gene.limit);
   }
 }
 
@@ -42,18 +27,36 @@ struct BirthNumber {
   uint32_t index;   ///< from 0, in the order of birth
 };
 
-/// A child's genome: the parent's plus Cauchy noise of scale `mutation_scale`, clipped to the weight limit. `parent`
-/// and `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on
-/// the seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
+/// The noise of a gene, of scale 1.
+HEDON_FN float mutation_noise(const GeneConfig& gene, const Random4& bits) {
+  switch (gene.mutation_law) {
+    case MutationLaw::cauchy:
+      return to_cauchy(bits.word[0]);
+    case MutationLaw::student_t:
+      return to_student_t(gene.mutation_df, bits.word[0], bits.word[1]);
+    case MutationLaw::normal:
+      return to_normal(bits.word[0], bits.word[1]).first;
+    case MutationLaw::uniform:
+      return static_cast<float>(2.0 * to_open_uniform(bits.word[0]) - 1.0);
+  }
+  return 0.0f;
+}
+
+/// A child's genome: the parent's plus noise of each gene's law and `mutation_scale`, clipped to its limit. `parent` and
+/// `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on the
+/// seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
 /// noise.
-HEDON_FN void inherit(const GenomeShape& shape, const GenomeConfig& config, uint64_t seed, uint32_t child_id,
-                      BirthNumber number, const float* parent, float* child) {
+HEDON_FN void inherit(const GenomeConfig& config, uint64_t seed, uint32_t child_id, BirthNumber number,
+                      const float* parent, float* child) {
   const bool frozen = config.mutation_noise == MutationNoise::frozen;
   const RandomStream random = frozen ? RandomStream{seed, Purpose::frozen_mutation, number.index, number.births}
                                      : RandomStream{seed, Purpose::mutation, child_id, 0};
-  for (int32_t g = 0; g < shape.size(); ++g) {
-    const float noise = to_cauchy(random.draw(static_cast<uint32_t>(g)).word[0]);
-    child[g] = clip(parent[g] + config.mutation_scale * noise, -config.weight_limit, config.weight_limit);
+  for (int32_t g = 0; g < config.genes.count; ++g) {
+    const GeneConfig& gene = config.genes[g];
+    const Random4 bits = random.draw(static_cast<uint32_t>(g));
+    const bool mutates = to_uniform(bits.word[2]) < gene.mutation_probability;
+    const float noise = mutates ? gene.mutation_scale * mutation_noise(gene, bits) : 0.0f;
+    child[g] = clip(parent[g] + noise, -gene.limit, gene.limit);
   }
 }
 

@@ -5,20 +5,52 @@
 
 #include "base/device.h"
 #include "evolution/config.h"
-#include "evolution/genome.h"
+#include "learning/observation.h"
 
 namespace hedon {
 
-/// r = sum over kinds of w_k n_k + c_act w_act |f| / |f|_max.
-/// eaten      foods of each kind eaten in this step (kinds)
-/// force      Euclidean norm of the two applied forces
-/// max_force  the norm of both motors at full force; not used if the action is not normalized
-HEDON_FN float reward(const GenomeShape& shape, const RewardConfig& config, const float* genome, const int32_t* eaten,
-                      float force, float max_force) {
+/// What rewards may be paid for in one step of one agent.
+struct RewardInputs {
+  const int32_t* eaten;  ///< foods of each kind, then agents of each species
+  float force;           ///< Euclidean norm of the two applied forces
+  float max_force;       ///< the norm of both motors at full force; not used if the action is not normalized
+  const PackedObservation* seen;  ///< what it acted on
+  int32_t rays;
+};
+
+/// Mean or largest reading, in [0, 1], of the rays that met a type; 0 for the others.
+HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) {
+  float sum = 0.0f, largest = 0.0f;
+  for (int32_t r = 0; r < inputs.rays; ++r) {
+    if (inputs.seen->ray_type[r] != channel || !(inputs.seen->ray[r] > 0.0f)) continue;
+    const float reading = inputs.seen->ray[r] - 1.0f;
+    sum += reading;
+    largest = reading > largest ? reading : largest;
+  }
+  return mean ? sum / static_cast<float>(inputs.rays) : largest;
+}
+
+HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, const RewardInputs& inputs) {
+  switch (term.input) {
+    case RewardInput::food:
+      return static_cast<float>(inputs.eaten[term.index]);
+    case RewardInput::see_mean:
+    case RewardInput::see_max:
+      return sight_of(inputs, term.index, term.input == RewardInput::see_mean);
+    case RewardInput::action:
+      return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
+  }
+  return 0.0f;
+}
+
+/// r = Σ coef · w · x over the terms.
+HEDON_FN float reward(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
   float sum = 0.0f;
-  for (int32_t k = 0; k < shape.kinds; ++k) sum += genome[k] * static_cast<float>(eaten[k]);
-  const float action = config.action_norm == ActionNorm::max_force ? force / max_force : force;
-  return sum + config.action_coef * genome[shape.action()] * action;
+  for (int32_t i = 0; i < config.terms.count; ++i) {
+    const RewardTerm& term = config.terms[i];
+    sum += term.coef * genome[term.gene] * reward_input(config, term, inputs);
+  }
+  return sum;
 }
 
 }  // namespace hedon

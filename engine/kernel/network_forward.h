@@ -149,15 +149,23 @@ HEDON_INLINE void first_layer(const NetworkShape& shape, const Matrix& w1, const
     }
   }
   const int32_t touch = sizes.ray_entries(), dense = touch + sizes.touches;
-  unroll<S>([&](auto s) HEDON_INLINED {
-    for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
-      w1.template read<WIDTH>(touch + lowest_bit(bits), 0, row);
+  const auto add_touched = [&](auto s, uint64_t touched, int32_t first) HEDON_INLINED {
+    for (uint64_t bits = touched; bits != 0; bits &= bits - 1) {
+      w1.template read<WIDTH>(first + lowest_bit(bits), 0, row);
       unroll<WIDTH>([&](auto c) HEDON_INLINED { total[s][c] = total[s][c] + row[c]; });
     }
+  };
+  unroll<S>([&](auto s) HEDON_INLINED {
+    add_touched(s, observation[s]->touch, touch);
+    if (sizes.wide()) add_touched(s, extra_of(*observation[s]).touch, touch + 64);
   });
-  for (int32_t d = 0; d < sizes.dense; ++d) {
+  for (int32_t d = 0; d < sizes.narrow_dense(); ++d) {
     w1.template read<WIDTH>(dense + d, 0, row);
     unroll<S>([&](auto s) HEDON_INLINED { add_row(s, observation[s]->dense[d], row); });
+  }
+  for (int32_t d = MAX_DENSE; d < sizes.dense; ++d) {
+    w1.template read<WIDTH>(dense + d, 0, row);
+    unroll<S>([&](auto s) HEDON_INLINED { add_row(s, extra_of(*observation[s]).dense[d - MAX_DENSE], row); });
   }
   unroll<S>([&](auto s) HEDON_INLINED {
     unroll<WIDTH>([&](auto c) HEDON_INLINED { store(hidden + s * HIDDEN + c * LANES, tanh_lanes(total[s][c])); });

@@ -11,12 +11,12 @@ namespace {
 
 /// The samples `order[0 .. count)` of a block: pointers to their observations, and the data for the loss, filled up to
 /// a multiple of 16 by repeating the last one with share 0.
-HEDON_INLINE void gather(const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
+HEDON_INLINE void gather(const ObservationShape& shape, const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
                          const PackedObservation** observation) {
   const int padded = (count + LANES - 1) / LANES * LANES;
   for (int s = 0; s < padded; ++s) {
     const int32_t i = order[s < count ? s : count - 1];
-    observation[s] = batch.observation + i;
+    observation[s] = observation_at(shape, batch.observation, i);
     block.action[0][s] = batch.action[ACTIONS * i];
     block.action[1][s] = batch.action[ACTIONS * i + 1];
     block.log_prob[s] = batch.log_prob[i];
@@ -104,10 +104,17 @@ HEDON_INLINE void add_to_rows(const NetworkShape& shape, const PackedObservation
     for (uint64_t bits = observation[s]->touch; bits != 0; bits &= bits - 1) {
       add_one(row + lowest_bit(bits) * HIDDEN, s, 1.0f);
     }
+    if (!sizes.wide()) return;
+    for (uint64_t bits = extra_of(*observation[s]).touch; bits != 0; bits &= bits - 1) {
+      add_one(row + (64 + lowest_bit(bits)) * HIDDEN, s, 1.0f);
+    }
   });
   row += sizes.touches * HIDDEN;
-  for (int32_t d = 0; d < sizes.dense; ++d, row += HIDDEN) {
+  for (int32_t d = 0; d < sizes.narrow_dense(); ++d, row += HIDDEN) {
     add_all(row, [&](const PackedObservation& seen) HEDON_INLINED { return seen.dense[d]; });
+  }
+  for (int32_t d = MAX_DENSE; d < sizes.dense; ++d, row += HIDDEN) {
+    add_all(row, [&](const PackedObservation& seen) HEDON_INLINED { return extra_of(seen).dense[d - MAX_DENSE]; });
   }
   add_all(gradient + shape.b1(), [](const PackedObservation&) HEDON_INLINED { return 1.0f; });
 }
@@ -134,7 +141,7 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
                                     const PpoScratch& memory, float* gradient, LossSums& sums) {
   BlockSamples block;
   const PackedObservation* observation[BLOCK];
-  gather(batch, order, count, share, block, observation);
+  gather(shape.observation, batch, order, count, share, block, observation);
 
   const PlainRows w1 = {params + shape.w1()};
   int s = 0;

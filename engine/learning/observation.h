@@ -23,14 +23,41 @@ struct alignas(64) PackedObservation {
 };
 static_assert(sizeof(PackedObservation) == 192);
 
+inline constexpr int MAX_EXTRA_DENSE = 14;
+
+/// What a wide observation has more: a fourth cache line, directly after the packed observation.
+struct alignas(64) ObservationExtra {
+  uint64_t touch;                ///< bits from 64 on
+  float dense[MAX_EXTRA_DENSE];  ///< entries from MAX_DENSE on
+};
+static_assert(sizeof(ObservationExtra) == 64);
+
+/// A cache line of observations: arrays of observations are arrays of lines.
+struct alignas(64) ObservationLine {
+  uint8_t bytes[64];
+};
+inline constexpr int NARROW_LINES = sizeof(PackedObservation) / sizeof(ObservationLine);
+inline constexpr int WIDE_LINES = NARROW_LINES + 1;
+
+/// Only for observations of a wide layout.
+HEDON_INLINE const ObservationExtra& extra_of(const PackedObservation& packed) {
+  return *reinterpret_cast<const ObservationExtra*>(&packed + 1);
+}
+HEDON_INLINE ObservationExtra& extra_of(PackedObservation& packed) {
+  return *reinterpret_cast<ObservationExtra*>(&packed + 1);
+}
+
 /// Sizes of the observation. Its entries, and the rows of the first layer: rays (type, ray), touch (type, sector),
 /// dense.
 struct ObservationShape {
   int32_t rays;
   int32_t types;
-  int32_t touches;  ///< types * sectors, at most 64
-  int32_t dense;    ///< 5 or 6
+  int32_t touches;  ///< types * sectors, at most 128
+  int32_t dense;    ///< at most MAX_DENSE + MAX_EXTRA_DENSE
+  int32_t lines;    ///< cache lines from one observation to the next: NARROW_LINES, or WIDE_LINES
 
+  HEDON_INLINE bool wide() const { return touches > 64 || dense > MAX_DENSE; }
+  HEDON_INLINE int32_t narrow_dense() const { return dense < MAX_DENSE ? dense : MAX_DENSE; }
   HEDON_INLINE int32_t ray_entries() const { return types * rays; }
   HEDON_INLINE int32_t size() const { return ray_entries() + touches + dense; }
 
@@ -38,13 +65,23 @@ struct ObservationShape {
   HEDON_INLINE int32_t ray_entry(int32_t ray, int32_t type) const { return type * rays + ray; }
 };
 
+/// Observation `i` of an array.
+HEDON_INLINE const PackedObservation* observation_at(const ObservationShape& shape, const PackedObservation* first,
+                                                     int64_t i) {
+  return reinterpret_cast<const PackedObservation*>(reinterpret_cast<const ObservationLine*>(first) + i * shape.lines);
+}
+
 /// Writes the full observation: `size()` floats.
 HEDON_FN void unpack(const ObservationShape& shape, const PackedObservation& packed, float* full) {
   int32_t at = shape.ray_entries();
   for (int32_t i = 0; i < at; ++i) full[i] = -1.0f;
   for (int32_t r = 0; r < shape.rays; ++r) full[shape.ray_entry(r, packed.ray_type[r])] = packed.ray[r] - 1.0f;
-  for (int32_t t = 0; t < shape.touches; ++t, ++at) full[at] = static_cast<float>((packed.touch >> t) & 1u);
-  for (int32_t d = 0; d < shape.dense; ++d, ++at) full[at] = packed.dense[d];
+  for (int32_t t = 0; t < shape.touches; ++t, ++at) {
+    const uint64_t bits = t < 64 ? packed.touch : extra_of(packed).touch;
+    full[at] = static_cast<float>((bits >> (t & 63)) & 1u);
+  }
+  for (int32_t d = 0; d < shape.dense; ++d, ++at)
+    full[at] = d < MAX_DENSE ? packed.dense[d] : extra_of(packed).dense[d - MAX_DENSE];
 }
 
 }  // namespace hedon

@@ -10,20 +10,78 @@
 
 namespace hedon {
 
-/// The shape of all movable bodies, and the shape of all static circles.
+/// A disc of uniform density.
 struct BodyShape {
-  float radius;         ///< of a movable body [u]
-  float mass;           ///< of a movable body
-  float inertia;        ///< of a movable body about its center [mass·u²]
-  float circle_radius;  ///< of a static circle [u]
+  float radius;   ///< [u]
+  float mass;     ///< π·radius²·density
+  float inertia;  ///< about the center: ½·mass·radius² [mass·u²]
 
-  HEDON_FIELDS(BodyShape, radius, mass, inertia, circle_radius)
+  HEDON_FIELDS(BodyShape, radius, mass, inertia)
 };
 
-/// A disc of uniform density (mass π·radius²·density, inertia ½·mass·radius²), and static circles of `circle_radius`.
-HEDON_FN BodyShape make_disc(float radius, float density, float circle_radius) {
+HEDON_FN BodyShape make_disc(float radius, float density) {
   const float mass = density * PI_F * radius * radius;
-  return {radius, mass, 0.5f * mass * radius * radius, circle_radius};
+  return {radius, mass, 0.5f * mass * radius * radius};
+}
+
+inline constexpr int MAX_BODY_CLASSES = 4;
+inline constexpr int MAX_CIRCLE_CLASSES = 8;
+
+/// The classes of bodies and of static circles. Each class owns a range of slots.
+struct BodyTable {
+  int32_t classes;
+  int32_t first_slot[MAX_BODY_CLASSES + 1];  ///< class c owns slots [first_slot[c], first_slot[c + 1])
+  BodyShape shape[MAX_BODY_CLASSES];
+  uint32_t meets_bodies[MAX_BODY_CLASSES];   ///< bit c: it collides with bodies of class c; symmetric
+  uint32_t meets_circles[MAX_BODY_CLASSES];  ///< bit c: it collides with circles of class c
+  int32_t circle_classes;
+  int32_t first_circle[MAX_CIRCLE_CLASSES + 1];
+  float circle_radius;  ///< of every static circle [u]
+
+  HEDON_FN int32_t body_class(int32_t slot) const {
+    int32_t c = 0;
+    while (slot >= first_slot[c + 1]) ++c;
+    return c;
+  }
+  HEDON_FN int32_t circle_class(int32_t circle) const {
+    int32_t c = 0;
+    while (circle >= first_circle[c + 1]) ++c;
+    return c;
+  }
+  HEDON_FN float radius(int32_t slot) const { return shape[body_class(slot)].radius; }
+  HEDON_FN bool collide(int32_t slot, int32_t other) const {
+    return (meets_bodies[body_class(slot)] >> body_class(other) & 1u) != 0;
+  }
+  HEDON_FN bool collides_with_circle(int32_t slot, int32_t circle) const {
+    return (meets_circles[body_class(slot)] >> circle_class(circle) & 1u) != 0;
+  }
+  HEDON_FN float max_radius() const {
+    float largest = shape[0].radius;
+    for (int32_t c = 1; c < classes; ++c) largest = shape[c].radius > largest ? shape[c].radius : largest;
+    return largest;
+  }
+  HEDON_FN float min_radius() const {
+    float least = shape[0].radius;
+    for (int32_t c = 1; c < classes; ++c) least = shape[c].radius < least ? shape[c].radius : least;
+    return least;
+  }
+  HEDON_FN float min_mass() const {
+    float least = shape[0].mass;
+    for (int32_t c = 1; c < classes; ++c) least = shape[c].mass < least ? shape[c].mass : least;
+    return least;
+  }
+};
+
+/// One class of bodies and one of circles, all of which collide.
+HEDON_FN BodyTable uniform_bodies(const BodyShape& shape, float circle_radius, int64_t slots, int64_t circles) {
+  BodyTable table{};
+  table.classes = table.circle_classes = 1;
+  table.first_slot[1] = static_cast<int32_t>(slots);
+  table.first_circle[1] = static_cast<int32_t>(circles);
+  table.shape[0] = shape;
+  table.meets_bodies[0] = table.meets_circles[0] = 1;
+  table.circle_radius = circle_radius;
+  return table;
 }
 
 /// Movable bodies by slot. Heading 0 points along +y; positive is counter-clockwise.

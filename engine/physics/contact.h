@@ -1,8 +1,8 @@
 /// Contacts of one substep, with all the data that the solver needs.
 ///
-/// All bodies are discs with the same mass and inertia, so impulses are stored per mass [u/s]. A normal impulse passes
-/// through the center, so it never rotates a body. `arm` is the distance from the center to the contact point, which is
-/// halfway between the two surfaces.
+/// Impulses are stored per mass [u/s]: of the body itself at a static object, of a body of the first class between two
+/// bodies. A normal impulse passes through the center, so it never rotates a disc. `arm` is the distance from the
+/// center to the contact point, which is halfway between the two surfaces.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct alignas(16) Motion {
   float unused;
 };
 
-/// Two bodies that overlap.
+/// Two bodies of one class that overlap.
 struct BodyContact {
   int32_t first, second;     ///< indices
   float normal_x, normal_y;  ///< unit vector from the first center to the second
@@ -30,6 +30,20 @@ struct BodyContact {
   float tangent_impulse;     ///< accumulated [u/s]
   float approach;            ///< normal velocity before solving; negative where they approach [u/s]
   int32_t pair;              ///< in the list
+};
+
+/// Two bodies that overlap, of any classes.
+struct MixedContact {
+  int32_t first, second;              ///< indices
+  float normal_x, normal_y;           ///< unit vector from the first center to the second
+  float arm_first, arm_second;        ///< [u]
+  float turn_first, turn_second;      ///< change of angular velocity per tangential impulse [1/u]
+  float weight_first, weight_second;  ///< change of velocity per impulse: mass of the first class / mass of the body
+  float normal_mass, tangent_mass;    ///< effective masses, per mass of a body of the first class
+  float normal_impulse;               ///< accumulated, >= 0 [u/s]
+  float tangent_impulse;              ///< accumulated [u/s]
+  float approach;                     ///< normal velocity before solving; negative where they approach [u/s]
+  int32_t pair;                       ///< in the list
 };
 
 /// A body that overlaps a static circle or a wall.

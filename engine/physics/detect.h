@@ -8,6 +8,9 @@
 
 namespace hedon {
 
+/// Bits of a pair's mark: one for each of its bodies. A body is the first of its pairs with static objects.
+inline constexpr uint8_t FIRST = 1, SECOND = 2;
+
 /// The indices and pairs of one batch.
 struct BatchRange {
   int32_t first_index, last_index;
@@ -29,22 +32,66 @@ HEDON_FN BatchRange batch_range(const NeighborList& list, int32_t batch) {
           list.walls.start[last]};
 }
 
+/// All bodies are of one class: their mass cancels from every contact.
+struct AlikeBodies {
+  using Contact = BodyContact;
+  float size, inverse_of_mass, inverse_of_inertia, gyration;
+
+  HEDON_FN AlikeBodies(const BodyTable& table, const PhysicsScratch&)
+      : size(table.shape[0].radius),
+        inverse_of_mass(1.0f / table.shape[0].mass),
+        inverse_of_inertia(1.0f / table.shape[0].inertia),
+        gyration(table.shape[0].mass / table.shape[0].inertia) {}
+
+  HEDON_FN static void note(int32_t, int32_t) {}
+  HEDON_FN float radius(int32_t) const { return size; }
+  HEDON_FN float inverse_mass(int32_t) const { return inverse_of_mass; }
+  HEDON_FN float inverse_inertia(int32_t) const { return inverse_of_inertia; }
+  HEDON_FN float inverse_gyration(int32_t) const { return gyration; }
+  HEDON_FN static BodyContact* contacts(const PhysicsScratch& scratch) { return scratch.body_contacts.data; }
+};
+
+/// Bodies of several classes, by their index in the list.
+struct MixedBodies {
+  using Contact = MixedContact;
+  const BodyTable& table;
+  uint8_t* body_class;
+
+  HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsScratch& scratch)
+      : table(classes), body_class(scratch.body_class.data) {}
+
+  /// Keeps the class of a body; call it first in each step.
+  HEDON_FN void note(int32_t index, int32_t slot) const {
+    body_class[index] = static_cast<uint8_t>(table.body_class(slot));
+  }
+  HEDON_FN const BodyShape& shape(int32_t index) const { return table.shape[body_class[index]]; }
+  HEDON_FN float radius(int32_t index) const { return shape(index).radius; }
+  HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / shape(index).mass; }
+  HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / shape(index).inertia; }
+  HEDON_FN float inverse_gyration(int32_t index) const { return shape(index).mass / shape(index).inertia; }
+  /// Change of velocity per impulse: the mass of the first class over that of the body.
+  HEDON_FN float weight(int32_t index) const { return table.shape[0].mass / shape(index).mass; }
+  HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
+};
+
 /// The input of a solver: one batch in one step.
+template <class Bodies>
 struct Batch {
   const PhysicsConfig& config;
-  const BodyShape& shape;
+  const Bodies& bodies;
+  float circle_radius;  ///< [u]
   const SolverConstants& c;
   const PhysicsState& state;
   const PhysicsScratch& scratch;
   BatchRange range;
 
-  /// Distances at which two centers, or a center and a wall, just touch [u].
-  HEDON_FN float body_touch() const { return 2.0f * shape.radius; }
-  HEDON_FN float circle_touch() const { return shape.radius + shape.circle_radius; }
-  HEDON_FN float wall_touch() const { return shape.radius; }
+  /// Distance at which two centers just touch [u].
+  HEDON_FN float body_touch(int32_t first, int32_t second) const {
+    return bodies.radius(first) + bodies.radius(second);
+  }
 
   /// The contacts of the batch. Those with circles and then those with walls share an array.
-  HEDON_FN BodyContact* body_contacts() const { return scratch.body_contacts.data + range.first_body_pair; }
+  HEDON_FN typename Bodies::Contact* body_contacts() const { return Bodies::contacts(scratch) + range.first_body_pair; }
   HEDON_FN StaticContact* static_contacts() const {
     return scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
   }
@@ -75,17 +122,18 @@ struct FoundContacts {
 };
 
 /// Reports two bodies that touch to the visitor, once for each.
-template <class Visitor>
-HEDON_FN void tell_bodies(const Batch& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
+template <class Bodies, class Visitor>
+HEDON_FN void tell_bodies(const Batch<Bodies>& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
   const NeighborList& list = batch.state.neighbors;
   const int32_t first = list.bodies.first[pair], second = list.bodies.second[pair];
   const int32_t a = list.slot[first], b = list.slot[second];
-  visitor.on_contact(PairKind::body, a, b, normal, batch.scratch.angle[first], list.bodies.mark[pair]);
-  visitor.on_contact(PairKind::body, b, a, -normal, batch.scratch.angle[second], list.bodies.mark[pair]);
+  visitor.on_contact(PairKind::body, a, b, normal, batch.scratch.angle[first], FIRST, list.bodies.mark[pair]);
+  visitor.on_contact(PairKind::body, b, a, -normal, batch.scratch.angle[second], SECOND, list.bodies.mark[pair]);
 }
 
 /// Fills in the contact of a pair of bodies, with the stored impulses of the pair.
-HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& normal, BodyContact& contact) {
+template <class Bodies>
+HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direction& normal, BodyContact& contact) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
   contact.first = pairs.first[pair];
@@ -93,7 +141,7 @@ HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& no
   contact.normal_x = normal.x;
   contact.normal_y = normal.y;
   contact.arm = 0.5f * normal.distance;
-  contact.turn = contact.arm * batch.c.inverse_gyration;
+  contact.turn = contact.arm * batch.bodies.inverse_gyration(contact.first);
   contact.tangent_mass = 0.5f / (1.0f + contact.arm * contact.turn);
   contact.normal_impulse = scratch.bodies.normal[pair];
   contact.tangent_impulse = scratch.bodies.tangent[pair];
@@ -101,17 +149,41 @@ HEDON_FN void fill_contact(const Batch& batch, int32_t pair, const Direction& no
   contact.pair = pair;
 }
 
+template <class Bodies>
+HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direction& normal, MixedContact& contact) {
+  const PairList& pairs = batch.state.neighbors.bodies;
+  const PhysicsScratch& scratch = batch.scratch;
+  const Bodies& bodies = batch.bodies;
+  const int32_t a = contact.first = pairs.first[pair], b = contact.second = pairs.second[pair];
+  contact.normal_x = normal.x;
+  contact.normal_y = normal.y;
+  contact.arm_first = 0.5f * (normal.distance + (bodies.radius(a) - bodies.radius(b)));
+  contact.arm_second = 0.5f * (normal.distance - (bodies.radius(a) - bodies.radius(b)));
+  contact.weight_first = bodies.weight(a);
+  contact.weight_second = bodies.weight(b);
+  contact.turn_first = contact.weight_first * contact.arm_first * batch.bodies.inverse_gyration(a);
+  contact.turn_second = contact.weight_second * contact.arm_second * batch.bodies.inverse_gyration(b);
+  contact.normal_mass = 1.0f / (contact.weight_first + contact.weight_second);
+  contact.tangent_mass = 1.0f / ((contact.weight_first + contact.arm_first * contact.turn_first) +
+                                 (contact.weight_second + contact.arm_second * contact.turn_second));
+  contact.normal_impulse = scratch.bodies.normal[pair];
+  contact.tangent_impulse = scratch.bodies.tangent[pair];
+  contact.approach = relative_velocity(contact, scratch.motion[a], scratch.motion[b]).normal;
+  contact.pair = pair;
+}
+
 /// Fills in the contact of a body with a static object, whose nearest point is `point`. The centers, or center and
 /// wall, just touch at a distance of `touch` [u].
-HEDON_FN void fill_contact(const Batch& batch, const PairList& pairs, const PairScratch& work, int32_t pair, Vec2 point,
-                           const Direction& normal, float touch, StaticContact& contact) {
+template <class Bodies>
+HEDON_FN void fill_contact(const Batch<Bodies>& batch, const PairList& pairs, const PairScratch& work, int32_t pair,
+                           Vec2 point, const Direction& normal, float touch, StaticContact& contact) {
   contact.body = pairs.first[pair];
   contact.anchor_x = point.x - touch * normal.x;
   contact.anchor_y = point.y - touch * normal.y;
   contact.normal_x = normal.x;
   contact.normal_y = normal.y;
-  contact.arm = batch.shape.radius + 0.5f * (normal.distance - touch);
-  contact.turn = contact.arm * batch.c.inverse_gyration;
+  contact.arm = batch.bodies.radius(contact.body) + 0.5f * (normal.distance - touch);
+  contact.turn = contact.arm * batch.bodies.inverse_gyration(contact.body);
   contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.turn);
   contact.normal_impulse = work.normal[pair];
   contact.tangent_impulse = work.tangent[pair];
@@ -121,18 +193,21 @@ HEDON_FN void fill_contact(const Batch& batch, const PairList& pairs, const Pair
 
 /// Finds the contacts of a batch with circles or walls. A pair that the solver does not act on loses its impulses.
 /// nearest(other, center)   the relevant point of the circle or wall
-/// touch                    distance at which they just touch [u]
-/// reach                    squared distances below which they touch, and below which the solver acts on them [u²]
-template <class Visitor, class Nearest>
-HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch& batch, const PairList& pairs,
-                                            const PairScratch& work, int32_t first_pair, int32_t last_pair, float touch,
-                                            Reach reach, StaticContact* contacts, Visitor& visitor, Nearest&& nearest) {
+/// touch_of(body)           distance at which they just touch [u]
+/// reach_of(touch)          squared distances below which they touch, and below which the solver acts on them [u²]
+template <class Bodies, class Visitor, class Touch, class ReachOf, class Nearest>
+HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch<Bodies>& batch, const PairList& pairs,
+                                            const PairScratch& work, int32_t first_pair, int32_t last_pair,
+                                            Touch&& touch_of, ReachOf&& reach_of, StaticContact* contacts,
+                                            Visitor& visitor, Nearest&& nearest) {
   const PhysicsScratch& scratch = batch.scratch;
   const Vec2* position = scratch.position.data;
   int32_t count = 0;
   bool fast = false;
   for (int32_t pair = first_pair; pair < last_pair; ++pair) {
     const int32_t body = pairs.first[pair], other = pairs.second[pair];
+    const float touch = touch_of(body);
+    const Reach reach = reach_of(touch);
     const Vec2 point = nearest(other, position[body]);
     const Vec2 between = point - position[body];
     const float squared = squared_length(between);
@@ -148,29 +223,32 @@ HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch& batch, c
       fast |= contact.approach <= -batch.c.restitution_threshold;
     }
     visitor.on_contact(kind, batch.state.neighbors.slot[body], other, Vec2{normal.x, normal.y}, scratch.angle[body],
-                       pairs.mark[pair]);
+                       FIRST, pairs.mark[pair]);
   }
   return {count, fast};
 }
 
 /// Finds the contacts of a batch with circles.
-template <class Visitor>
-HEDON_FN FoundContacts find_circle_contacts(const Batch& batch, Reach reach, StaticContact* contacts,
+template <class Bodies, class Visitor, class ReachOf>
+HEDON_FN FoundContacts find_circle_contacts(const Batch<Bodies>& batch, ReachOf&& reach_of, StaticContact* contacts,
                                             Visitor& visitor) {
   const StaticCircles& circles = batch.state.circles;
   const auto center = [&](int32_t circle, Vec2) { return Vec2{circles.x[circle], circles.y[circle]}; };
-  return find_static_contacts(PairKind::circle, batch, batch.state.neighbors.circles, batch.scratch.circles,
-                              batch.range.first_circle_pair, batch.range.last_circle_pair, batch.circle_touch(), reach,
-                              contacts, visitor, center);
+  return find_static_contacts(
+      PairKind::circle, batch, batch.state.neighbors.circles, batch.scratch.circles, batch.range.first_circle_pair,
+      batch.range.last_circle_pair,
+      [bodies = batch.bodies, radius = batch.circle_radius](int32_t body) { return bodies.radius(body) + radius; },
+      reach_of, contacts, visitor, center);
 }
 
 /// Finds the contacts of a batch with walls. `nearest(wall, center)` gives the relevant point of the wall.
-template <class Visitor, class Nearest>
-HEDON_FN FoundContacts find_wall_contacts(const Batch& batch, Reach reach, StaticContact* contacts, Visitor& visitor,
-                                          Nearest&& nearest) {
-  return find_static_contacts(PairKind::wall, batch, batch.state.neighbors.walls, batch.scratch.walls,
-                              batch.range.first_wall_pair, batch.range.last_wall_pair, batch.wall_touch(), reach,
-                              contacts, visitor, nearest);
+template <class Bodies, class Visitor, class ReachOf, class Nearest>
+HEDON_FN FoundContacts find_wall_contacts(const Batch<Bodies>& batch, ReachOf&& reach_of, StaticContact* contacts,
+                                          Visitor& visitor, Nearest&& nearest) {
+  return find_static_contacts(
+      PairKind::wall, batch, batch.state.neighbors.walls, batch.scratch.walls, batch.range.first_wall_pair,
+      batch.range.last_wall_pair, [bodies = batch.bodies](int32_t body) { return bodies.radius(body); }, reach_of,
+      contacts, visitor, nearest);
 }
 
 }  // namespace hedon

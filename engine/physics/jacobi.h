@@ -47,26 +47,27 @@ HEDON_FN Vec2 ring_point(const PhysicsState& state, int32_t wall, Vec2 center) {
 
 /// Finds the contacts of a batch between bodies, in the order of pairs. A pair that the solver does not act on loses
 /// its impulses.
-template <class Visitor>
-HEDON_FN FoundContacts find_in_order(const Batch& batch, Visitor& visitor) {
+template <class Bodies, class Visitor>
+HEDON_FN FoundContacts find_in_order(const Batch<Bodies>& batch, Visitor& visitor) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PairScratch& work = batch.scratch.bodies;
   const BatchRange& range = batch.range;
   const int32_t* first = pairs.first.data;
   const int32_t* second = pairs.second.data;
   const Vec2* position = batch.scratch.position.data;
-  const Reach reach = jacobi_reach(batch.body_touch());
+  const auto reach_of = [&](int32_t pair) { return jacobi_reach(batch.body_touch(first[pair], second[pair])); };
   int32_t* active = batch.scratch.active.data + range.first_body_pair;
   int32_t touching = 0;
   for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
     const float squared = squared_length(position[second[pair]] - position[first[pair]]);
+    const Reach reach = reach_of(pair);
     const bool solid = squared < reach.solid;
     active[touching] = pair;
     touching += squared < reach.touch;
     work.normal[pair] = solid ? work.normal[pair] : 0.0f;
     work.tangent[pair] = solid ? work.tangent[pair] : 0.0f;
   }
-  BodyContact* contacts = batch.body_contacts();
+  auto* contacts = batch.body_contacts();
   int32_t count = 0;
   bool fast = false;
   for (int32_t i = 0; i < touching; ++i) {
@@ -74,8 +75,8 @@ HEDON_FN FoundContacts find_in_order(const Batch& batch, Visitor& visitor) {
     const Vec2 between = position[second[pair]] - position[first[pair]];
     const Direction normal = direction_of(between);
     tell_bodies(batch, pair, {normal.x, normal.y}, visitor);
-    if (!(squared_length(between) < reach.solid)) continue;
-    BodyContact& contact = contacts[count++];
+    if (!(squared_length(between) < reach_of(pair).solid)) continue;
+    auto& contact = contacts[count++];
     fill_contact(batch, pair, normal, contact);
     fast |= contact.approach <= -batch.c.restitution_threshold;
   }
@@ -83,20 +84,21 @@ HEDON_FN FoundContacts find_in_order(const Batch& batch, Visitor& visitor) {
 }
 
 /// The contacts of a batch in one substep.
+template <class Bodies>
 struct JacobiContacts {
-  BodyContact* bodies;
+  typename Bodies::Contact* bodies;
   StaticContact* statics;
   int32_t body_count, static_count;
 };
 
 /// One Jacobi pass. `impulse(contact, velocity)` gives the change of the impulses of a contact whose relative
 /// velocity is the one at the beginning of the pass.
-template <class Impulse>
-HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impulse&& impulse) {
+template <class Bodies, class Impulse>
+HEDON_FN void jacobi_pass(const Batch<Bodies>& batch, const JacobiContacts<Bodies>& found, Impulse&& impulse) {
   Motion* motion = batch.scratch.motion.data;
   Motion* change = batch.scratch.change.data;
   for (int32_t i = 0; i < found.body_count; ++i) {
-    BodyContact& contact = found.bodies[i];
+    auto& contact = found.bodies[i];
     const int32_t a = contact.first, b = contact.second;
     const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[a], motion[b]));
     apply(contact, added.normal, added.tangent, change[a], change[b]);
@@ -114,14 +116,29 @@ HEDON_FN void jacobi_pass(const Batch& batch, const JacobiContacts& found, Impul
   }
 }
 
+/// How far two things overlap [u].
+template <class Bodies>
+HEDON_FN float overlap(const Batch<Bodies>& batch, const BodyContact& contact) {
+  return 2.0f * (batch.bodies.radius(contact.first) - contact.arm);
+}
+template <class Bodies>
+HEDON_FN float overlap(const Batch<Bodies>& batch, const MixedContact& contact) {
+  return batch.body_touch(contact.first, contact.second) - (contact.arm_first + contact.arm_second);
+}
+template <class Bodies>
+HEDON_FN float overlap(const Batch<Bodies>& batch, const StaticContact& contact) {
+  return 2.0f * (batch.bodies.radius(contact.body) - contact.arm);
+}
+
 /// Solves one contact separately and returns the change of its impulses. Overlap gives a velocity (a bias) at which
 /// the two are to separate; the normal impulse of the pass before limits friction.
 /// kept   share of its impulse that a contact starts from: 1, but 0 in the first pass. There it uses velocities as if
 ///        its stored impulse were applied to the bodies. It never is, so this cancels it.
-template <class Contact>
-HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch& batch, ContactVelocity velocity, float kept) {
+template <class Bodies, class Contact>
+HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies>& batch, ContactVelocity velocity,
+                                      float kept) {
   const SolverConstants& c = batch.c;
-  const float depth = 2.0f * (batch.shape.radius - contact.arm);
+  const float depth = overlap(batch, contact);
   const float bias = c.correction_rate / c.dt * (depth > c.slop ? depth - c.slop : 0.0f);
   const float limit = c.friction * contact.normal_impulse;
   const float tangent = clamp(kept * contact.tangent_impulse - contact.tangent_mass * velocity.tangent, -limit, limit);
@@ -142,13 +159,14 @@ HEDON_FN ContactVelocity bounce_once(const Contact& contact, const SolverConstan
 }
 
 /// One Jacobi pass of position correction, before the bodies move, along the normals of the contacts.
-HEDON_FN void correct_positions_at_once(const Batch& batch, const JacobiContacts& found) {
+template <class Bodies>
+HEDON_FN void correct_positions_at_once(const Batch<Bodies>& batch, const JacobiContacts<Bodies>& found) {
   Vec2* position = batch.scratch.position.data;
   Motion* change = batch.scratch.change.data;
-  const float touch = batch.body_touch();
   for (int32_t i = 0; i < found.body_count; ++i) {
-    const BodyContact& contact = found.bodies[i];
+    const auto& contact = found.bodies[i];
     const Vec2 normal{contact.normal_x, contact.normal_y};
+    const float touch = batch.body_touch(contact.first, contact.second);
     const float separation = dot(position[contact.second] - position[contact.first], normal) - touch;
     apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.first],
           change[contact.second]);
@@ -169,17 +187,17 @@ HEDON_FN void correct_positions_at_once(const Batch& batch, const JacobiContacts
 /// The solver by name `jacobi`, for `try_batch`.
 struct JacobiSolver {
   /// Damps and limits velocities, finds contacts, solves, bounces, corrects overlaps, and moves.
-  template <class Visitor>
-  HEDON_FN static void substep(const Batch& batch, Visitor& visitor) {
+  template <class Bodies, class Visitor>
+  HEDON_FN static void substep(const Batch<Bodies>& batch, Visitor& visitor) {
     damp(batch);
     const auto nearest = [&](int32_t wall, Vec2 center) { return ring_point(batch.state, wall, center); };
-    BodyContact* bodies = batch.body_contacts();
+    auto* bodies = batch.body_contacts();
     StaticContact* statics = batch.static_contacts();
     const FoundContacts body = find_in_order(batch, visitor);
-    const FoundContacts circle = find_circle_contacts(batch, jacobi_reach(batch.circle_touch()), statics, visitor);
+    const FoundContacts circle = find_circle_contacts(batch, jacobi_reach, statics, visitor);
     StaticContact* on_walls = statics + circle.count;
-    const FoundContacts wall = find_wall_contacts(batch, jacobi_reach(batch.wall_touch()), on_walls, visitor, nearest);
-    const JacobiContacts found{bodies, statics, body.count, circle.count + wall.count};
+    const FoundContacts wall = find_wall_contacts(batch, jacobi_reach, on_walls, visitor, nearest);
+    const JacobiContacts<Bodies> found{bodies, statics, body.count, circle.count + wall.count};
     if (found.body_count + found.static_count > 0) {
       for (int32_t pass = 0; pass < batch.config.velocity_passes; ++pass) {
         const float kept = pass == 0 ? 0.0f : 1.0f;
@@ -201,7 +219,8 @@ struct JacobiSolver {
 
  private:
   /// Damps the velocities, then limits them: changes by contacts in this substep are not limited.
-  HEDON_FN static void damp(const Batch& batch) {
+  template <class Bodies>
+  HEDON_FN static void damp(const Batch<Bodies>& batch) {
     const SolverConstants& c = batch.c;
     for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
       Motion& motion = batch.scratch.motion[index];
@@ -212,7 +231,8 @@ struct JacobiSolver {
     }
   }
 
-  HEDON_FN static void move(const Batch& batch) {
+  template <class Bodies>
+  HEDON_FN static void move(const Batch<Bodies>& batch) {
     const PhysicsScratch& scratch = batch.scratch;
     for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
       scratch.position[index].x += scratch.motion[index].x * batch.c.dt;
@@ -224,7 +244,8 @@ struct JacobiSolver {
 
   /// Puts a body whose center was pushed through an outer wall back onto it. A wall does not push a center that lies
   /// behind it, so the body would leave the arena for good.
-  HEDON_FN static void keep_inside(const Batch& batch, int32_t index) {
+  template <class Bodies>
+  HEDON_FN static void keep_inside(const Batch<Bodies>& batch, int32_t index) {
     constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
     const PairList& walls = batch.state.neighbors.walls;
     Vec2& center = batch.scratch.position[index];

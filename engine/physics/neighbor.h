@@ -84,45 +84,46 @@ struct PairBuilder {
   }
 };
 
-HEDON_FN void find_body_pairs(const PhysicsState& state, const BodyShape& shape, const PhysicsScratch& scratch,
+HEDON_FN void find_body_pairs(const PhysicsState& state, const BodyTable& table, const PhysicsScratch& scratch,
                               const int32_t* order, int32_t count, float skin, PairBuilder& pairs) {
   const BodyState& bodies = state.bodies;
-  const float reach = 2.0f * shape.radius + skin;
   for (int32_t rank = 0; rank < count; ++rank) {
     const int32_t slot = order[rank];
+    const float radius = table.radius(slot);
     const float x = bodies.x[slot], y = bodies.y[slot];
     const int32_t from = pairs.count;
-    for_each_near(state.body_grid, x, y, reach, [&](int32_t other) {
+    for_each_near(state.body_grid, x, y, radius + table.max_radius() + skin, [&](int32_t other) {
       const float dx = bodies.x[other] - x, dy = bodies.y[other] - y;
-      if (dx * dx + dy * dy < reach * reach && scratch.rank[other] > rank) pairs.append(rank, scratch.rank[other]);
+      const float reach = radius + table.radius(other) + skin;
+      if (dx * dx + dy * dy < reach * reach && scratch.rank[other] > rank && table.collide(slot, other))
+        pairs.append(rank, scratch.rank[other]);
     });
     pairs.sort_from(from);
     for (int32_t i = from; i < pairs.count; ++i) join(scratch.parent, rank, pairs.found.second[i]);
   }
 }
 
-HEDON_FN void find_circle_pairs(const PhysicsState& state, const BodyShape& shape, const int32_t* order, int32_t count,
+HEDON_FN void find_circle_pairs(const PhysicsState& state, const BodyTable& table, const int32_t* order, int32_t count,
                                 float skin, PairBuilder& pairs) {
   const StaticCircles& circles = state.circles;
-  const float reach = shape.radius + shape.circle_radius + skin;
   for (int32_t rank = 0; rank < count; ++rank) {
     const int32_t slot = order[rank];
+    const float reach = table.radius(slot) + table.circle_radius + skin;
     const float x = state.bodies.x[slot], y = state.bodies.y[slot];
     const int32_t from = pairs.count;
     for_each_near(state.circle_grid, x, y, reach, [&](int32_t circle) {
       const float dx = circles.x[circle] - x, dy = circles.y[circle] - y;
-      if (dx * dx + dy * dy < reach * reach) pairs.append(rank, circle);
+      if (dx * dx + dy * dy < reach * reach && table.collides_with_circle(slot, circle)) pairs.append(rank, circle);
     });
     pairs.sort_from(from);
   }
 }
 
 /// Follows each wall through the rows of cells, and lists the bodies on both sides of it.
-HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape, const PhysicsScratch& scratch,
+HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyTable& table, const PhysicsScratch& scratch,
                               float skin, PairBuilder& pairs) {
   const Grid& grid = state.body_grid;
-  const float reach = shape.radius + skin;
-  const float margin = reach + 0.5f;  // covers the rounding of cells and cuts
+  const float margin = table.max_radius() + skin + 0.5f;  // covers the rounding of cells and cuts
   for (int32_t wall = 0; wall < state.walls.count; ++wall) {
     const Vec2 a = state.walls[wall].a, b = state.walls[wall].b;
     const Vec2 low = a.y < b.y ? a : b, high = a.y < b.y ? b : a;
@@ -140,6 +141,7 @@ HEDON_FN void find_wall_pairs(const PhysicsState& state, const BodyShape& shape,
       const float middle = (static_cast<float>(row) + 0.5f) * cell;
       for_each_in(grid, (x0 < x1 ? x0 : x1) - margin, middle, (x0 < x1 ? x1 : x0) + margin, middle, [&](int32_t slot) {
         const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
+        const float reach = table.radius(slot) + skin;
         if (squared_length(nearest_on_segment(a, b, center) - center) < reach * reach) {
           pairs.append(scratch.rank[slot], wall);
         }
@@ -191,7 +193,7 @@ HEDON_FN void fill_grids(const PhysicsState& state, const int32_t* order, int32_
 
 /// Lists all pairs with a separation below `skin` [u]. Replaces the old list, but keeps its impulses.
 /// Fault: neighbor_overflow, with the number of pairs that the list can hold; then the old list stays.
-HEDON_FN void build_neighbors(const PhysicsState& state, const BodyShape& shape, const PhysicsScratch& scratch,
+HEDON_FN void build_neighbors(const PhysicsState& state, const BodyTable& table, const PhysicsScratch& scratch,
                               const int32_t* order, int32_t count, float skin, Fault& fault) {
   const NeighborList& list = state.neighbors;
   NeighborHead& head = list.head[0];
@@ -202,9 +204,9 @@ HEDON_FN void build_neighbors(const PhysicsState& state, const BodyShape& shape,
     scratch.work[rank] = 0;
   }
   PairBuilder bodies{scratch.bodies}, circles{scratch.circles}, walls{scratch.walls};
-  find_body_pairs(state, shape, scratch, order, count, skin, bodies);
-  find_circle_pairs(state, shape, order, count, skin, circles);
-  find_wall_pairs(state, shape, scratch, skin, walls);
+  find_body_pairs(state, table, scratch, order, count, skin, bodies);
+  find_circle_pairs(state, table, order, count, skin, circles);
+  find_wall_pairs(state, table, scratch, skin, walls);
   for (const PairBuilder* pairs : {&bodies, &circles, &walls}) {
     if (pairs->overflow) {
       raise_fault(fault, Status::neighbor_overflow, static_cast<double>(pairs->found.first.count));

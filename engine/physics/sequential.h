@@ -21,8 +21,8 @@ inline constexpr int COLORS = 32;
 /// order of two contacts that share a body depends only on the contacts of their own cluster. A pair that does not
 /// overlap loses its impulses. Contacts are written from `first_body_pair` on. Each contact is reported to the visitor
 /// twice, once for each body.
-template <class Visitor>
-HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
+template <class Bodies, class Visitor>
+HEDON_FN FoundContacts find_in_colors(const Batch<Bodies>& batch, Visitor& visitor) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
   const BatchRange& range = batch.range;
@@ -31,11 +31,12 @@ HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
   float* normal_impulse = scratch.bodies.normal.data;
   float* tangent_impulse = scratch.bodies.tangent.data;
   const Vec2* position = scratch.position.data;
+  const Bodies bodies = batch.bodies;
   int32_t* active = scratch.active.data + range.first_body_pair;
-  const float touch = batch.body_touch() * batch.body_touch();
   int32_t count = 0;
   for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
-    const bool touching = squared_length(position[second[pair]] - position[first[pair]]) < touch;
+    const float touch = bodies.radius(first[pair]) + bodies.radius(second[pair]);
+    const bool touching = squared_length(position[second[pair]] - position[first[pair]]) < touch * touch;
     active[count] = pair;
     count += touching;
     normal_impulse[pair] = touching ? normal_impulse[pair] : 0.0f;
@@ -59,11 +60,11 @@ HEDON_FN FoundContacts find_in_colors(const Batch& batch, Visitor& visitor) {
   }
   for (int taken = 0; taken < COLORS; ++taken) next[taken + 1] += next[taken];
 
-  BodyContact* contacts = batch.body_contacts();
+  auto* contacts = batch.body_contacts();
   bool fast = false;
   for (int32_t i = 0; i < count; ++i) {
     const int32_t pair = active[i];
-    BodyContact& contact = contacts[next[color[i]]++];
+    auto& contact = contacts[next[color[i]]++];
     const Direction normal = direction_of(position[second[pair]] - position[first[pair]]);
     fill_contact(batch, pair, normal, contact);
     fast |= contact.approach < -batch.c.restitution_threshold;
@@ -86,9 +87,10 @@ HEDON_FN ContactVelocity accumulate(Contact& contact, const SolverConstants& c, 
 }
 
 /// One pass of projected Gauss-Seidel over contacts between bodies.
-HEDON_FN void solve_velocity(BodyContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
+template <class Contact>
+HEDON_FN void solve_velocity(Contact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
-    BodyContact& contact = contacts[i];
+    Contact& contact = contacts[i];
     Motion &a = motion[contact.first], &b = motion[contact.second];
     const ContactVelocity change = accumulate(contact, c, relative_velocity(contact, a, b));
     apply(contact, change.normal, change.tangent, a, b);
@@ -106,9 +108,10 @@ HEDON_FN void solve_velocity(StaticContact* contacts, int32_t count, const Solve
 }
 
 /// Applies the impulses of the substep before.
-HEDON_FN void warm_start(const BodyContact* contacts, int32_t count, Motion* motion) {
+template <class Contact>
+HEDON_FN void warm_start(const Contact* contacts, int32_t count, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
-    const BodyContact& contact = contacts[i];
+    const Contact& contact = contacts[i];
     apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.first], motion[contact.second]);
   }
 }
@@ -133,9 +136,10 @@ HEDON_FN float bounce(Contact& contact, const SolverConstants& c, float normal_v
   return change;
 }
 
-HEDON_FN void apply_restitution(BodyContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
+template <class Contact>
+HEDON_FN void apply_restitution(Contact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
   for (int32_t i = 0; i < count; ++i) {
-    BodyContact& contact = contacts[i];
+    Contact& contact = contacts[i];
     Motion &a = motion[contact.first], &b = motion[contact.second];
     const float change = bounce(contact, c, relative_velocity(contact, a, b).normal);
     if (change != 0.0f) apply(contact, change, 0.0f, a, b);
@@ -151,18 +155,21 @@ HEDON_FN void apply_restitution(StaticContact* contacts, int32_t count, const So
   }
 }
 
-/// One pass of position correction between bodies: each moves half the distance. The separation is measured between
-/// the present indices along the normal of the contact; after the motion of one substep it differs from the true one by
-/// less than the slop. `distance` is the distance of the centers when the bodies touch [u].
-HEDON_FN void correct_positions(const BodyContact* contacts, int32_t count, const SolverConstants& c, float distance,
+/// One pass of position correction between bodies: of two equal ones, each moves half the distance. The separation is
+/// measured between the present positions along the normal of the contact; after the motion of one substep it differs
+/// from the true one by less than the slop.
+template <class Bodies>
+HEDON_FN void correct_positions(const Batch<Bodies>& batch, const typename Bodies::Contact* contacts, int32_t count,
                                 Vec2* position) {
   for (int32_t i = 0; i < count; ++i) {
-    const BodyContact& contact = contacts[i];
+    const auto& contact = contacts[i];
+    const float touch = batch.body_touch(contact.first, contact.second);
     const Vec2 normal{contact.normal_x, contact.normal_y};
     const Vec2 a = position[contact.first], b = position[contact.second];
-    const Vec2 push = (0.5f * correction(c, dot(b - a, normal) - distance)) * normal;
-    position[contact.first] = a + push;
-    position[contact.second] = b - push;
+    const float push = correction(batch.c, dot(b - a, normal) - touch);
+    const Shares share = shares(contact);
+    position[contact.first] = a + (share.first * push) * normal;
+    position[contact.second] = b - (share.second * push) * normal;
   }
 }
 
@@ -194,8 +201,8 @@ HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, 
 /// The solver by name `sequential`, for `try_batch`.
 struct SequentialSolver {
   /// Damps velocities, finds contacts, solves, bounces, moves, and corrects overlaps.
-  template <class Visitor>
-  HEDON_FN static void substep(const Batch& batch, Visitor& visitor) {
+  template <class Bodies, class Visitor>
+  HEDON_FN static void substep(const Batch<Bodies>& batch, Visitor& visitor) {
     const PhysicsScratch& scratch = batch.scratch;
     const SolverConstants& c = batch.c;
     Motion* motion = scratch.motion.data;
@@ -209,12 +216,12 @@ struct SequentialSolver {
       return nearest_on_segment(walls[wall].a, walls[wall].b, center);
     };
     const auto below = [](float touch) { return Reach{touch * touch, touch * touch}; };
-    BodyContact* bodies = batch.body_contacts();
+    auto* bodies = batch.body_contacts();
     StaticContact* statics = batch.static_contacts();
     const FoundContacts body = find_in_colors(batch, visitor);
-    const FoundContacts circle = find_circle_contacts(batch, below(batch.circle_touch()), statics, visitor);
+    const FoundContacts circle = find_circle_contacts(batch, below, statics, visitor);
     StaticContact* on_walls = statics + circle.count;
-    const FoundContacts wall = find_wall_contacts(batch, below(batch.wall_touch()), on_walls, visitor, nearest);
+    const FoundContacts wall = find_wall_contacts(batch, below, on_walls, visitor, nearest);
     const int32_t static_count = circle.count + wall.count;
 
     warm_start(bodies, body.count, motion);
@@ -231,7 +238,7 @@ struct SequentialSolver {
 
     integrate(scratch, batch.range, c);
     for (int32_t pass = 0; pass < batch.config.position_passes; ++pass) {
-      correct_positions(bodies, body.count, c, batch.body_touch(), scratch.position.data);
+      correct_positions(batch, bodies, body.count, scratch.position.data);
       correct_positions(statics, static_count, c, scratch.position.data);
     }
   }

@@ -14,12 +14,9 @@ namespace hedon {
 
 /// Constants of all substeps, computed once per step.
 struct SolverConstants {
-  float dt;             ///< [s]
-  float linear_decay;   ///< of velocities per substep
-  float angular_decay;  ///< of angular velocities per substep
-  float inverse_mass;
-  float inverse_inertia;
-  float inverse_gyration;       ///< mass / inertia [1/u²]
+  float dt;                     ///< [s]
+  float linear_decay;           ///< of velocities per substep
+  float angular_decay;          ///< of angular velocities per substep
   float friction;               ///< coefficient
   float restitution;            ///< coefficient
   float restitution_threshold;  ///< approach speed from which contacts bounce [u/s]
@@ -31,14 +28,11 @@ struct SolverConstants {
   float glide;              ///< distance moved in a step without contacts, per speed after the force [s]
 };
 
-HEDON_FN SolverConstants make_constants(const PhysicsConfig& config, const BodyShape& shape) {
+HEDON_FN SolverConstants make_constants(const PhysicsConfig& config) {
   SolverConstants c;
   c.dt = config.dt;
   c.linear_decay = static_cast<float>(exp_double(-static_cast<double>(config.linear_damping) * config.dt));
   c.angular_decay = static_cast<float>(exp_double(-static_cast<double>(config.angular_damping) * config.dt));
-  c.inverse_mass = 1.0f / shape.mass;
-  c.inverse_inertia = 1.0f / shape.inertia;
-  c.inverse_gyration = shape.mass / shape.inertia;
   c.friction = config.friction;
   c.restitution = config.restitution;
   c.restitution_threshold = config.restitution_threshold;
@@ -72,6 +66,13 @@ HEDON_FN ContactVelocity relative_velocity(const BodyContact& contact, const Mot
           (y * contact.normal_x - x * contact.normal_y) - contact.arm * (a.angular + b.angular)};
 }
 
+HEDON_FN ContactVelocity relative_velocity(const MixedContact& contact, const Motion& a, const Motion& b) {
+  const float x = b.x - a.x, y = b.y - a.y;
+  return {
+      x * contact.normal_x + y * contact.normal_y,
+      (y * contact.normal_x - x * contact.normal_y) - (contact.arm_first * a.angular + contact.arm_second * b.angular)};
+}
+
 HEDON_FN ContactVelocity relative_velocity(const StaticContact& contact, const Motion& a) {
   return {-(a.x * contact.normal_x + a.y * contact.normal_y),
           (a.x * contact.normal_y - a.y * contact.normal_x) - contact.arm * a.angular};
@@ -90,15 +91,36 @@ HEDON_FN void apply(const BodyContact& contact, float normal, float tangent, Mot
   b.angular -= spin;
 }
 
+HEDON_FN void apply(const MixedContact& contact, float normal, float tangent, Motion& a, Motion& b) {
+  const float x = normal * contact.normal_x - tangent * contact.normal_y;
+  const float y = normal * contact.normal_y + tangent * contact.normal_x;
+  a.x -= contact.weight_first * x;
+  a.y -= contact.weight_first * y;
+  a.angular -= contact.turn_first * tangent;
+  b.x += contact.weight_second * x;
+  b.y += contact.weight_second * y;
+  b.angular -= contact.turn_second * tangent;
+}
+
 HEDON_FN void apply(const StaticContact& contact, float normal, float tangent, Motion& a) {
   a.x -= normal * contact.normal_x - tangent * contact.normal_y;
   a.y -= normal * contact.normal_y + tangent * contact.normal_x;
   a.angular -= contact.turn * tangent;
 }
 
-/// Effective mass along the normal, per mass of a body: a half for two equal bodies, one against a static object.
+/// Effective mass along the normal, per mass: a half for two equal bodies, one against a static object.
 HEDON_FN constexpr float normal_mass(const BodyContact&) { return 0.5f; }
+HEDON_FN float normal_mass(const MixedContact& contact) { return contact.normal_mass; }
 HEDON_FN constexpr float normal_mass(const StaticContact&) { return 1.0f; }
+
+/// Share of a correction of positions that moves each body.
+struct Shares {
+  float first, second;
+};
+HEDON_FN constexpr Shares shares(const BodyContact&) { return {0.5f, 0.5f}; }
+HEDON_FN Shares shares(const MixedContact& contact) {
+  return {contact.weight_first * contact.normal_mass, contact.weight_second * contact.normal_mass};
+}
 
 /// Distance by which one pass separates a pair, as a negative length [u].
 HEDON_FN float correction(const SolverConstants& c, float separation) {

@@ -110,12 +110,14 @@ struct PhysicsScratch {
   PairScratch bodies;
   PairScratch circles;
   PairScratch walls;
-  Array<BodyContact> body_contacts;
+  Array<uint8_t> body_class;             ///< by index; none if all bodies are of one class
+  Array<BodyContact> body_contacts;      ///< none if there are several classes
+  Array<MixedContact> mixed_contacts;    ///< none if there is one class
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
   HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_index, position, motion, change, angle, colors, active,
-               color, bodies, circles, walls, body_contacts, static_contacts, reports)
+               color, bodies, circles, walls, body_class, body_contacts, mixed_contacts, static_contacts, reports)
 };
 
 /// The sizes of the arrays.
@@ -128,10 +130,13 @@ struct PhysicsCapacity {
   int64_t wall_pairs;
   int32_t columns;
   int32_t rows;
-  float cell;  ///< side of a grid cell [u]
-  float skin;  ///< skin that the capacities are for [u]
+  float cell;     ///< side of a grid cell [u]
+  float skin;     ///< skin that the capacities are for [u]
+  int32_t mixed;  ///< 1 if there are several classes of bodies
+  int32_t unused;
 
-  HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin)
+  HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin,
+               mixed, unused)
 };
 
 /// Capacities for an arena. Discs that do not overlap limit the number of pairs: within a skin of 20 u (twice the
@@ -141,20 +146,24 @@ struct PhysicsCapacity {
 /// of 50 u and more. There is room for all pairs of up to 200 bodies, and for the same number of neighbors of each body
 /// in a larger world.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
-                                          const BodyShape& shape, const PhysicsConfig& config) {
+                                          const BodyTable& table, const PhysicsConfig& config) {
   const bool bursts = config.solver == ContactSolver::jacobi;
   const float skin = config.neighbor_skin;
   PhysicsCapacity capacity{};
   capacity.bodies = bodies;
   capacity.circles = circles;
   capacity.walls = walls;
+  // A large disc has more small neighbors.
+  const float ratio = table.max_radius() / table.min_radius();
+  const int64_t wide = static_cast<int64_t>(ceilf(ratio * ratio));
   const auto least = [](int64_t a, int64_t b) { return a < b ? a : b; };
-  capacity.body_pairs = least((bursts ? 100 : 16) * bodies, bodies * (bodies - 1) / 2) + 1;
-  capacity.circle_pairs = least((bursts ? 200 : 24) * circles, bodies * circles) + 1;
+  capacity.body_pairs = least((bursts ? 100 : 16) * wide * bodies, bodies * (bodies - 1) / 2) + 1;
+  capacity.circle_pairs = least((bursts ? 200 : 24) * wide * circles, bodies * circles) + 1;
   capacity.wall_pairs = least((bursts ? 32 : 8) * bodies, bodies * walls) + 1;
   // Cells as wide as the search range, but at most a few per item in an almost empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
-  const float search = 2.0f * shape.radius + skin;
+  const float search = 2.0f * table.max_radius() + skin;
+  capacity.mixed = table.classes > 1 ? 1 : 0;
   capacity.cell = even > search ? even : search;
   capacity.columns = static_cast<int32_t>(width / capacity.cell) + 1;
   capacity.rows = static_cast<int32_t>(height / capacity.cell) + 1;
@@ -220,7 +229,10 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit_arrays(scratch.bodies, capacity.body_pairs, visit);
   visit_arrays(scratch.circles, capacity.circle_pairs, visit);
   visit_arrays(scratch.walls, capacity.wall_pairs, visit);
-  visit("body_contacts", scratch.body_contacts, capacity.body_pairs);
+  const bool mixed = capacity.mixed != 0;
+  visit("body_class", scratch.body_class, mixed ? capacity.bodies : 0);
+  visit("body_contacts", scratch.body_contacts, mixed ? 0 : capacity.body_pairs);
+  visit("mixed_contacts", scratch.mixed_contacts, mixed ? capacity.body_pairs : 0);
   visit("static_contacts", scratch.static_contacts, capacity.circle_pairs + capacity.wall_pairs);
   visit("reports", scratch.reports, int64_t{MAX_BATCHES});
 }

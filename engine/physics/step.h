@@ -2,12 +2,13 @@
 ///
 /// Every contact in every substep is reported to the caller's visitor:
 ///   visitor.on_start(slot)   before a body's first substep of each try of a step: delete all notes about the body
-///   visitor.on_contact(kind, body, other, direction, angle, mark)
+///   visitor.on_contact(kind, body, other, direction, angle, bit, mark)
 ///     body       slot of the body; a pair of bodies is reported for each of them
 ///     other      slot of the other body or circle, or index of the wall
 ///     direction  from the body's center to the contact, unit vector in the world's frame
 ///     angle      of the body in this substep [rad]: its angle before the step plus its rotation since then
 ///     mark       a byte of the pair, 0 when the step begins, free for the visitor's use
+///     bit        a bit for the mark that tells the two bodies of a pair apart: FIRST or SECOND
 /// The thread that works on the body's island calls both, so they may write data of the body or pair.
 #pragma once
 
@@ -16,6 +17,7 @@
 
 #include "base/status.h"
 #include "base/team.h"
+#include "physics/detect.h"
 #include "physics/jacobi.h"
 #include "physics/neighbor.h"
 #include "physics/sequential.h"
@@ -25,19 +27,24 @@
 namespace hedon {
 
 /// Copies a batch's bodies and impulses to scratch memory for the substeps, and adds the forces of the first substep.
-template <class Visitor>
-HEDON_FN void load_batch(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range,
-                         const SolverConstants& c, const BodyForce& force, BatchReport& report, Visitor& visitor) {
+template <class Bodies, class Visitor>
+HEDON_FN void load_batch(const Batch<Bodies>& batch, const BodyForce& force, BatchReport& report, Visitor& visitor) {
+  const PhysicsState& state = batch.state;
+  const PhysicsScratch& scratch = batch.scratch;
+  const BatchRange& range = batch.range;
+  const float dt = batch.c.dt;
   const NeighborList& list = state.neighbors;
   const BodyState& bodies = state.bodies;
   for (int32_t index = range.first_index; index < range.last_index; ++index) {
     const int32_t slot = list.slot[index];
     const float push_x = force.x[slot], push_y = force.y[slot];
+    batch.bodies.note(index, slot);
+    const float inverse_mass = batch.bodies.inverse_mass(index), inverse_inertia = batch.bodies.inverse_inertia(index);
     scratch.position[index] = {bodies.x[slot], bodies.y[slot]};
     scratch.angle[index] = bodies.angle[slot];
-    scratch.motion[index] = {bodies.velocity_x[slot] + push_x * c.inverse_mass * c.dt,
-                             bodies.velocity_y[slot] + push_y * c.inverse_mass * c.dt,
-                             bodies.angular_velocity[slot] + force.torque[slot] * c.inverse_inertia * c.dt, 0.0f};
+    scratch.motion[index] = {bodies.velocity_x[slot] + push_x * inverse_mass * dt,
+                             bodies.velocity_y[slot] + push_y * inverse_mass * dt,
+                             bodies.angular_velocity[slot] + force.torque[slot] * inverse_inertia * dt, 0.0f};
     const float squared_force = push_x * push_x + push_y * push_y;
     if (squared_force > report.squared_force) report.squared_force = squared_force;
     visitor.on_start(slot);
@@ -93,15 +100,16 @@ HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scr
 }
 
 /// Tries all substeps of one batch in the scratch memory. Stops early if a body moved too far for the skin.
-template <class Solver, class Visitor>
-HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyShape& shape, const SolverConstants& c,
+template <class Solver, class Bodies, class Visitor>
+HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyTable& table, const SolverConstants& c,
                                      const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
                                      float squared_limit, int32_t number, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
-  const Batch batch{config, shape, c, state, scratch, batch_range(list, number)};
+  const Bodies bodies(table, scratch);
+  const Batch<Bodies> batch{config, bodies, table.circle_radius, c, state, scratch, batch_range(list, number)};
   const BatchRange& range = batch.range;
   BatchReport report{};
-  load_batch(state, scratch, range, c, force, report, visitor);
+  load_batch(batch, force, report, visitor);
   for (int32_t substep = 0; substep < config.substeps; ++substep) {
     Solver::substep(batch, visitor);
     const float moved = squared_moved(list, scratch, range);
@@ -143,11 +151,11 @@ inline constexpr int MAX_REPEATS = 8;
 /// A step is tried in scratch memory. If a body moves further than the neighbor list allows, the list is built with
 /// twice the skin and the step is tried again, so that no contact is ever missed.
 template <class Group, class Visitor>
-HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyShape& shape, const PhysicsState& state,
+HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyTable& table, const PhysicsState& state,
                            const PhysicsScratch& scratch, const Array<int32_t>& order, int32_t count,
                            const BodyForce& force, Visitor& visitor, Fault& fault) {
   NeighborHead& head = state.neighbors.head[0];
-  const SolverConstants c = make_constants(config, shape);
+  const SolverConstants constants = make_constants(config);
   bool build = head.stale != 0;
   const float spare = 2.5f * head.free_path;
   const float usual_skin = config.neighbor_skin > spare ? config.neighbor_skin : spare;
@@ -156,16 +164,22 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   int repeat = 0;
   for (;; ++repeat) {
     if (build) {
-      group.once([&] { build_neighbors(state, shape, scratch, order.data, count, skin, fault); });
+      group.once([&] { build_neighbors(state, table, scratch, order.data, count, skin, fault); });
       if (fault.status != Status::ok) return;
     }
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
     group.for_each(head.batches, [&](int32_t batch) {
-      if (config.solver == ContactSolver::sequential)
-        try_batch<SequentialSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+      const auto attempt = [&]<class Solver, class Bodies>() {
+        try_batch<Solver, Bodies>(config, table, constants, state, scratch, force, limit * limit, batch, visitor);
+      };
+      const bool sequential = config.solver == ContactSolver::sequential;
+      if (table.classes == 1)
+        sequential ? attempt.template operator()<SequentialSolver, AlikeBodies>()
+                   : attempt.template operator()<JacobiSolver, AlikeBodies>();
       else
-        try_batch<JacobiSolver>(config, shape, c, state, scratch, force, limit * limit, batch, visitor);
+        sequential ? attempt.template operator()<SequentialSolver, MixedBodies>()
+                   : attempt.template operator()<JacobiSolver, MixedBodies>();
     });
     report = largest_report(scratch, head.batches);
     if (report.squared_moved <= limit * limit) break;
@@ -183,10 +197,11 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   }
   // The distance that the fastest body can move in a step without contacts, with the largest force of this step. Both
   // solvers limit the speeds of a step before its bodies move.
-  const float capped = 2.0f * c.max_speed * c.max_speed;
+  const float capped = 2.0f * constants.max_speed * constants.max_speed;
   const float squared_speed = report.squared_speed < capped ? report.squared_speed : capped;
-  const float speed = sqrtf(squared_speed) + sqrtf(report.squared_force) * c.inverse_mass * c.dt;
-  const float free_path = speed * c.glide;
+  const float inverse_mass = 1.0f / table.min_mass();
+  const float speed = sqrtf(squared_speed) + sqrtf(report.squared_force) * inverse_mass * constants.dt;
+  const float free_path = speed * constants.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
   // Bodies by slot, not by batch: otherwise two members would write to most cache lines in turn.
   group.for_each(static_cast<int>(state.neighbors.index.count),

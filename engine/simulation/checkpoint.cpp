@@ -9,12 +9,12 @@
 namespace hedon {
 namespace {
 
-Extent extent_of(const World& world) {
+SavedExtent extent_of(const World& world) {
   const WorldState& state = world.state;
   const WorldHead& head = world.head();
-  Extent extent{};
+  SavedExtent extent{};
   extent.slots.assign(state.living.data, state.living.data + head.living_count);
-  extent.free.assign(state.free.data, state.free.data + head.free_count);
+  extent.free = free_slots(world);
   extent.ghosts = head.ghost_count;
   extent.newborns = state.newborn.count > 0 ? head.births_in_window : 0;
   for (int32_t f = 0; f < world.shape->foods; ++f) {
@@ -72,7 +72,7 @@ void save_pairs(const World& world, const std::vector<int32_t>& rank, const Pair
 }
 
 /// The place of each slot in the living order; -1 for the dead, and for newborns, which are in no list yet.
-std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
+std::vector<int32_t> listed_ranks(const World& world, const SavedExtent& extent) {
   std::vector<int32_t> rank(static_cast<size_t>(world.shape->capacity), -1);
   for (size_t i = 0; i < extent.slots.size(); ++i) {
     const int32_t slot = extent.slots[i];
@@ -85,7 +85,7 @@ std::vector<int32_t> listed_ranks(const World& world, const Extent& extent) {
 /// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for only one.
 template <class Take>
 void save_each(const World& world, Take&& take) {
-  const Extent extent = extent_of(world);
+  const SavedExtent extent = extent_of(world);
   for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     SavedArray array = make_saved<T>(name, rows.shape());
     const size_t bytes = rows.row_bytes();

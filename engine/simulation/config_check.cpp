@@ -1,5 +1,6 @@
 #include "simulation/config_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -8,7 +9,7 @@ namespace hedon {
 namespace {
 
 constexpr double LARGEST = 1e6;  ///< of any setting that is not a count: its square, and sums of squares, are finite
-constexpr int MAX_TOUCH_BITS = 64;
+constexpr int MAX_TOUCH_BITS = 128;
 constexpr int64_t MAX_WALLS = 1024;
 constexpr int64_t MAX_WORLDS = 1'000'000;
 constexpr int64_t MAX_THREADS = 1024;
@@ -23,19 +24,23 @@ constexpr Limit INTEGERS[] = {
     {"physics.substeps", 1, 100},
     {"physics.velocity_passes", 1, 100},
     {"physics.position_passes", 0, 100},
-    {"sensor.ray_count", 1, MAX_RAYS},
-    {"sensor.touch_sectors", 1, 16},
-    {"population.capacity", 1, 100'000},
-    {"population.initial_count", 1, 100'000},
+    {"species.sensor.ray_count", 1, MAX_RAYS},
+    {"species.sensor.touch_sectors", 1, 32},
+    {"species.population.capacity", 1, 100'000},
+    {"species.population.initial_count", 0, 100'000},
     {"food.capacity", 0, 100'000},
     {"food.initial_count", 0, 100'000},
     {"food.candidates", 1, 10'000},
     {"food.placement.switch_after", 1, 1'000'000'000},
-    {"birth.attempts", 1, 1000},
-    {"genome.neutral_count", 0, 16},
-    {"learning.rollout_steps", 1, 65'536},
-    {"learning.minibatch_size", 1, 65'536},
-    {"learning.update_epochs", 0, 1000},
+    {"species.birth.attempts", 1, 1000},
+    {"species.diet.digestion_steps", 0, 1'000'000},
+    {"species.sensor.sees", 0, MAX_TYPES - 1},
+    {"species.sensor.collides", 0, MAX_TYPES - 1},
+    {"species.reward.terms.index", 0, MAX_TYPES - 1},
+    {"species.reward.terms.gene", 0, MAX_GENES - 1},
+    {"species.learning.rollout_steps", 1, 65'536},
+    {"species.learning.minibatch_size", 1, 65'536},
+    {"species.learning.update_epochs", 0, 1000},
 };
 
 /// Settings that are divisors or steps of loops, so they must be above 0.
@@ -46,15 +51,16 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "physics.max_angular_speed",
                                     "physics.max_correction",
                                     "physics.neighbor_skin",
-                                    "body.radius",
-                                    "body.density",
-                                    "body.food_radius",
-                                    "sensor.ray_length",
-                                    "sensor.mouth_spread",
-                                    "energy.capacity",
-                                    "genome.weight_limit",
-                                    "learning.adam_epsilon",
-                                    "learning.clip_coef"};
+                                    "species.body.radius",
+                                    "species.body.density",
+                                    "food_radius",
+                                    "species.sensor.ray_length",
+                                    "species.sensor.mouth_spread",
+                                    "species.energy.capacity",
+                                    "species.genome.genes.limit",
+                                    "species.genome.genes.mutation_df",
+                                    "species.learning.adam_epsilon",
+                                    "species.learning.clip_coef"};
 
 /// Keeps the first problem.
 class Complaint {
@@ -111,8 +117,6 @@ void visit(Complaint& complaint, const std::string& path, const std::string& nam
 
 void check_food(Complaint& complaint, const WorldConfig& config) {
   complaint.need(config.food.count >= 1, "food", config.food.count, "at least one kind");
-  complaint.need(config.genome.food.count == config.food.count, "genome.food", config.genome.food.count,
-                 "one gene for each kind of food");
   for (int32_t k = 0; k < config.food.count; ++k) {
     const FoodConfig& food = config.food[k];
     const PlacementConfig& place = food.placement;
@@ -127,27 +131,73 @@ void check_food(Complaint& complaint, const WorldConfig& config) {
   }
 }
 
+/// Types of a list are ascending and exist.
+void check_types(Complaint& complaint, const std::string& path, const FixedList<int32_t, MAX_TYPES>& list,
+                 int32_t types) {
+  for (int32_t i = 0; i < list.count; ++i)
+    complaint.need(list[i] < types && (i == 0 || list[i - 1] < list[i]), path, list[i], "ascending types that exist");
+}
+
+/// Food kinds, and species if any species eats another.
+int32_t meals_of(const WorldConfig& config) {
+  bool hunting = false;
+  for (int32_t s = 0; s < config.species.count; ++s) {
+    const DietConfig& diet = config.species[s].diet;
+    for (int32_t prey = 0; prey < diet.prey.count; ++prey) hunting |= diet.prey[prey] > 0.0f;
+  }
+  return config.food.count + (hunting ? config.species.count : 0);
+}
+
+void check_reward(Complaint& complaint, const std::string& path, const WorldConfig& config,
+                  const SpeciesConfig& species) {
+  for (int32_t i = 0; i < species.reward.terms.count; ++i) {
+    const RewardTerm& term = species.reward.terms[i];
+    complaint.need(term.gene < species.genome.genes.count, path + ".gene", term.gene, "the index of a gene");
+    const bool food = term.input == RewardInput::food, sight = term.input >= RewardInput::see_mean;
+    if (food) complaint.need(term.index < meals_of(config), path + ".index", term.index, "the index of a meal");
+    if (sight) complaint.need(term.index < species.sensor.sees.count, path + ".index", term.index, "a sight channel");
+  }
+}
+
+void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
+  const SpeciesConfig& own = config.species[s];
+  const std::string path = "species[" + std::to_string(s) + "].";
+  const int32_t steps = own.learning.rollout_steps, minibatch = own.learning.minibatch_size;
+  const float side = config.arena.width < config.arena.height ? config.arena.width : config.arena.height;
+  const int32_t types = config.species.count + config.food.count + 1;
+  check_types(complaint, path + "sensor.sees", own.sensor.sees, types);
+  check_types(complaint, path + "sensor.collides", own.sensor.collides, types);
+  check_reward(complaint, path + "reward.terms", config, own);
+  complaint.need(own.diet.food.count == config.food.count, path + "diet.food", own.diet.food.count,
+                 "one factor for each kind of food");
+  complaint.need(own.diet.prey.count == config.species.count, path + "diet.prey", own.diet.prey.count,
+                 "one share for each species");
+  complaint.need(own.population.initial_count <= own.population.capacity, path + "population.initial_count",
+                 own.population.initial_count, "at most population.capacity");
+  complaint.need(2.0f * own.body.radius < side, path + "body.radius", own.body.radius, "smaller than half the arena");
+  const int32_t touches = own.sensor.collides.count * own.sensor.touch_sectors;
+  complaint.need(touches <= MAX_TOUCH_BITS, path + "sensor.touch_sectors", own.sensor.touch_sectors,
+                 "at most " + std::to_string(MAX_TOUCH_BITS / std::max(own.sensor.collides.count, 1)));
+  complaint.need(steps % minibatch == 0, path + "learning.minibatch_size", minibatch,
+                 "a divisor of learning.rollout_steps");
+  complaint.need(steps == config.species[0].learning.rollout_steps, path + "learning.rollout_steps", steps,
+                 "equal in all species");
+  complaint.need(own.motor.min_force < own.motor.max_force, path + "motor.min_force", own.motor.min_force,
+                 "below motor.max_force");
+  complaint.need(own.energy.initial <= own.energy.capacity, path + "energy.initial", own.energy.initial,
+                 "at most energy.capacity");
+}
+
 }  // namespace
 
 std::string check_config(const WorldConfig& config) {
   Complaint complaint;
   visit(complaint, "", "", config);
   if (!complaint.text.empty()) return complaint.text;
-  const int32_t steps = config.learning.rollout_steps, minibatch = config.learning.minibatch_size;
   const float side = config.arena.width < config.arena.height ? config.arena.width : config.arena.height;
-  const int32_t types = config.food.count + 2;
-  complaint.need(config.population.initial_count <= config.population.capacity, "population.initial_count",
-                 config.population.initial_count, "at most population.capacity");
-  complaint.need(2.0f * config.body.radius < side, "body.radius", config.body.radius, "smaller than half the arena");
-  complaint.need(2.0f * config.body.food_radius < side, "body.food_radius", config.body.food_radius,
-                 "smaller than half the arena");
-  complaint.need(types * config.sensor.touch_sectors <= MAX_TOUCH_BITS, "sensor.touch_sectors",
-                 config.sensor.touch_sectors, "at most " + std::to_string(MAX_TOUCH_BITS / types));
-  complaint.need(steps % minibatch == 0, "learning.minibatch_size", minibatch, "a divisor of learning.rollout_steps");
-  complaint.need(config.motor.min_force < config.motor.max_force, "motor.min_force", config.motor.min_force,
-                 "below motor.max_force");
-  complaint.need(config.energy.initial <= config.energy.capacity, "energy.initial", config.energy.initial,
-                 "at most energy.capacity");
+  complaint.need(config.species.count >= 1, "species", config.species.count, "at least one");
+  for (int32_t s = 0; s < config.species.count; ++s) check_species(complaint, config, s);
+  complaint.need(2.0f * config.food_radius < side, "food_radius", config.food_radius, "smaller than half the arena");
   check_food(complaint, config);
   return complaint.text;
 }
@@ -168,7 +218,9 @@ std::string check_company(const WorldConfig& config, const std::vector<Segment>&
       complaint.need(std::fabs(at) <= LARGEST, "walls", at, "numbers from -1e6 to 1e6");
     complaint.need(wall.a.x != wall.b.x || wall.a.y != wall.b.y, "walls", wall.a.x, "of a length above 0");
   }
-  std::vector<char> seen(static_cast<size_t>(config.population.capacity));
+  int64_t capacity = 0;
+  for (int32_t s = 0; s < config.species.count; ++s) capacity += config.species[s].population.capacity;
+  std::vector<char> seen(static_cast<size_t>(capacity));
   const bool whole = slot_order.empty() || slot_order.size() == seen.size();
   complaint.need(whole, "slot_order", static_cast<double>(slot_order.size()), "each slot once");
   for (const int32_t slot : slot_order) {

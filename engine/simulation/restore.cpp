@@ -10,7 +10,7 @@
 #include "base/float_mode.h"
 #include "simulation/saved.h"
 #include "simulation/simulation.h"
-#include "world/newborn.h"
+#include "world/population.h"
 
 namespace hedon {
 namespace {
@@ -91,7 +91,7 @@ bool rises(const std::vector<T>& values, bool strictly) {
 }
 
 /// Reads how many rows the arrays have. The slots are those that the world will give to the living.
-bool read_extent(Inspector& in, Extent& extent) {
+bool read_extent(Inspector& in, SavedExtent& extent) {
   const WorldShape& shape = *in.world_.shape;
   if (!in.has<int64_t>("head.step", {1}) || !in.has<int32_t>("head.living_count", {1}) ||
       !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("head.step", 0, UINT32_MAX) ||
@@ -119,7 +119,7 @@ bool read_extent(Inspector& in, Extent& extent) {
 }
 
 /// Checks that every array is there, that there are no others, and that all numbers are finite.
-bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpoint) {
+bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& checkpoint) {
   size_t known = 1;
   bool good = true;
   for_each_saved(in.world_, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
@@ -138,16 +138,33 @@ bool check_arrays(Inspector& in, const Extent& extent, const Checkpoint& checkpo
   return good;
 }
 
-bool check_life(Inspector& in) {
+/// The species of each of the living, in their order.
+std::vector<int32_t> saved_species(const Inspector& in, size_t living) {
+  if (in.world_.shape->species == 1) return std::vector<int32_t>(living, 0);
+  return in.numbers<int32_t>("species");
+}
+
+/// Checks that every species has room for its living and its newborns.
+bool check_species(Inspector& in, size_t living) {
   const WorldShape& shape = *in.world_.shape;
+  if (shape.species == 1) return true;
+  if (!in.within<int32_t>("species", 0, shape.species - 1)) return false;
+  std::vector<int32_t> count(static_cast<size_t>(shape.species));
+  for (const int32_t s : saved_species(in, living)) {
+    if (++count[static_cast<size_t>(s)] > shape.of[s].capacity())
+      return in.refuse("species has more agents of one species than there is room for");
+  }
+  if (shape.hunting && !in.within<int32_t>("digestion", 0, 1'000'000)) return false;
+  return shape.newborns == 0 || in.within<int32_t>("newborn_species", 0, shape.species - 1);
+}
+
+bool check_life(Inspector& in) {
   const WorldConfig& config = *in.world_.config;
   const double step = static_cast<double>(in.numbers<int64_t>("head.step")[0]);
   const std::vector<int32_t> ids = in.numbers<int32_t>("life.agent_id");
   const double nobody = ids.empty() ? 1 : 0;
   const double last_id = ids.empty() ? 0 : ids.back();
   constexpr double MOST = INT32_MAX - 1.0;
-  const bool touches_all = shape.network.observation.touches >= 64;
-  const double most_touch = touches_all ? 0x1p64 : ldexp(1.0, shape.network.observation.touches) - 1.0;
   constexpr double LARGEST = std::numeric_limits<float>::max();
   const double turn = static_cast<double>(TWO_PI_F);
   if (!rises(ids, true)) return in.refuse("life.agent_id is out of order");
@@ -164,11 +181,33 @@ bool check_life(Inspector& in) {
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
          in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
-         in.within<uint64_t>("touch", 0, most_touch) && in.within<float>("body.x", 0, config.arena.width) &&
-         in.within<float>("body.y", 0, config.arena.height) && in.within<float>("body.angle", -turn, turn);
+         in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
+         in.within<float>("body.angle", -turn, turn);
 }
 
-bool check_food(Inspector& in, const Extent& extent) {
+/// Bits of touch that a species cannot have.
+uint64_t bits_beyond(const Species& species) {
+  const int32_t touches = species.network.observation.touches;
+  return touches >= 64 ? 0 : ~uint64_t{0} << touches;
+}
+
+bool check_touch(Inspector& in, size_t living) {
+  const std::vector<uint64_t> touch = in.numbers<uint64_t>("touch");
+  const std::vector<int32_t> species = saved_species(in, living);
+  for (size_t i = 0; i < touch.size(); ++i) {
+    if ((touch[i] & bits_beyond(in.world_.shape->of[species[i]])) != 0)
+      return in.refuse("touch has a bit that is not possible");
+  }
+  if (in.world_.state.touch_more.count == 0) return true;
+  const std::vector<uint64_t> more = in.numbers<uint64_t>("touch_more");
+  for (size_t i = 0; i < more.size(); ++i) {
+    const int32_t bits = in.world_.shape->of[species[i]].network.observation.touches - 64;
+    if (bits < 64 && (more[i] >> (bits > 0 ? bits : 0)) != 0) return in.refuse("touch_more has an impossible bit");
+  }
+  return true;
+}
+
+bool check_food(Inspector& in, const SavedExtent& extent) {
   const World& world = in.world_;
   const std::vector<double> number = in.numbers<double>("food_stock.number");
   const std::vector<int32_t> present = in.numbers<int32_t>("food_stock.present");
@@ -211,16 +250,31 @@ bool check_newborns(Inspector& in) {
   return true;
 }
 
+/// Whether the last line of a wide observation can be.
+bool is_possible(const ObservationShape& sizes, const uint8_t* bytes) {
+  ObservationExtra extra;
+  memcpy(&extra, bytes, sizeof extra);
+  const int32_t bits = sizes.touches - 64;
+  const uint64_t beyond = bits >= 64 ? 0 : ~uint64_t{0} << (bits > 0 ? bits : 0);
+  bool good = (extra.touch & beyond) == 0;
+  for (int32_t d = MAX_DENSE; d < sizes.dense; ++d) good = good && std::isfinite(extra.dense[d - MAX_DENSE]);
+  return good;
+}
+
 /// Checks the indices by which networks read rows: channels of rays, and bits of touch.
-bool check_observations(Inspector& in, const Extent& extent) {
+bool check_observations(Inspector& in, const SavedExtent& extent) {
   if (extent.filled == 0) return true;
-  const WorldShape& shape = *in.world_.shape;
-  const ObservationShape& sizes = shape.network.observation;
-  const uint64_t beyond = sizes.touches >= 64 ? 0 : ~uint64_t{0} << sizes.touches;
+  const std::vector<int32_t> species = saved_species(in, extent.slots.size());
   const std::vector<uint8_t> bytes = in.numbers<uint8_t>("observation");
-  for (size_t at = 0; at < bytes.size(); at += sizeof(PackedObservation)) {
+  const size_t size = static_cast<size_t>(in.world_.shape->lines) * sizeof(ObservationLine);
+  for (size_t at = 0; at < bytes.size(); at += size) {
+    const Species& own = in.world_.shape->of[species[at / (static_cast<size_t>(extent.filled) * size)]];
+    const ObservationShape& sizes = own.network.observation;
+    const uint64_t beyond = bits_beyond(own);
     PackedObservation one;
     memcpy(&one, &bytes[at], sizeof one);
+    if (sizes.wide() && !is_possible(sizes, &bytes[at + sizeof one]))
+      return in.refuse("observation has values that are not possible");
     bool good = (one.touch & beyond) == 0;
     for (int r = 0; r < PACKED_RAYS; ++r) good = good && one.ray_type[r] < sizes.types && std::isfinite(one.ray[r]);
     for (const float value : one.dense) good = good && std::isfinite(value);
@@ -229,7 +283,7 @@ bool check_observations(Inspector& in, const Extent& extent) {
   return true;
 }
 
-bool check_pairs(Inspector& in, const Extent& extent) {
+bool check_pairs(Inspector& in, const SavedExtent& extent) {
   const NeighborList& list = in.world_.state.physics.neighbors;
   const PairList* lists[] = {&list.bodies, &list.circles, &list.walls};
   const int32_t living = static_cast<int32_t>(extent.slots.size());
@@ -254,7 +308,7 @@ bool check_pairs(Inspector& in, const Extent& extent) {
 }
 
 /// Lists the pairs with impulses, bodies in the order of their ids: the next step builds its own list from this.
-void restore_pairs(const Inspector& in, const World& world, const Extent& extent) {
+void restore_pairs(const Inspector& in, const World& world, const SavedExtent& extent) {
   const NeighborList& list = world.state.physics.neighbors;
   NeighborHead& head = list.head[0];
   head.bodies = static_cast<int32_t>(extent.slots.size());
@@ -289,28 +343,31 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
   World& target = world(index);
   const WorldState& state = target.state;
   Inspector in(target, checkpoint);
-  Extent extent{};
-  if (!read_extent(in, extent) || !check_arrays(in, extent, checkpoint) || !check_life(in) || !check_food(in, extent) ||
-      !check_newborns(in) || !check_observations(in, extent) || !check_pairs(in, extent)) {
+  SavedExtent extent{};
+  if (!read_extent(in, extent) || !check_arrays(in, extent, checkpoint) || !check_species(in, extent.slots.size()) ||
+      !check_life(in) || !check_touch(in, extent.slots.size()) || !check_food(in, extent) || !check_newborns(in) ||
+      !check_observations(in, extent) || !check_pairs(in, extent)) {
     return in.complaint;
   }
   empty(target);
-  WorldHead& head = target.head();
+  const std::vector<int32_t> species = saved_species(in, extent.slots.size());
   for (size_t i = 0; i < extent.slots.size(); ++i) {
-    const int32_t slot = state.free[--head.free_count];
+    const int32_t slot = take_free_slot(target, species[i]);
     extent.slots[i] = slot;
     state.living[static_cast<int64_t>(i)] = slot;
     state.alive[slot] = 1;
   }
-  extent.free.assign(state.free.data, state.free.data + head.free_count);
+  extent.free = free_slots(target);
   for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
-  for (const int32_t slot : extent.slots) target.kernel->pack_weights(shape_.network, target.network(slot));
+  for (const int32_t slot : extent.slots)
+    target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   if (inherits_late(target)) {
-    for (const int32_t slot : extent.free) target.kernel->pack_weights(shape_.network, target.network(slot));
+    for (const int32_t slot : extent.free)
+      target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   }
   restore_pairs(in, target, extent);
   return "";

@@ -13,15 +13,25 @@
 namespace hedon {
 
 /// Numbers of rows in the arrays of a checkpoint, and their slots.
-struct Extent {
+struct SavedExtent {
   std::vector<int32_t> slots;  ///< of the living, in the order of their ids
-  std::vector<int32_t> free;   ///< free slots in the order of their stack
+  std::vector<int32_t> free;   ///< free slots: see `free_slots`
   std::vector<int32_t> foods;  ///< slots of the foods present, ascending
   int64_t newborns;            ///< births of this window that wait for their genomes
   int64_t ghosts;              ///< foods just eaten that are still seen
   int64_t learners;            ///< number of the living that were there when the window began; they come first
   int64_t filled;              ///< steps done in the window
 };
+
+/// The free slots, species by species, each in the order of its stack.
+inline std::vector<int32_t> free_slots(const World& world) {
+  std::vector<int32_t> slots;
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    const int32_t* first = world.state.free.data + world.shape->of[s].first_slot;
+    slots.insert(slots.end(), first, first + world.state.free_count[s]);
+  }
+  return slots;
+}
 
 /// Rows of one array in the memory of a world: row i begins `stride` bytes times index[i] (or i) after `first`.
 template <class T>
@@ -41,81 +51,116 @@ struct SavedRows {
   }
 };
 
-/// Fields of `WorldHead` that follow from others, or that count what a reader has taken.
-inline bool is_derived(const char* head_field) {
-  return strcmp(head_field, "free_count") == 0 || strcmp(head_field, "event_count") == 0 ||
-         strcmp(head_field, "reserved") == 0;
-}
-
-/// Calls visit(name, SavedRows) for each array of a checkpoint except `food.slot` and the impulses. Between two windows
-/// there are no rollouts.
+/// The rows of all arrays of a checkpoint except `food.slot` and the impulses, for visit(name, SavedRows). The list of
+/// fields of `WorldState` says which arrays there are; between two windows there are no rollouts.
 template <class Visit>
-void for_each_saved(const World& world, const Extent& extent, Visit&& visit) {
-  const WorldState& state = world.state;
-  const WorldShape& shape = *world.shape;
-  const int64_t living = static_cast<int64_t>(extent.slots.size());
-  const int64_t steps = shape.steps;
+class SavedArrays {
+ public:
+  SavedArrays(const World& world, const SavedExtent& extent, Visit& visit)
+      : state_(world.state), shape_(*world.shape), extent_(extent), visit_(visit) {}
 
-  const auto columns = [&]<class Struct>(const std::string& prefix, Struct* first, const int32_t* index, int64_t count,
-                                         auto&& skip) {
-    Struct::for_each_field([&](const char* name, auto member) {
-      using T = std::remove_cvref_t<decltype(first->*member)>;
-      if (!skip(name)) visit(prefix + name, SavedRows<T>{&(first->*member), sizeof(Struct), index, count, 0});
+  void all() {
+    WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
+      using Field = std::remove_cvref_t<decltype(state_.*member)>;
+      if constexpr (std::is_same_v<Field, PhysicsState>) {
+        bodies();
+      } else {
+        one(name, state_.*member, size);
+      }
     });
-  };
-  const auto by_slot = [&]<class T>(const std::string& name, const Array<T>& array, int64_t width) {
-    visit(name, SavedRows<T>{array.data, (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T)),
-                             extent.slots.data(), living, width});
-  };
-  // The rows of the window so far, for the agents that will learn from it.
-  const auto rollout = [&]<class T>(const std::string& name, T* first, int64_t rows, int64_t row_width) {
-    visit(name, SavedRows<T>{first, rows * row_width * static_cast<int64_t>(sizeof(T)), extent.slots.data(),
-                             extent.learners, extent.filled * row_width});
-  };
-  const auto keep_all = [](const char*) { return false; };
+  }
 
-  columns("head.", state.head.data, nullptr, 1, is_derived);
-  columns("counters.", state.counters.data, nullptr, 1, keep_all);
-  columns("food_stock.", state.food_stock.data, nullptr, shape.kinds, keep_all);
-  const int64_t number = sizeof(float);
-  const int32_t* foods = extent.foods.data();
-  const int64_t present = static_cast<int64_t>(extent.foods.size());
-  visit("food.x", SavedRows<float>{state.physics.circles.x.data, number, foods, present, 0});
-  visit("food.y", SavedRows<float>{state.physics.circles.y.data, number, foods, present, 0});
-  columns("life.", state.life.data, extent.slots.data(), living, keep_all);
-  by_slot("eaten", state.eaten, shape.kinds);
-  by_slot("genome", state.genome, shape.genome.size());
-  by_slot("touch", state.touch, 0);
-  BodyState::for_each_field(
-      [&](const char* name, auto member) { by_slot(std::string("body.") + name, state.physics.bodies.*member, 0); });
-  by_slot("params", state.params, shape.network.size());
-  by_slot("first_moment", state.first_moment, shape.network.size());
-  by_slot("second_moment", state.second_moment, shape.network.size());
-  by_slot("updates", state.updates, 0);
-  if (state.ghost.count > 0) columns("ghost.", state.ghost.data, nullptr, extent.ghosts, keep_all);
-  // With some rules of birth the free slots matter too: the next newborns find there what the dead have left.
-  const auto by_free_slot = [&]<class T>(const std::string& name, const Array<T>& array, int64_t width) {
-    visit(name, SavedRows<T>{array.data, (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T)), extent.free.data(),
-                             static_cast<int64_t>(extent.free.size()), width});
-  };
-  if (state.old_slot.count > 0) {
-    by_slot("old_slot", state.old_slot, 0);
-    by_free_slot("free.old_slot", state.old_slot, 0);
+ private:
+  template <class T>
+  void one(const std::string& name, const Array<T>& array, ArrayShape size) {
+    const int64_t width = size.width == Extent::one ? 0 : hedon::extent(shape_, size.width, 1);
+    if (size.lifetime == Lifetime::rollout) rollout(name, array, width);
+    if (size.lifetime != Lifetime::saved) return;
+    // What depends on a rule that a world does not have is not there.
+    if (array.count == 0 && size.rows != Extent::slots) return;
+    switch (size.rows) {
+      case Extent::slots:
+      case Extent::mixed_slots:
+      case Extent::old_slots:
+        return by_slot(name, array, width);
+      case Extent::newborns:
+      case Extent::mixed_newborns:
+        if (name == "newborn") free_slots();
+        return columns(name, array.data, nullptr, extent_.newborns, width);
+      case Extent::ghosts:
+        return columns(name, array.data, nullptr, extent_.ghosts, width);
+      default:
+        columns(name, array.data, nullptr, array.count, width);
+        if (name == "food_stock") foods();
+    }
   }
-  if (state.newborn.count > 0) {
-    by_free_slot("free.params", state.params, shape.network.size());
-    by_free_slot("free.genome", state.genome, shape.genome.size());
-    columns("newborn.", state.newborn.data, nullptr, extent.newborns, keep_all);
-    const int64_t genes = shape.genome.size();
-    visit("newborn.genome",
-          SavedRows<float>{state.newborn_genome.data, genes * number, nullptr, extent.newborns, genes});
+
+  /// Rows of numbers, or each field of rows of structs.
+  template <class T>
+  void columns(const std::string& name, T* first, const int32_t* index, int64_t count, int64_t width) {
+    if constexpr (std::is_same_v<T, ObservationLine>) {
+      // Only in rollouts.
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      const int64_t stride = (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T));
+      visit_(name, SavedRows<T>{first, stride, index, count, width});
+    } else {
+      T::for_each_field([&](const char* field, auto member) {
+        using Number = std::remove_cvref_t<decltype(first->*member)>;
+        if (std::is_same_v<T, WorldHead> && strcmp(field, "event_count") == 0) return;  // what a reader has taken
+        visit_(name + "." + field, SavedRows<Number>{&(first->*member), sizeof(T), index, count, 0});
+      });
+    }
   }
-  if (extent.filled == 0) return;
-  rollout("observation", reinterpret_cast<uint8_t*>(state.observation.data), steps + 1, sizeof(PackedObservation));
-  rollout("action", state.action.data, steps, ACTIONS);
-  rollout("log_prob", state.log_prob.data, steps, 1);
-  rollout("value", state.value.data, steps, 1);
-  rollout("reward", state.reward.data, steps, 1);
+
+  template <class T>
+  void by_slot(const std::string& name, const Array<T>& array, int64_t width) {
+    columns(name, array.data, extent_.slots.data(), static_cast<int64_t>(extent_.slots.size()), width);
+    if (name == "old_slot") by_free_slot(name, array, width);
+  }
+
+  template <class T>
+  void by_free_slot(const std::string& name, const Array<T>& array, int64_t width) {
+    columns("free." + name, array.data, extent_.free.data(), static_cast<int64_t>(extent_.free.size()), width);
+  }
+
+  /// With late inheritance the next newborns find in free slots what the dead have left.
+  void free_slots() {
+    by_free_slot("params", state_.params, shape_.params);
+    by_free_slot("genome", state_.genome, shape_.genes);
+  }
+
+  void foods() {
+    const int64_t present = static_cast<int64_t>(extent_.foods.size());
+    columns("food.x", state_.physics.circles.x.data, extent_.foods.data(), present, 0);
+    columns("food.y", state_.physics.circles.y.data, extent_.foods.data(), present, 0);
+  }
+
+  void bodies() {
+    BodyState::for_each_field(
+        [&](const char* name, auto member) { by_slot(std::string("body.") + name, state_.physics.bodies.*member, 0); });
+  }
+
+  /// The rows of the window so far, for the agents that will learn from it.
+  template <class T>
+  void rollout(const std::string& name, const Array<T>& array, int64_t width) {
+    if (extent_.filled == 0) return;
+    using Number = std::conditional_t<std::is_same_v<T, ObservationLine>, uint8_t, T>;
+    const int64_t numbers = sizeof(T) / sizeof(Number);
+    // One observation more than steps; two actions per step.
+    const int64_t per_step = width / shape_.steps;
+    visit_(name, SavedRows<Number>{reinterpret_cast<Number*>(array.data), width * static_cast<int64_t>(sizeof(T)),
+                                   extent_.slots.data(), extent_.learners, extent_.filled * per_step * numbers});
+  }
+
+  const WorldState& state_;
+  const WorldShape& shape_;
+  const SavedExtent& extent_;
+  Visit& visit_;
+};
+
+template <class Visit>
+void for_each_saved(const World& world, const SavedExtent& extent, Visit&& visit) {
+  SavedArrays<Visit>(world, extent, visit).all();
 }
 
 /// An array of a checkpoint, without values.

@@ -41,7 +41,10 @@ int64_t lay_out_world(World& world, char* at) {
 
 /// Floats of scratch for each thread that learns, in whole cache lines.
 int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
-  return (learn_scratch_size(shape.network, config.learning) + 15) / 16 * 16;
+  int64_t most = 0;
+  for (int32_t s = 0; s < shape.species; ++s)
+    most = std::max(most, learn_scratch_size(shape.of[s].network, config.species[s].learning));
+  return (most + 15) / 16 * 16;
 }
 
 }  // namespace
@@ -59,12 +62,10 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
       paces_(seeds.size()) {
   const FloatMode mode(flush_);
   shape_ = make_shape(config_, static_cast<int32_t>(walls_.size()), outer_walls);
-  constants_ = make_constants(config_);
   for (size_t i = 0; i < worlds_.size(); ++i) {
     World& world = worlds_[i];
     world.config = &config_;
     world.shape = &shape_;
-    world.constants = &constants_;
     world.kernel = kernel_;
     world.seed = seeds[i];
     set_counts(world, threads);
@@ -81,11 +82,9 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
 MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
   const FloatMode mode;
   const WorldShape shape = make_shape(config, walls, walls);
-  const WorldConstants constants = make_constants(config);
   World world{};
   world.config = &config;
   world.shape = &shape;
-  world.constants = &constants;
   set_counts(world, threads);
   const auto bytes = [](const auto&... arrays) { return (laid_out_bytes(arrays) + ...); };
   const WorldState& state = world.state;
@@ -102,9 +101,8 @@ MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, in
 void Simulation::begin(World& world) {
   WorldHead& head = world.head();
   head.extinct_step = -1;
-  for (int32_t slot = shape_.capacity - 1; slot >= 0; --slot) {
-    world.state.free[head.free_count++] = slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)];
-  }
+  for (int32_t slot = shape_.capacity - 1; slot >= 0; --slot)
+    give_back_slot(world, slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)]);
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
   world.state.physics.outer_walls = shape_.outer_walls;
@@ -137,7 +135,9 @@ bool Simulation::set_scene(int index, const SceneInput& scene) {
   }
   empty(target);
   for (int64_t i = 0; i < scene.x.count; ++i) {
-    spawn_founder(target, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i]);
+    const int32_t species = scene.species[i];
+    if (species < 0 || species >= shape_.species || target.state.free_count[species] == 0) return false;
+    spawn_founder(target, species, {scene.x[i], scene.y[i]}, scene.angle[i], scene.energy[i]);
   }
   if (inherits_late(target)) fill_vacancies(target);
   open_window(target);

@@ -22,6 +22,7 @@ using PartSeconds = std::array<double, static_cast<size_t>(Part::count)>;
 /// Agents and foods of a chosen scene; all arrays of agents have one length, all arrays of foods another.
 struct SceneInput {
   Array<const float> x, y, angle, energy;
+  Array<const int32_t> species;
   Array<const float> food_x, food_y;
   Array<const int32_t> food_kind;
 };
@@ -84,7 +85,6 @@ class Simulation {
 
   WorldConfig config_;
   WorldShape shape_;
-  WorldConstants constants_;
   const Kernel* kernel_;
   bool flush_;
   std::vector<Segment> walls_;

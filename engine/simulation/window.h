@@ -26,12 +26,14 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
     note_start(world, slot);
-    const PackedObservation& next = world.observation(slot, shape.steps) = observe(world, slot, group.rank());
+    PackedObservation& next = world.observation(slot, shape.steps);
+    observe(world, slot, group.rank(), next);
     float output[16];
-    world.kernel->forward(shape.network, world.network(slot), next, output);
+    const Species& species = world.species(slot);
+    world.kernel->forward(species.network, world.network(slot), next, output);
 
     const int64_t row = slot * int64_t{shape.steps};
-    const int64_t first = int64_t{slot} * shape.network.size();
+    const int64_t first = int64_t{slot} * shape.params;
     const Rollout rollout{&world.observation(slot, 0),
                           &state.action[row * ACTIONS],
                           &state.log_prob[row],
@@ -43,12 +45,12 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
                           &state.updates[slot]};
     const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
                               static_cast<uint32_t>(head.step)};
-    learn(*world.kernel, shape.network, world.config->learning, rollout, random, scratch + group.rank() * stride,
+    learn(*world.kernel, species.network, species.config->learning, rollout, random, scratch + group.rank() * stride,
           learner);
-    world.kernel->pack_weights(shape.network, world.network(slot));
+    world.kernel->pack_weights(species.network, world.network(slot));
   });
   group.once([&] {
-    world.counters().learners += learners;
+    for (int32_t i = 0; i < learners; ++i) world.counters(state.living[i]).learners += 1;
     if (inherits_late(world)) settle_newborns(world);
     open_window(world);
   });

@@ -1,10 +1,11 @@
-/// From observation to forces: the policy, its sample, and the motors.
+/// From senses to forces: the observation, the policy, its sample, and the motors.
 #pragma once
 
 #include <cstdint>
 
 #include "base/device.h"
 #include "base/random.h"
+#include "world/sensor.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -14,7 +15,7 @@ inline constexpr float LOG_SQRT_TWO_PI = 0.91893853320467274178f;
 /// Samples an action for the agent in `slot` and keeps it with its log-probability and the state's value.
 HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedObservation& observation) {
   const WorldState& state = world.state;
-  const NetworkShape& network = world.shape->network;
+  const NetworkShape& network = world.species(slot).network;
   float output[16];
   world.kernel->forward(network, world.network(slot), observation, output);
   const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(state.life[slot].agent_id),
@@ -35,7 +36,8 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
 
 /// Turns the action into the forces of the two motors, and the force and torque on the body.
 HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
-  const MotorConfig& motor = world.config->motor;
+  const Species& species = world.species(slot);
+  const MotorConfig& motor = species.config->motor;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->steps} + t) * ACTIONS];
   const float range = motor.max_force - motor.min_force;
@@ -46,7 +48,25 @@ HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   scratch.force_right[slot] = right;
   scratch.force_x[slot] = -sine * (left + right);
   scratch.force_y[slot] = cosine * (left + right);
-  scratch.torque[slot] = world.constants->motor_arm * (right - left);
+  scratch.torque[slot] = species.motor_arm * (right - left);
+}
+
+/// All agents observe and act. A team goes through the agents in turn forward and backward: what it read last in one
+/// step, it reads first in the next, while it is still in the cache.
+template <class Group>
+HEDON_FN void sense_and_act(Group& group, World& world, int64_t t) {
+  const auto one = [&](int32_t i) {
+    const int32_t slot = world.scratch.by_slot[i];
+    note_start(world, slot);
+    PackedObservation& observation = world.observation(slot, t);
+    observe(world, slot, group.rank(), observation);
+    sample_action(world, slot, t, observation);
+    apply_motors(world, slot, t);
+  };
+  if (t % 2 == 0)
+    group.for_each(world.head().living_count, one);
+  else
+    group.for_each_backward(world.head().living_count, one);
 }
 
 }  // namespace hedon

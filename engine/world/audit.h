@@ -30,8 +30,14 @@ HEDON_FN void audit_slots(const World& world) {
   const WorldHead& head = world.head();
   const WorldState& state = world.state;
   const int32_t capacity = world.shape->capacity;
-  const bool sane = head.living_count >= 0 && head.free_count >= 0 && head.living_count <= capacity;
-  if (!sane || head.living_count + head.free_count != capacity) {
+  int32_t free_slots = 0;
+  bool sane = head.living_count >= 0 && head.living_count <= capacity;
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    const int32_t count = state.free_count[s];
+    sane = sane && count >= 0 && count <= world.shape->of[s].capacity();
+    free_slots += count;
+  }
+  if (!sane || head.living_count + free_slots != capacity) {
     return world.fail(Status::slots_inconsistent, -1, head.living_count);
   }
   const Array<uint8_t>& seen = world.scratch.starved;
@@ -43,13 +49,14 @@ HEDON_FN void audit_slots(const World& world) {
     seen[slot] = 1;
   };
   for (int32_t i = 0; i < head.living_count; ++i) look(state.living[i], 1);
-  for (int32_t i = 0; i < head.free_count; ++i) look(state.free[i], 0);
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    for (int32_t i = 0; i < state.free_count[s]; ++i) look(state.free[world.shape->of[s].first_slot + i], 0);
+  }
 }
 
 /// Ids ascend in the order of the living and none is above the newest; counts of births, deaths and foods agree.
 HEDON_FN void audit_counts(const World& world) {
   const WorldHead& head = world.head();
-  const Counters& counters = world.counters();
   int32_t before = -1;
   for (int32_t i = 0; i < head.living_count; ++i) {
     const Life& life = world.state.life[world.state.living[i]];
@@ -59,8 +66,13 @@ HEDON_FN void audit_counts(const World& world) {
     before = life.agent_id;
   }
   // Every id was given once, to a founder or to a child.
-  if (head.next_agent_id - counters.deaths != head.living_count || counters.births > head.next_agent_id) {
-    return world.fail(Status::counts_inconsistent, -1, static_cast<double>(counters.deaths));
+  int64_t births = 0, deaths = 0;
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    births += world.state.counters[s].births;
+    deaths += world.state.counters[s].deaths;
+  }
+  if (head.next_agent_id - deaths != head.living_count || births > head.next_agent_id) {
+    return world.fail(Status::counts_inconsistent, -1, static_cast<double>(deaths));
   }
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
     const FoodStock& stock = world.state.food_stock[k];
@@ -87,17 +99,21 @@ HEDON_FN void audit_capacity(const World& world) {
   if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
 }
 
-/// Energy of all agents = initial + eaten + forgiven − basic − action − capped − lost, up to rounding: a step of an
-/// agent rounds at most eight sums, each by at most 2^-53 of its largest possible value.
-HEDON_FN void audit_ledger(const World& world) {
+/// For each species: energy of its agents = initial + eaten + hunted + forgiven − basic − action − capped − lost, up to
+/// rounding: a step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible value.
+HEDON_FN void audit_ledger(const World& world, int32_t s) {
   constexpr double ROUNDING = 8.0 * 0x1p-53;
-  const Counters& c = world.counters();
+  const Counters& c = world.state.counters[s];
   double held = 0.0;
-  for (int32_t i = 0; i < world.head().living_count; ++i) held += world.state.life[world.state.living[i]].energy;
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    const int32_t slot = world.state.living[i];
+    if (world.shape->species_of(slot) == s) held += world.state.life[slot].energy;
+  }
   const double eaten = c.energy_eaten < 0.0 ? -c.energy_eaten : c.energy_eaten;
-  const double moved = c.energy_initial + eaten + c.energy_forgiven + c.energy_basic + c.energy_action +
-                       c.energy_capped + c.energy_lost + c.energy_shared + world.config->energy.capacity;
-  const double due = c.energy_initial + c.energy_eaten + c.energy_forgiven - c.energy_basic - c.energy_action -
+  const double hunted = world.shape->hunting ? world.state.hunt_counters[s].energy_hunted : 0.0;
+  const double moved = c.energy_initial + eaten + hunted + c.energy_forgiven + c.energy_basic + c.energy_action +
+                       c.energy_capped + c.energy_lost + c.energy_shared + world.config->species[s].energy.capacity;
+  const double due = c.energy_initial + c.energy_eaten + hunted + c.energy_forgiven - c.energy_basic - c.energy_action -
                      c.energy_capped - c.energy_lost;
   const double gap = held > due ? held - due : due - held;
   const double steps = static_cast<double>(c.agent_steps + c.births + world.head().next_agent_id);
@@ -121,11 +137,12 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
 HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const RayScene& scene = world.scene;
   const RayGrid& grid = world.shape->scene;
-  const BodyConfig& config = world.config->body;
+  const float radius = world.species(slot).body.radius;
   const int32_t own = scene.own[slot];
   const float x = scene.x[own], y = scene.y[own];
   const bool deep = world.config->physics.solver == ContactSolver::jacobi;
-  const float reach = config.radius > config.food_radius ? config.radius : config.food_radius;
+  const float largest = world.shape->bodies.max_radius();
+  const float reach = largest > world.config->food_radius ? largest : world.config->food_radius;
   const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(x + reach, grid.inverse_cell, grid.columns);
   const int32_t last_row = cell_along(y + reach, grid.inverse_cell, grid.rows);
@@ -134,9 +151,11 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
     const int32_t* start = scene.start.data + int64_t{row} * grid.columns;
     for (int32_t at = start[first_column]; at < start[last_column + 1]; ++at) {
       const Vec2 apart{scene.x[at] - x, scene.y[at] - y};
-      const float limit = deep ? 0.25f * (config.radius + scene.radius[at]) : scene.radius[at];
-      if (at == own || !(squared_length(apart) < limit * limit)) continue;
-      return {Status::overlap_too_deep, agent_at(world, at), config.radius + scene.radius[at] - length(apart)};
+      const float limit = deep ? 0.25f * (radius + scene.radius[at]) : scene.radius[at];
+      if (at == own || world.species(slot).touch.of_type[static_cast<int32_t>(scene.type[at])] < 0 ||
+          !(squared_length(apart) < limit * limit))
+        continue;
+      return {Status::overlap_too_deep, agent_at(world, at), radius + scene.radius[at] - length(apart)};
     }
   }
   return {Status::ok, -1, 0.0};
@@ -151,10 +170,11 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   for (const float number : numbers) {
     if (!is_finite(number)) return {Status::not_finite, -1, number};
   }
-  const int64_t size = world.shape->network.size(), first = slot * size;
+  const Species& species = world.species(slot);
+  const int64_t size = species.network.size(), first = int64_t{slot} * world.shape->params;
   const bool network_finite = all_finite(world.params(slot), size) && all_finite(&state.first_moment[first], size) &&
                               all_finite(&state.second_moment[first], size) &&
-                              all_finite(world.genome(slot), world.shape->genome.size());
+                              all_finite(world.genome(slot), species.config->genome.genes.count);
   if (!network_finite) return {Status::not_finite, -1, static_cast<double>(state.updates[slot])};
   const double energy = state.life[slot].energy;
   if (!is_finite(energy)) return {Status::not_finite, -1, energy};
@@ -186,7 +206,7 @@ HEDON_FN void audit(Group& group, World& world) {
       world.fail(found.status, world.state.life[world.state.living[i]].agent_id, found.value, found.other_id);
     }
     audit_counts(world);
-    audit_ledger(world);
+    for (int32_t s = 0; s < world.shape->species; ++s) audit_ledger(world, s);
   });
 }
 

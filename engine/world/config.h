@@ -8,13 +8,16 @@
 #include "base/vec2.h"
 #include "evolution/config.h"
 #include "learning/config.h"
+#include "physics/body.h"
 #include "physics/config.h"
 
 namespace hedon {
 
+inline constexpr int MAX_SPECIES = MAX_BODY_CLASSES;
+inline constexpr int MAX_FOOD_KINDS = MAX_CIRCLE_CLASSES;
 inline constexpr int MAX_FOOD_CENTERS = 16;
 inline constexpr int MAX_RAYS = 32;
-inline constexpr int MAX_TYPES = MAX_FOOD_KINDS + 2;  ///< agent, each food kind, wall
+inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 1;  ///< each species, each food kind, wall
 
 struct ArenaConfig {
   float width;
@@ -26,9 +29,8 @@ struct ArenaConfig {
 struct BodyConfig {
   float radius;
   float density;
-  float food_radius;
 
-  HEDON_FIELDS(BodyConfig, radius, density, food_radius)
+  HEDON_FIELDS(BodyConfig, radius, density)
 };
 
 struct MotorConfig {
@@ -54,6 +56,10 @@ inline constexpr const char* EATEN_FOOD_NAMES[] = {"gone", "seen"};
 enum class Mouths : int32_t { nearest, all };
 inline constexpr const char* MOUTHS_NAMES[] = {"nearest", "all"};
 
+/// Who gains by an agent that several others eat in the same step: one of them, by a draw, or each in full.
+enum class PreySharing : int32_t { one, each };
+inline constexpr const char* PREY_SHARING_NAMES[] = {"one", "each"};
+
 struct SensorConfig {
   int32_t ray_count;
   float ray_spread;  ///< between the heading and the outermost ray on each side [degree]
@@ -62,11 +68,11 @@ struct SensorConfig {
   float mouth_spread;  ///< between the heading and each end of the mouth [degree]
   ObservationScaling scaling;
   RayInside ray_inside;
-  EatenFood eaten_food;
-  Mouths mouths;
+  FixedList<int32_t, MAX_TYPES> sees;      ///< types that rays meet, by channel, ascending
+  FixedList<int32_t, MAX_TYPES> collides;  ///< types that it collides with and feels by touch, by channel, ascending
 
-  HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling, ray_inside,
-               eaten_food, mouths)
+  HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling, ray_inside, sees,
+               collides)
 };
 
 struct PopulationConfig {
@@ -143,24 +149,29 @@ inline constexpr const char* CHILD_HEADING_NAMES[] = {"own", "shared"};
 struct BirthConfig {
   float kappa;
   float beta;
+  float delay;
   int32_t attempts;
   Vec2 distance_sd;
-  BirthOrder order;
-  Inheritance inheritance;
-  Parents parents;
-  ChildHeading heading;
 
-  HEDON_FIELDS(BirthConfig, kappa, beta, attempts, distance_sd, order, inheritance, parents, heading)
+  HEDON_FIELDS(BirthConfig, kappa, beta, delay, attempts, distance_sd)
 };
 
-struct WorldConfig {
-  ArenaConfig arena;
-  PhysicsConfig physics;
+/// What a species eats.
+struct DietConfig {
+  FixedList<float, MAX_FOOD_KINDS> food;  ///< factor on the energy of each kind; 0: it does not eat this kind
+  FixedList<float, MAX_SPECIES> prey;     ///< share of the energy of each species that it gains; 0: it does not eat it
+  int32_t digestion_steps;                ///< after eating an agent, for which it eats no other
+
+  HEDON_FIELDS(DietConfig, food, prey, digestion_steps)
+};
+
+/// Everything that makes a kind of agent. Types are numbered: the species, then the food kinds, then walls.
+struct SpeciesConfig {
   BodyConfig body;
   MotorConfig motor;
   SensorConfig sensor;
   PopulationConfig population;
-  FixedList<FoodConfig, MAX_FOOD_KINDS> food;
+  DietConfig diet;
   EnergyConfig energy;
   HazardConfig hazard;
   BirthConfig birth;
@@ -168,8 +179,31 @@ struct WorldConfig {
   RewardConfig reward;
   LearningConfig learning;
 
-  HEDON_FIELDS(WorldConfig, arena, physics, body, motor, sensor, population, food, energy, hazard, birth, genome,
-               reward, learning)
+  HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, hazard, birth, genome, reward, learning)
+};
+
+/// Rules that all species of a world share.
+struct RuleConfig {
+  EatenFood eaten_food;
+  Mouths mouths;
+  PreySharing prey_sharing;
+  BirthOrder birth_order;
+  Inheritance inheritance;
+  Parents parents;
+  ChildHeading child_heading;
+
+  HEDON_FIELDS(RuleConfig, eaten_food, mouths, prey_sharing, birth_order, inheritance, parents, child_heading)
+};
+
+struct WorldConfig {
+  ArenaConfig arena;
+  PhysicsConfig physics;
+  RuleConfig rules;
+  float food_radius;
+  FixedList<FoodConfig, MAX_FOOD_KINDS> food;
+  FixedList<SpeciesConfig, MAX_SPECIES> species;
+
+  HEDON_FIELDS(WorldConfig, arena, physics, rules, food_radius, food, species)
 };
 
 }  // namespace hedon

@@ -41,15 +41,11 @@ HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& ra
   FoodStock& stock = world.state.food_stock[k];
   for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
     const Vec2 position = draw_food_position(world, k, random, static_cast<uint32_t>(i));
-    if (can_place(world, position, world.config->body.food_radius)) place_food(world, k, position);
+    if (can_place(world, position, world.config->food_radius)) place_food(world, k, position);
   }
 }
 
-HEDON_FN int32_t food_kind(const WorldShape& shape, int32_t food) {
-  int32_t k = 0;
-  while (food >= shape.food_offset[k + 1]) ++k;
-  return k;
-}
+HEDON_FN int32_t food_kind(const WorldShape& shape, int32_t food) { return shape.bodies.circle_class(food); }
 
 /// Feeds `slot` with a food of kind `k`; the place where food appears moves on after a number of meals.
 HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
@@ -68,11 +64,11 @@ HEDON_FN void eat(World& world) {
   StepScratch& scratch = world.scratch;
   const BodyState& body = state.physics.bodies;
   for (int32_t i = 0; i < world.head().living_count; ++i) {
-    for (int32_t k = 0; k < world.shape->kinds; ++k) world.meal(state.living[i])[k] = 0;
+    for (int32_t m = 0; m < world.shape->meals(); ++m) world.meal(state.living[i])[m] = 0;
   }
   world.head().ghost_count = 0;
-  const bool all = world.config->sensor.mouths == Mouths::all;
-  const bool seen = world.config->sensor.eaten_food == EatenFood::seen;
+  const bool all = world.config->rules.mouths == Mouths::all;
+  const bool seen = world.shape->ghosts;
   int32_t found = 0;
   for_each_circle_pair(state.physics.neighbors, [&](int32_t slot, int32_t f, uint8_t mark) {
     if (mark == 0) return;

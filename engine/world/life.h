@@ -22,34 +22,41 @@ HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
 
 /// Probability of having a child in a step at energy `energy`.
 HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
-  return config.kappa / (1.0 + exp_double(-static_cast<double>(config.beta) * energy));
+  return config.kappa / (1.0 + exp_double(config.delay - static_cast<double>(config.beta) * energy));
+}
+
+/// Euclidean norm of the two forces that the agent in `slot` applied in this step.
+HEDON_FN float applied_force(const World& world, int32_t slot) {
+  const float left = world.scratch.force_left[slot], right = world.scratch.force_right[slot];
+  return sqrtf(left * left + right * right);
+}
+
+HEDON_FN bool is_eaten(const World& world, int32_t slot) {
+  return world.shape->hunting && world.scratch.eaten[slot] != 0;
 }
 
 /// Decides whether an agent dies at the end of this step, from its draw and its age and energy then.
 HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
   const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
-  world.scratch.dies[slot] = world.scratch.starved[slot] != 0 ||
-                             world.scratch.death_draw[slot] < hazard(world.config->hazard, age, life.energy);
+  world.scratch.dies[slot] = world.scratch.starved[slot] != 0 || is_eaten(world, slot) ||
+      world.scratch.death_draw[slot] < hazard(world.species(slot).config->hazard, age, life.energy);
 }
 
-/// One agent's step: meals and costs, then its reward, and whether it breeds and dies.
-HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
-  const WorldConfig& config = *world.config;
+/// Pays one agent its meals and charges it for living and for its motors.
+HEDON_FN void spend_energy(World& world, int32_t slot) {
+  const SpeciesConfig& config = *world.species(slot).config;
   const WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
   Life& life = state.life[slot];
-  const float left = scratch.force_left[slot], right = scratch.force_right[slot];
-  const float force = sqrtf(left * left + right * right);
   const int32_t* meal = world.meal(slot);
-
   double eaten = 0.0;
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
-    eaten += static_cast<double>(config.food[k].energy) * meal[k];
-    state.eaten[int64_t{slot} * world.shape->kinds + k] += meal[k];
+    eaten += static_cast<double>(config.diet.food[k] * world.config->food[k].energy) * meal[k];
+    state.eaten[int64_t{slot} * world.shape->meals() + k] += meal[k];
   }
   const double basic = config.energy.basic_cost;
-  const double action = static_cast<double>(config.energy.action_cost) * force;
+  const double action = static_cast<double>(config.energy.action_cost) * applied_force(world, slot);
   const double wanted = life.energy + eaten - action - basic;
   const double capacity = config.energy.capacity;
   scratch.energy_eaten[slot] = eaten;
@@ -65,31 +72,48 @@ HEDON_FN void metabolize(World& world, int32_t slot, int64_t t) {
   const BodyState& body = state.physics.bodies;
   const Vec2 moved{body.x[slot] - scratch.start_x[slot], body.y[slot] - scratch.start_y[slot]};
   life.distance += length(moved);
-  life.force_left += left;
-  life.force_right += right;
+  life.force_left += scratch.force_left[slot];
+  life.force_right += scratch.force_right[slot];
+}
 
-  const float r =
-      reward(world.shape->genome, config.reward, world.genome(slot), meal, force, world.constants->max_force);
-  state.reward[slot * int64_t{world.shape->steps} + t] = r;
-  life.reward += r;
+/// One agent's reward for this step, into its rollout.
+HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
+  const Species& species = world.species(slot);
+  const RewardInputs inputs{world.meal(slot), applied_force(world, slot), species.max_force,
+                            &world.observation(slot, t), species.config->sensor.ray_count};
+  const float r = reward(species.config->reward, world.genome(slot), inputs);
+  world.state.reward[slot * int64_t{world.shape->steps} + t] = r;
+  world.state.life[slot].reward += r;
+}
 
+/// Draws whether an agent has a child and whether it dies.
+HEDON_FN void draw_fates(World& world, int32_t slot) {
+  const Life& life = world.state.life[slot];
+  StepScratch& scratch = world.scratch;
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
                             static_cast<uint32_t>(world.head().step)};
   const Random4 bits = random.draw(0);
-  scratch.breeds[slot] =
-      scratch.starved[slot] == 0 && to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(config.birth, life.energy);
+  scratch.breeds[slot] = scratch.starved[slot] == 0 && !is_eaten(world, slot) && to_fine_uniform(bits.word[0], bits.word[1]) <
+                                                           birth_rate(world.species(slot).config->birth, life.energy);
   scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
   decide_death(world, slot);
 }
 
+/// Adds an agent's meals of this step to those of its species.
+HEDON_FN void count_meals(const World& world, int32_t slot) {
+  const int32_t meals = world.shape->meals();
+  int64_t* sum = &world.state.eaten_by[int64_t{world.shape->species_of(slot)} * meals];
+  for (int32_t m = 0; m < meals; ++m) sum[m] += world.meal(slot)[m];
+}
+
 /// Adds the energy that the living gained and spent in this step to the ledger, in their order.
 HEDON_FN void keep_ledger(World& world) {
-  Counters& counters = world.counters();
   const StepScratch& scratch = world.scratch;
-  const int32_t living = world.head().living_count;
-  counters.agent_steps += living;
-  for (int32_t i = 0; i < living; ++i) {
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = world.state.living[i];
+    Counters& counters = world.counters(slot);
+    counters.agent_steps += 1;
+    if (world.state.eaten_by.count > 0) count_meals(world, slot);
     counters.energy_eaten += scratch.energy_eaten[slot];
     counters.energy_basic += scratch.energy_basic[slot];
     counters.energy_action += scratch.energy_action[slot];
@@ -100,7 +124,8 @@ HEDON_FN void keep_ledger(World& world) {
 
 /// Looks for a free position for the child of `parent` around it.
 HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* position) {
-  const BirthConfig& birth = world.config->birth;
+  const SpeciesConfig& species = *world.species(parent).config;
+  const BirthConfig& birth = species.birth;
   const BodyState& body = world.state.physics.bodies;
   const RandomStream random{world.seed, Purpose::child_place, static_cast<uint32_t>(world.state.life[parent].agent_id),
                             static_cast<uint32_t>(world.head().step)};
@@ -109,7 +134,7 @@ HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* posi
     const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
     *position = {body.x[parent] + birth.distance_sd.x * normal.first,
                  body.y[parent] + birth.distance_sd.y * normal.second};
-    if (can_place(world, *position, world.config->body.radius)) return true;
+    if (can_place(world, *position, species.body.radius)) return true;
   }
   return false;
 }
@@ -118,7 +143,6 @@ HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* posi
 HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
-  Counters& counters = world.counters();
   const uint32_t step = static_cast<uint32_t>(world.head().step);
   int32_t parents = 0;
   for (int32_t i = 0; i < world.head().living_count; ++i) {
@@ -137,8 +161,9 @@ HEDON_FN void breed(World& world) {
   }
   for (int32_t p = 0; p < parents; ++p) {
     const int32_t parent = scratch.parent[p];
+    Counters& counters = world.counters(parent);
     Vec2 position;
-    if (world.head().free_count == 0) {
+    if (world.state.free_count[world.shape->species_of(parent)] == 0) {
       counters.births_failed_full += 1;
     } else if (!find_child_position(world, parent, &position)) {
       counters.births_failed_space += 1;
@@ -149,14 +174,14 @@ HEDON_FN void breed(World& world) {
   }
 }
 
-/// Removes the agents that die from the living. Newborns cannot die in the step of their birth.
-HEDON_FN void apply_deaths(World& world) {
+/// Removes the agents for whom `dies` is 1 from the living. Newborns cannot die in the step of their birth.
+HEDON_FN void apply_deaths(World& world, const Array<uint8_t>& dies) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
   int32_t kept = 0;
   for (int32_t i = 0; i < head.living_count; ++i) {
     const int32_t slot = state.living[i];
-    if (world.scratch.dies[slot] != 0) {
+    if (dies[slot] != 0) {
       kill(world, slot);
     } else {
       state.living[kept++] = slot;

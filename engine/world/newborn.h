@@ -15,10 +15,10 @@ namespace hedon {
 /// Gives the agent in `slot` a new network and the optimizer that belongs to it.
 HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& random) {
   const WorldState& state = world.state;
-  const NetworkShape& network = world.shape->network;
+  const NetworkShape& network = world.species(slot).network;
   init_network(network, random, world.params(slot));
   world.kernel->pack_weights(network, world.network(slot));
-  const int64_t first = int64_t{slot} * network.size();
+  const int64_t first = int64_t{slot} * world.shape->params;
   for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
   state.updates[slot] = 0;
 }
@@ -30,22 +30,25 @@ HEDON_FN void give_own_network(World& world, int32_t slot) {
 }
 
 HEDON_FN bool inherits_late(const World& world) {
-  return world.config->birth.inheritance == Inheritance::at_window_end;
+  return world.config->rules.inheritance == Inheritance::at_window_end;
 }
 
 /// Puts a network and a genome into every free slot of a new world, for the newborns that come first.
 HEDON_FN void fill_vacancies(World& world) {
-  for (int32_t i = 0; i < world.head().free_count; ++i) {
-    const int32_t slot = world.state.free[i];
-    const uint32_t number = static_cast<uint32_t>(i);
-    give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
-    init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::vacant_genome, number, 0},
-                world.genome(slot));
+  uint32_t number = 0;
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    const Species& species = world.shape->of[s];
+    for (int32_t i = 0; i < world.state.free_count[s]; ++i, ++number) {
+      const int32_t slot = world.state.free[species.first_slot + i];
+      give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
+      init_genome(species.config->genome, RandomStream{world.seed, Purpose::vacant_genome, number, 0},
+                  world.genome(slot));
+    }
   }
 }
 
 HEDON_FN float* newborn_genome(const World& world, int32_t index) {
-  return &world.state.newborn_genome[int64_t{index} * world.shape->genome.size()];
+  return &world.state.newborn_genome[int64_t{index} * world.shape->genes];
 }
 
 /// Notes who the parent of the newest agent is, until the window ends.
@@ -55,11 +58,12 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
   if (at >= world.shape->newborns) return world.fail(Status::birth_overflow, child_id, at);
   const Life& life = state.life[parent];
   Newborn& newborn = state.newborn[at] = {child_id, -1};
+  if (state.newborn_species.count > 0) state.newborn_species[at] = world.shape->species_of(parent);
   if (life.birth_step > world.window_start()) {
     for (newborn.parent = at - 1; state.newborn[newborn.parent].agent_id != life.agent_id;) --newborn.parent;
     return;
   }
-  for (int32_t g = 0; g < world.shape->genome.size(); ++g) newborn_genome(world, at)[g] = world.genome(parent)[g];
+  for (int32_t g = 0; g < world.shape->genes; ++g) newborn_genome(world, at)[g] = world.genome(parent)[g];
 }
 
 /// Gives the newborns of a window, in the order of their births, their genomes, and those that still live their
@@ -67,19 +71,19 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
 HEDON_FN void settle_newborns(World& world) {
   const WorldState& state = world.state;
   const WorldHead& head = world.head();
-  const GenomeShape& shape = world.shape->genome;
   const int32_t births = head.births_in_window;
   for (int32_t i = 0; i < births; ++i) {
     const Newborn& newborn = state.newborn[i];
     const float* parent = newborn_genome(world, newborn.parent < 0 ? i : newborn.parent);
-    inherit(shape, world.config->genome, world.seed, static_cast<uint32_t>(newborn.agent_id),
+    const int32_t species = state.newborn_species.count > 0 ? state.newborn_species[i] : 0;
+    inherit(world.shape->of[species].config->genome, world.seed, static_cast<uint32_t>(newborn.agent_id),
             {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent, newborn_genome(world, i));
   }
   // Both lists are in the order of ids, and the newborns are the youngest of the living.
   for (int32_t i = births - 1, at = head.living_count - 1; i >= 0 && at >= 0; --i) {
     const int32_t slot = state.living[at];
     if (state.life[slot].agent_id != state.newborn[i].agent_id) continue;  // it has died
-    for (int32_t g = 0; g < shape.size(); ++g) world.genome(slot)[g] = newborn_genome(world, i)[g];
+    for (int32_t g = 0; g < world.shape->genes; ++g) world.genome(slot)[g] = newborn_genome(world, i)[g];
     give_own_network(world, slot);
     --at;
   }
@@ -90,13 +94,13 @@ HEDON_FN void open_window(World& world) {
   WorldHead& head = world.head();
   head.births_before = head.births_in_window;
   head.births_in_window = 0;
-  if (world.config->birth.parents == Parents::all) return;
+  if (world.config->rules.parents == Parents::all) return;
   for (int32_t slot = 0; slot < world.shape->capacity; ++slot) world.state.old_slot[slot] = world.state.alive[slot];
 }
 
 /// Whether the agent in `slot` may have children in this window.
 HEDON_FN bool may_breed(const World& world, int32_t slot) {
-  return world.config->birth.parents == Parents::all || world.state.old_slot[slot] != 0;
+  return world.config->rules.parents == Parents::all || world.state.old_slot[slot] != 0;
 }
 
 }  // namespace hedon

@@ -30,12 +30,13 @@ HEDON_FN bool free_of_bodies(const World& world, Vec2 position, float radius) {
   const WorldState& state = world.state;
   const PhysicsState& physics = state.physics;
   bool is_free = true;
-  const float agent_reach = radius + world.config->body.radius;
-  for_each_body_near(physics, position.x, position.y, agent_reach, [&](int32_t slot) {
+  const BodyTable& bodies = world.shape->bodies;
+  for_each_body_near(physics, position.x, position.y, radius + bodies.max_radius(), [&](int32_t slot) {
+    const float agent_reach = radius + bodies.radius(slot);
     const Vec2 apart{physics.bodies.x[slot] - position.x, physics.bodies.y[slot] - position.y};
     if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
   });
-  const float food_reach = radius + world.config->body.food_radius;
+  const float food_reach = radius + world.config->food_radius;
   for_each_circle_near(physics, position.x, position.y, food_reach, [&](int32_t f) {
     const Vec2 apart{physics.circles.x[f] - position.x, physics.circles.y[f] - position.y};
     if (physics.circles.present[f] && squared_length(apart) < food_reach * food_reach) is_free = false;

@@ -23,18 +23,32 @@ HEDON_FN void list_by_slot(World& world) {
   }
 }
 
+/// Takes a slot from those of a species that are free; at least one must be.
+HEDON_FN int32_t take_free_slot(const World& world, int32_t species) {
+  return world.state.free[world.shape->of[species].first_slot + --world.state.free_count[species]];
+}
+
+HEDON_FN void give_back_slot(const World& world, int32_t slot) {
+  const int32_t species = world.shape->species_of(slot);
+  world.state.free[world.shape->of[species].first_slot + world.state.free_count[species]++] = slot;
+}
+
 /// A body at rest with no history and the next id, last in the living order. The caller gives it network and genome.
-HEDON_FN int32_t spawn(World& world, Vec2 position, float angle, double energy, int64_t birth_step) {
+HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle, double energy, int64_t birth_step) {
   WorldState& state = world.state;
   WorldHead& head = world.head();
-  const int32_t slot = state.free[--head.free_count];
+  const int32_t slot = take_free_slot(world, species);
   const int32_t id = head.next_agent_id++;
   if (head.next_agent_id == INT32_MAX) world.fail(Status::id_overflow, id, id);
   state.alive[slot] = 1;
   state.living[head.living_count++] = slot;
   state.life[slot] = Life{birth_step, -1, id, -1, 0, 0, energy, energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  for (int32_t k = 0; k < world.shape->kinds; ++k) state.eaten[int64_t{slot} * world.shape->kinds + k] = 0;
+  const int32_t meals = world.shape->meals();
+  for (int32_t m = 0; m < meals; ++m) state.eaten[int64_t{slot} * meals + m] = 0;
   state.touch[slot] = 0;
+  if (state.touch_more.count > 0) state.touch_more[slot] = 0;
+  if (world.shape->hunting) state.digestion[slot] = world.scratch.eaten[slot] = 0;
+  if (state.species.count > 0) state.species[slot] = species;
   world.scratch.dies[slot] = 0;
 
   BodyState& body = state.physics.bodies;
@@ -50,19 +64,19 @@ HEDON_FN int32_t spawn(World& world, Vec2 position, float angle, double energy, 
 }
 
 /// The first agents: each with a new network and a genome of its own.
-HEDON_FN int32_t spawn_founder(World& world, Vec2 position, float angle, double energy) {
-  const int32_t slot = spawn(world, position, angle, energy, 0);
+HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy) {
+  const int32_t slot = spawn(world, species, position, angle, energy, 0);
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
-  init_genome(world.shape->genome, world.config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
+  init_genome(world.shape->of[species].config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
               world.genome(slot));
-  world.counters().energy_initial += energy;
+  world.counters(slot).energy_initial += energy;
   return slot;
 }
 
 /// The heading of a child with this id that is born in this step.
 HEDON_FN float child_heading(const World& world, uint32_t id) {
-  const bool shared = world.config->birth.heading == ChildHeading::shared;
+  const bool shared = world.config->rules.child_heading == ChildHeading::shared;
   const uint32_t step = shared ? static_cast<uint32_t>(world.head().step) : 0;
   const Random4 bits = RandomStream{world.seed, Purpose::child_heading, shared ? 0 : id, step}.draw(0);
   return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
@@ -73,11 +87,13 @@ HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
   Life& parent_life = state.life[parent];
-  const double share = static_cast<double>(world.config->energy.birth_share) * parent_life.energy;
+  const Species& species = world.species(parent);
+  const double share = static_cast<double>(species.config->energy.birth_share) * parent_life.energy;
   parent_life.energy -= share;
   parent_life.children += 1;
   const uint32_t id = static_cast<uint32_t>(head.next_agent_id);
-  const int32_t slot = spawn(world, position, child_heading(world, id), share, head.step + 1);
+  const int32_t slot =
+      spawn(world, world.shape->species_of(parent), position, child_heading(world, id), share, head.step + 1);
   Life& child = state.life[slot];
   child.parent_id = parent_life.agent_id;
   child.generation = parent_life.generation + 1;
@@ -85,13 +101,28 @@ HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
     note_newborn(world, parent, child.agent_id);
   } else {
     give_own_network(world, slot);
-    inherit(world.shape->genome, world.config->genome, world.seed, id,
+    inherit(species.config->genome, world.seed, id,
             {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)},
             world.genome(parent), world.genome(slot));
   }
   head.births_in_window += 1;
-  world.counters().births += 1;
-  world.counters().energy_shared += share;
+  world.counters(parent).births += 1;
+  world.counters(parent).energy_shared += share;
+}
+
+HEDON_FN Cause cause_of_death(const World& world, int32_t slot) {
+  if (world.shape->hunting && world.scratch.eaten[slot] != 0) return Cause::eaten;
+  return world.scratch.starved[slot] != 0 ? Cause::starved : Cause::age_energy;
+}
+
+/// Counts a death by its cause, in worlds where agents eat agents.
+HEDON_FN void count_cause(const World& world, int32_t slot) {
+  if (!world.shape->hunting) return;
+  HuntCounters& counters = world.state.hunt_counters[world.shape->species_of(slot)];
+  const Cause cause = cause_of_death(world, slot);
+  counters.deaths_starved += cause == Cause::starved;
+  counters.deaths_eaten += cause == Cause::eaten;
+  if (cause == Cause::eaten) counters.energy_prey += world.state.life[slot].energy;
 }
 
 /// Removes the agent in `slot` and keeps its life for the records. The caller updates the living order.
@@ -106,41 +137,63 @@ HEDON_FN void kill(World& world, int32_t slot) {
   life.death_step = head.step + 1;
   state.alive[slot] = 0;
   mark_stale(state.physics);
-  state.free[head.free_count++] = slot;
-  world.counters().deaths += 1;
-  world.counters().energy_lost += life.energy;
+  give_back_slot(world, slot);
+  world.counters(slot).deaths += 1;
+  world.counters(slot).energy_lost += life.energy;
+  count_cause(world, slot);
 
   const int64_t event = head.event_count++;
   state.event[event] = life;
-  const int32_t kinds = world.shape->kinds, genes = world.shape->genome.size();
-  for (int32_t k = 0; k < kinds; ++k) state.event_eaten[event * kinds + k] = state.eaten[int64_t{slot} * kinds + k];
+  state.event_species[event] = world.shape->species_of(slot);
+  const int32_t meals = world.shape->meals(), genes = world.shape->genes;
+  state.event_cause[event] = static_cast<int32_t>(cause_of_death(world, slot));
+  for (int32_t m = 0; m < meals; ++m) state.event_eaten[event * meals + m] = state.eaten[int64_t{slot} * meals + m];
   for (int32_t g = 0; g < genes; ++g) state.event_genome[event * genes + g] = world.genome(slot)[g];
+}
+
+/// Tries per founder or food of a new world; a half-full arena needs a few.
+inline constexpr int32_t TRIES = 20000;
+
+/// Looks for a free position for the founder of this number, anywhere in the arena.
+HEDON_FN bool find_founder_position(const World& world, int32_t number, float radius, Vec2* position) {
+  const ArenaConfig& arena = world.config->arena;
+  const RandomStream random{world.seed, Purpose::initial_place, static_cast<uint32_t>(number), 0};
+  for (int32_t i = 0; i < TRIES; ++i) {
+    const Random4 bits = random.draw(static_cast<uint32_t>(i));
+    *position = {arena.width * to_uniform(bits.word[0]), arena.height * to_uniform(bits.word[1])};
+    if (can_place(world, *position, radius)) return true;
+  }
+  return false;
+}
+
+/// Puts the founders of all species into an empty world.
+HEDON_FN void init_founders(World& world) {
+  int32_t number = 0;
+  for (int32_t s = 0; s < world.shape->species; ++s) {
+    const SpeciesConfig& species = *world.shape->of[s].config;
+    for (int32_t i = 0; i < species.population.initial_count; ++i, ++number) {
+      Vec2 position;
+      if (!find_founder_position(world, number, species.body.radius, &position))
+        return world.fail(Status::initial_placement, number, number);
+      const RandomStream random{world.seed, Purpose::initial_heading, static_cast<uint32_t>(number), 0};
+      const float angle = wrap_angle(species.population.heading_range * to_uniform(random.draw(0).word[0]));
+      spawn_founder(world, s, position, angle, species.energy.initial);
+    }
+  }
 }
 
 /// Puts the founders and the first foods into an empty world.
 HEDON_FN void init_population(World& world) {
-  constexpr int32_t TRIES = 20000;  ///< per founder or food; a half-full arena needs a few
-  const WorldConfig& config = *world.config;
-  for (int32_t i = 0; i < config.population.initial_count; ++i) {
-    const RandomStream random{world.seed, Purpose::initial_place, static_cast<uint32_t>(i), 0};
-    int32_t tries = 0;
-    Vec2 position;
-    do {
-      const Random4 bits = random.draw(static_cast<uint32_t>(tries));
-      position = {config.arena.width * to_uniform(bits.word[0]), config.arena.height * to_uniform(bits.word[1])};
-    } while (!can_place(world, position, config.body.radius) && ++tries < TRIES);
-    if (tries == TRIES) return world.fail(Status::initial_placement, i, i);
-    const Random4 bits = RandomStream{world.seed, Purpose::initial_heading, static_cast<uint32_t>(i), 0}.draw(0);
-    const float angle = wrap_angle(config.population.heading_range * to_uniform(bits.word[0]));
-    spawn_founder(world, position, angle, config.energy.initial);
-  }
+  init_founders(world);
+  if (world.fault().status != Status::ok) return;
   if (inherits_late(world)) fill_vacancies(world);
   open_window(world);
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
+    const FoodConfig& food = world.config->food[k];
     FoodStock& stock = world.state.food_stock[k];
-    stock.number = config.food[k].initial_count;
+    stock.number = food.initial_count;
     place_missing_food(world, k, RandomStream{world.seed, Purpose::initial_food, static_cast<uint32_t>(k), 0}, TRIES);
-    if (stock.present < config.food[k].initial_count) return world.fail(Status::initial_placement, -1, k);
+    if (stock.present < food.initial_count) return world.fail(Status::initial_placement, -1, k);
   }
 }
 

@@ -50,16 +50,18 @@ HEDON_FN void gather_scene(World& world) {
   };
   for (int32_t g = ghosts - 1; g >= 0; --g) {
     const Ghost& ghost = state.ghost[g];
-    put(first_ghost + g, ghost.x, ghost.y, world.config->body.food_radius, 1 + ghost.kind);
+    put(first_ghost + g, ghost.x, ghost.y, world.config->food_radius, world.shape->food_type(ghost.kind));
   }
   for (int32_t k = world.shape->kinds - 1; k >= 0; --k) {
     for (int32_t f = world.shape->food_offset[k + 1] - 1; f >= world.shape->food_offset[k]; --f) {
-      if (food.present[f]) put(capacity + f, food.x[f], food.y[f], world.config->body.food_radius, 1 + k);
+      if (food.present[f])
+        put(capacity + f, food.x[f], food.y[f], world.config->food_radius, world.shape->food_type(k));
     }
   }
   for (int32_t i = living - 1; i >= 0; --i) {
     const int32_t slot = state.living[i];
-    scene.own[slot] = put(i, body.x[slot], body.y[slot], world.config->body.radius, AGENT_TYPE);
+    const int32_t s = world.shape->species_of(slot);
+    scene.own[slot] = put(i, body.x[slot], body.y[slot], world.shape->of[s].body.radius, s);
   }
 }
 
@@ -108,8 +110,8 @@ HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
 HEDON_FN void find_circles(const World& world, const RayTargets& targets, const RayFan& fan, const Box& box,
                            RayCandidates& candidates) {
   const RayGrid& grid = world.shape->scene;
-  const BodyConfig& body = world.config->body;
-  const float margin = body.radius > body.food_radius ? body.radius : body.food_radius;
+  const float largest = world.shape->bodies.max_radius();
+  const float margin = largest > world.config->food_radius ? largest : world.config->food_radius;
   const int32_t first_column = cell_along(fan.x + box.low_x - margin, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(fan.x + box.high_x + margin, grid.inverse_cell, grid.columns);
   const int32_t first_row = cell_along(fan.y + box.low_y - margin, grid.inverse_cell, grid.rows);

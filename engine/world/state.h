@@ -14,7 +14,7 @@
 #include "learning/observation.h"
 #include "physics/state.h"
 #include "world/config.h"
-#include "world/shape.h"
+#include "world/extent.h"
 
 namespace hedon {
 
@@ -60,6 +60,20 @@ struct Counters {
                energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped, energy_shared, energy_lost)
 };
 
+/// Sums since the world began, of one species, in worlds where agents eat agents.
+struct HuntCounters {
+  int64_t deaths_starved;
+  int64_t deaths_eaten;
+  double energy_hunted;  ///< gained by eating agents
+  double energy_prey;    ///< held by agents of this species that were eaten: part of `energy_lost`
+
+  HEDON_FIELDS(HuntCounters, deaths_starved, deaths_eaten, energy_hunted, energy_prey)
+};
+
+/// Why an agent died.
+enum class Cause : int32_t { age_energy, starved, eaten };
+inline constexpr const char* CAUSE_NAMES[] = {"age_energy", "starved", "eaten"};
+
 /// Growth of one food kind.
 struct FoodStock {
   double number;    ///< the internal number n_t; its floor is the intended number of foods
@@ -76,15 +90,13 @@ struct WorldHead {
   int64_t extinct_step;  ///< -1 while any agent lives
   int32_t next_agent_id;
   int32_t living_count;
-  int32_t free_count;
   int32_t births_in_window;
   int32_t births_before;  ///< of the window before
   int32_t ghost_count;
   int32_t event_count;  ///< deaths not yet taken by the reader
-  int32_t reserved;
 
-  HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, free_count, births_in_window, births_before,
-               ghost_count, event_count, reserved)
+  HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, births_in_window, births_before, ghost_count,
+               event_count)
 };
 
 /// A birth of this window whose genome is drawn at the window's end.
@@ -104,51 +116,72 @@ struct Ghost {
 };
 
 struct WorldState {
-  Array<WorldHead> head;     // (1)
-  Array<Fault> fault;        // (1) the first error
-  Array<Counters> counters;  // (1)
+  Array<WorldHead> head;
+  Array<Fault> fault;        // the first error
+  Array<Counters> counters;  // by species
+  Array<FoodStock> food_stock;
 
-  // Agents, by slot.
-  Array<uint8_t> alive;   // (slots)
-  Array<int32_t> living;  // (slots) slots of the living in the order of their ids
-  Array<int32_t> free;    // (slots) stack of free slots
-  Array<Life> life;       // (slots)
-  Array<int32_t> eaten;   // (slots, kinds) foods eaten in this life
-  Array<float> genome;    // (slots, genes)
-  Array<uint64_t> touch;  // (slots) bit type * sectors + sector, of the last step
+  // Agents, by slot. Each species owns a range of slots.
+  Array<uint8_t> alive;
+  Array<int32_t> living;      // slots of the living in the order of their ids
+  Array<int32_t> free;        // free slots: a stack in each species' range
+  Array<int32_t> free_count;  // by species
+  Array<Life> life;
+  Array<int32_t> eaten;   // foods, and agents of each species, eaten in this life
+  Array<float> genome;    // past the end of a species' genome: 0
+  Array<uint64_t> touch;  // bit channel * sectors + sector, of the last step
   PhysicsState physics;   // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
-
-  Array<FoodStock> food_stock;  // (kinds)
-  Array<Ghost> ghost;           // (foods) none unless eaten food is seen
-
-  // Rules of birth that reach over a window; none unless the config has them.
-  Array<uint8_t> old_slot;      // (slots) 1 for slots that were taken when the window began
-  Array<Newborn> newborn;       // (births) of this window, in the order of birth
-  Array<float> newborn_genome;  // (births, genes) of each newborn's parent, if that is older than the window
+  Array<int32_t> species;
+  Array<uint64_t> touch_more;  // bits of touch from 64 on
+  Array<int32_t> digestion;    // steps until an agent can eat another one
+  Array<HuntCounters> hunt_counters;
+  Array<int64_t> eaten_by;  // by species: meals of each kind since the world began
 
   // Learners, by slot.
-  Array<float> params;          // (slots, params)
-  Array<float> folded_bias;     // (slots, 64) derived from params
-  Array<float> packed_weights;  // (slots, pairs) derived from params; none where agents act with params themselves
-  Array<float> first_moment;    // (slots, params)
-  Array<float> second_moment;   // (slots, params)
-  Array<int64_t> updates;       // (slots) Adam steps done in this life
+  Array<float> params;
+  Array<float> folded_bias;     // derived from params
+  Array<float> packed_weights;  // derived from params; not used where agents act with params themselves
+  Array<float> first_moment;
+  Array<float> second_moment;
+  Array<int64_t> updates;  // Adam steps done in this life
+
+  // Rules that reach over steps or windows.
+  Array<Ghost> ghost;
+  Array<uint8_t> old_slot;  // 1 for slots that were taken when the window began
+  Array<Newborn> newborn;   // of this window, in the order of birth
+  Array<int32_t> newborn_species;
+  Array<float> newborn_genome;  // of each newborn's parent, if that is older than the window
 
   // Rollouts of the current window, by slot, then by step. The one extra observation is for the bootstrap.
-  Array<PackedObservation> observation;  // (slots, rollout_steps + 1)
-  Array<float> action;                   // (slots, rollout_steps, 2) before the sigmoid
-  Array<float> log_prob;                 // (slots, rollout_steps)
-  Array<float> value;                    // (slots, rollout_steps)
-  Array<float> reward;                   // (slots, rollout_steps)
+  Array<ObservationLine> observation;
+  Array<float> action;  // (…, 2) before the sigmoid
+  Array<float> log_prob;
+  Array<float> value;
+  Array<float> reward;
 
   // Deaths that the reader has not yet taken.
-  Array<Life> event;           // (events)
-  Array<int32_t> event_eaten;  // (events, kinds)
-  Array<float> event_genome;   // (events, genes)
+  Array<Life> event;
+  Array<int32_t> event_species;
+  Array<int32_t> event_cause;
+  Array<int32_t> event_eaten;
+  Array<float> event_genome;
 
-  HEDON_FIELDS(WorldState, head, fault, counters, alive, living, free, life, eaten, genome, touch, physics, food_stock,
-               ghost, old_slot, newborn, newborn_genome, params, folded_bias, packed_weights, first_moment,
-               second_moment, updates, observation, action, log_prob, value, reward, event, event_eaten, event_genome)
+  HEDON_ARRAYS(WorldState, (head, one, one, saved), (fault, one, one, derived), (counters, species, one, saved),
+               (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),
+               (free, slots, one, derived), (free_count, species, one, derived), (life, slots, one, saved),
+               (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
+               (physics, one, one, saved), (species, mixed_slots, one, saved),
+               (touch_more, wide_slots, one, saved), (digestion, hunted_slots, one, saved),
+               (hunt_counters, hunts, one, saved), (eaten_by, mixed_species, meals, saved), (params, slots, params, saved),
+               (folded_bias, slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
+               (first_moment, slots, params, saved), (second_moment, slots, params, saved),
+               (updates, slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
+               (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),
+               (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
+               (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
+               (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
+               (event_species, events, one, waiting), (event_cause, events, one, waiting), (event_eaten, events, meals, waiting),
+               (event_genome, events, genes, waiting))
 };
 
 }  // namespace hedon

@@ -7,6 +7,7 @@
 #include "physics/step.h"
 #include "world/act.h"
 #include "world/food.h"
+#include "world/hunt.h"
 #include "world/life.h"
 #include "world/sensor.h"
 #include "world/world.h"
@@ -56,28 +57,14 @@ template <class Group, class Lap>
 HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   WorldHead& head = world.head();
   const WorldState& state = world.state;
+  const StepScratch& scratch = world.scratch;
 
-  const Array<int32_t>& by_slot = world.scratch.by_slot;
-  const auto sense_and_act = [&](int32_t i) {
-    const int32_t slot = by_slot[i];
-    note_start(world, slot);
-    const PackedObservation observation = observe(world, slot, group.rank());
-    world.observation(slot, t) = observation;
-    sample_action(world, slot, t, observation);
-    apply_motors(world, slot, t);
-  };
-  if (t % 2 == 0) {
-    group.for_each(head.living_count, sense_and_act);
-  } else {
-    group.for_each_backward(head.living_count, sense_and_act);
-  }
+  sense_and_act(group, world, t);
   lap(Part::sense_and_act);
 
   TouchVisitor touch{&world};
-  const StepScratch& scratch = world.scratch;
-  physics_step(group, world.config->physics, world.constants->body, world.state.physics, world.physics_scratch,
-               state.living, head.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch,
-               world.fault());
+  physics_step(group, world.config->physics, world.shape->bodies, state.physics, world.physics_scratch, state.living,
+               head.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch, world.fault());
   if (world.fault().status != Status::ok) {
     group.once([&] { name_fault(world); });
     return;
@@ -89,12 +76,27 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     eat(world);
   });
   if (world.fault().status != Status::ok) return;
-  group.for_each(head.living_count, [&](int32_t i) { metabolize(world, by_slot[i], t); });
+  const auto reward_and_fates = [&](int32_t slot) {
+    compute_reward(world, slot, t);
+    draw_fates(world, slot);
+  };
+  if (!world.shape->hunting) {
+    group.for_each(head.living_count, [&](int32_t i) {
+      spend_energy(world, scratch.by_slot[i]);
+      reward_and_fates(scratch.by_slot[i]);
+    });
+  } else {
+    // Who eats an agent gains from what that agent has left after this step's costs.
+    group.for_each(head.living_count, [&](int32_t i) { spend_energy(world, scratch.by_slot[i]); });
+    group.once([&] { hunt(world); });
+    group.for_each(head.living_count, [&](int32_t i) { reward_and_fates(scratch.by_slot[i]); });
+  }
   group.once([&] {
     keep_ledger(world);
-    if (world.config->birth.order == BirthOrder::before_deaths) breed(world);
-    apply_deaths(world);
-    if (world.config->birth.order == BirthOrder::after_deaths) breed(world);
+    if (world.shape->hunting) apply_deaths(world, scratch.eaten);
+    if (world.config->rules.birth_order == BirthOrder::before_deaths) breed(world);
+    apply_deaths(world, scratch.dies);
+    if (world.config->rules.birth_order == BirthOrder::after_deaths) breed(world);
     grow(world);
     head.step += 1;
     prepare_step(world);

@@ -7,7 +7,7 @@
 #include "kernel/kernel.h"
 #include "physics/state.h"
 #include "world/config.h"
-#include "world/shape.h"
+#include "world/extent.h"
 #include "world/state.h"
 
 namespace hedon {
@@ -15,14 +15,17 @@ namespace hedon {
 /// The circles of the living and of the foods, sorted by the cells of a grid, and the walls: all that rays may
 /// hit. `gather_scene` computes it from the state.
 struct RayScene {
-  Array<float> x, y, radius, type;                  ///< (circles) of the circles: cell by cell, row by row of cells
-  Array<int32_t> start;                             ///< (cells + 1) first circle of each cell
-  Array<int32_t> own;                               ///< (slots) index of the circle of the agent in each slot
-  Array<int32_t> cell;                              ///< (circles) of each circle, before sorting
-  Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< (walls)
-  Array<int32_t> candidates;  ///< (members, RAY_ARCS, circles + 16) for each member of the team: see `RayCandidates`
+  Array<float> x, y, radius, type;                  ///< of the circles: cell by cell, row by row of cells
+  Array<int32_t> start;                             ///< first circle of each cell
+  Array<int32_t> own;                               ///< index of the circle of the agent in each slot
+  Array<int32_t> cell;                              ///< of each circle, before sorting
+  Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< ends of the walls
+  Array<int32_t> candidates;                        ///< see `RayCandidates`
 
-  HEDON_FIELDS(RayScene, x, y, radius, type, start, own, cell, wall_ax, wall_ay, wall_bx, wall_by, candidates)
+  HEDON_ARRAYS(RayScene, (x, circles, one, scratch), (y, circles, one, scratch), (radius, circles, one, scratch),
+               (type, circles, one, scratch), (start, cell_ends, one, scratch), (own, slots, one, scratch),
+               (cell, circles, one, scratch), (wall_ax, walls, one, derived), (wall_ay, walls, one, derived),
+               (wall_bx, walls, one, derived), (wall_by, walls, one, derived), (candidates, candidates, one, scratch))
 };
 
 /// The result of an audit of one agent: `status` is ok if nothing is wrong.
@@ -34,31 +37,43 @@ struct Finding {
 
 /// Scratch memory of one step, by slot. Not valid between steps.
 struct StepScratch {
-  Array<int32_t> by_slot;                     ///< (slots) slots of the living, ascending: see `list_by_slot`
+  Array<int32_t> by_slot;                     ///< slots of the living, ascending: see `list_by_slot`
   Array<float> force_left, force_right;       ///< applied by the motors
   Array<float> force_x, force_y, torque;      ///< the same, on the body
   Array<float> heading_sine, heading_cosine;  ///< at the start of the step
   Array<float> start_angle, start_x, start_y;
-  Array<int32_t> meal;       ///< (slots, kinds) foods eaten in this step
+  Array<int32_t> meal;       ///< foods, and agents of each species, eaten in this step
   Array<double> death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
   Array<Finding> finding;                ///< of the audit at the end of a window
-  Array<int32_t> eater;                  ///< (foods) slot of the agent that gets the food, -1 for none
-  Array<float> eater_distance;           ///< (foods) squared
-  Array<int32_t> parent;                 ///< (slots)
-  Array<uint32_t> parent_key;            ///< (slots)
+  Array<int32_t> eater;                  ///< slot of the agent that gets the food, -1 for none
+  Array<float> eater_distance;           ///< squared
+  Array<uint8_t> eaten;                  ///< 1 where an agent was eaten in this step
+  Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
+  Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
+  Array<float> claim_distance;             ///< squared
+  Array<int32_t> parent;
+  Array<uint32_t> parent_key;
 
-  HEDON_FIELDS(StepScratch, by_slot, force_left, force_right, force_x, force_y, torque, heading_sine, heading_cosine,
-               start_angle, start_x, start_y, meal, death_draw, energy_eaten, energy_basic, energy_action,
-               energy_forgiven, energy_capped, starved, breeds, dies, finding, eater, eater_distance, parent,
-               parent_key)
+  HEDON_ARRAYS(StepScratch, (by_slot, slots, one, scratch), (force_left, slots, one, scratch),
+               (force_right, slots, one, scratch), (force_x, slots, one, scratch), (force_y, slots, one, scratch),
+               (torque, slots, one, scratch), (heading_sine, slots, one, scratch),
+               (heading_cosine, slots, one, scratch), (start_angle, slots, one, scratch),
+               (start_x, slots, one, scratch), (start_y, slots, one, scratch), (meal, slots, meals, scratch),
+               (death_draw, slots, one, scratch), (energy_eaten, slots, one, scratch),
+               (energy_basic, slots, one, scratch), (energy_action, slots, one, scratch),
+               (energy_forgiven, slots, one, scratch), (energy_capped, slots, one, scratch),
+               (starved, slots, one, scratch), (breeds, slots, one, scratch), (dies, slots, one, scratch),
+               (finding, slots, one, scratch), (eater, foods, one, scratch), (eater_distance, foods, one, scratch),
+               (eaten, hunted_slots, one, scratch), (claim_eater, hunted_slots, one, scratch),
+               (claim_prey, hunted_slots, one, scratch), (claim_of, hunted_slots, one, scratch),
+               (claim_distance, hunted_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };
 
 struct World {
   const WorldConfig* config;
   const WorldShape* shape;
-  const WorldConstants* constants;
   const Kernel* kernel;
   uint64_t seed;
   WorldState state;
@@ -67,7 +82,8 @@ struct World {
   RayScene scene;
 
   HEDON_FN WorldHead& head() const { return state.head[0]; }
-  HEDON_FN Counters& counters() const { return state.counters[0]; }
+  HEDON_FN const Species& species(int32_t slot) const { return shape->of[shape->species_of(slot)]; }
+  HEDON_FN Counters& counters(int32_t slot) const { return state.counters[shape->species_of(slot)]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
   /// The step at which the window of the current step began.
   HEDON_FN int64_t window_start() const { return head().step - head().step % shape->steps; }
@@ -78,17 +94,18 @@ struct World {
     if (fault().status == Status::ok) fault() = {status, agent_id, head().step, value, other_id, 0};
   }
 
-  HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->network.size()]; }
+  HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->params]; }
   /// What the agent in `slot` acts with.
   HEDON_FN ActingNetwork network(int32_t slot) const {
-    const bool rounded = config->learning.acting_weights == ActingWeights::bfloat16;
-    float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->network.pairs()] : nullptr;
+    const bool rounded = species(slot).config->learning.acting_weights == ActingWeights::bfloat16;
+    float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->pairs] : nullptr;
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }
-  HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genome.size()]; }
-  HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->kinds]; }
+  HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genes]; }
+  HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->meals()]; }
   HEDON_FN PackedObservation& observation(int32_t slot, int64_t t) const {
-    return state.observation[slot * (int64_t{shape->steps} + 1) + t];
+    ObservationLine* line = &state.observation[(slot * (int64_t{shape->steps} + 1) + t) * shape->lines];
+    return *reinterpret_cast<PackedObservation*>(line);
   }
 };
 

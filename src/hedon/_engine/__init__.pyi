@@ -50,8 +50,8 @@ class Simulation:
     def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """Columns of the living, in the order of their ids."""
 
-    def observations(self, world: int) -> numpy.typing.NDArray[numpy.float32]:
-        """Full observations of the living: (living, size)."""
+    def observations(self, world: int, species: int = 0) -> numpy.typing.NDArray[numpy.float32]:
+        """Full observations of the living of a species: (living, size)."""
 
     def save(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """Copies of everything that decides a world's future, as arrays."""
@@ -61,7 +61,7 @@ class Simulation:
         Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
-    def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+    def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Empties a world and puts these agents and foods into it."""
 
     def set_genomes(self, world: int, genomes: numpy.typing.NDArray[numpy.float32]) -> None:
@@ -75,7 +75,8 @@ class Simulation:
     def view_names(self) -> list:
         """Paths that `view` knows."""
 
-    def counters(self, world: int) -> dict: ...
+    def counters(self, world: int, species: int = 0) -> dict:
+        """Counts and the energy ledger of one species."""
 
     def head(self, world: int) -> dict: ...
 

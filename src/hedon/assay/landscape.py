@@ -1,7 +1,7 @@
 """The landscape assay: founders spread over the genes, no mutation, and fitness as a surface over two of them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
@@ -12,10 +12,10 @@ from hedon.assay.outcome import MEASURES, founder_outcomes
 from hedon.assay.resample import Floats, relative
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
+from hedon.config.layout import gene_columns, layouts, with_genome
 from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
 from hedon.record.reader import Run
-from hedon.record.schema import weight_names
 
 NEUTRAL = 16
 """Neutral markers of an assay: so many genes of which it is known that they do nothing."""
@@ -95,24 +95,29 @@ class Landscape:
 
 def assay_config(config: Config) -> Config:
     """The condition without mutation, and with the assay's neutral markers."""
-    return replace(config, genome=replace(config.genome, mutation_scale=0.0, neutral_count=NEUTRAL, founders=""))
+    return with_genome(config, mutation_scale=0.0, neutral_count=NEUTRAL, founders="")
 
 
-def spread_founders(config: Config, spread: Spread, rows: int = ROWS) -> Founders:
-    """A table of genomes spread over all genes, independently; the same for the same arguments."""
-    names = weight_names(tuple(config.food), config.genome.neutral_count)
+def spread_founders(config: Config, spread: Spread, species: str | None = None, rows: int = ROWS) -> Founders:
+    """A table of genomes spread over all genes, independently; the same for the same arguments.
+
+    With a species, only its genes; those of the others are drawn as the config says.
+    """
+    names = gene_columns(config) if species is None else layouts(config)[species].gene_names
     rng = np.random.default_rng(_SEED)
     limit = config.genome.weight_limit
     if spread.sd is None:
         values = rng.uniform(spread.low, spread.high, (rows, len(names)))
     else:
         values = np.clip(rng.normal(0.0, spread.sd, (rows, len(names))), -limit, limit)
-    return make_founders(names, values, ["spread"] * rows)
+    prefix = "" if species is None else f"{species}."
+    return make_founders([prefix + name for name in names], values, ["spread"] * rows)
 
 
-def read_outcomes(runs: Sequence[Run]) -> tuple[list[WorldRecord], pl.DataFrame]:
-    """The worlds of an assay, and a row per founder: world (from 0 on), seed, agent_id, genes, measures."""
-    worlds = read_worlds(runs)
+def read_outcomes(runs: Sequence[Run], species: str | None = None) -> tuple[list[WorldRecord], pl.DataFrame]:
+    """The worlds of an assay, or one species of them, and a row per founder: world (from 0 on), seed, agent_id, genes,
+    measures."""
+    worlds = [world for world in read_worlds(runs) if species is None or world.condition.endswith(f": {species}")]
     tables = [
         founder_outcomes(world.agents, world.weight_names, world.last_step).select(
             pl.lit(i, pl.Int64).alias("world"), pl.lit(world.seed, pl.Int64).alias("seed"), pl.all()
@@ -122,17 +127,18 @@ def read_outcomes(runs: Sequence[Run]) -> tuple[list[WorldRecord], pl.DataFrame]
     return worlds, pl.concat(tables)
 
 
-def measure_landscape(run: Run, genes: tuple[str, str]) -> Landscape:
+def measure_landscape(run: Run, genes: tuple[str, str], species: str | None = None) -> Landscape:
     """Fits the surfaces to a finished run.
 
     Args:
         run: of the assay.
         genes: the two columns of the surface.
+        species: whose; None where there is only one.
 
     Raises:
         AssayError: all worlds died out before anything could be measured.
     """
-    worlds, outcomes = read_outcomes([run])
+    worlds, outcomes = read_outcomes([run], species)
     names = worlds[0].weight_names
     surfaces = {}
     for measure in MEASURES:

@@ -22,6 +22,7 @@ class Scene:
         x, y: Places of the agents [u].
         angle: Their headings [rad].
         energy: Their energies.
+        species: Their species, as indices in the order of the config.
         food_x, food_y: Places of the foods [u].
         food_kind: Their kinds.
     """
@@ -30,6 +31,7 @@ class Scene:
     y: NDArray[np.float32]
     angle: NDArray[np.float32]
     energy: NDArray[np.float32]
+    species: NDArray[np.int32]
     food_x: NDArray[np.float32]
     food_y: NDArray[np.float32]
     food_kind: NDArray[np.int32]
@@ -53,6 +55,7 @@ class Scene:
             moved(self.y, shift_y),
             np.tile(self.angle, copies),
             np.tile(self.energy, copies),
+            np.tile(self.species, copies),
             moved(self.food_x, shift_x),
             moved(self.food_y, shift_y),
             np.tile(self.food_kind, copies),
@@ -63,7 +66,7 @@ def scene_of(world: World) -> Scene:
     """The agents and foods of a world as they are now."""
     agents, foods = world.agents(), world.foods()
     single = {name: agents[name].astype(np.float32) for name in ("x", "y", "angle", "energy")}
-    return Scene(**single, food_x=foods["x"], food_y=foods["y"], food_kind=foods["kind"])
+    return Scene(**single, species=agents["species"], food_x=foods["x"], food_y=foods["y"], food_kind=foods["kind"])
 
 
 def peopled(plan: Plan) -> World:

@@ -1,6 +1,7 @@
 """Checks the table `population`: intervals without gaps, counts that agree with the agents, the energy ledger."""
 
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 import polars as pl
@@ -29,9 +30,12 @@ def check_population(
         ended: Whether the rows must reach to the last step.
     """
     yield from break_rules(population, "population", _KEYS, world_rules(manifest))
-    for world in range(len(manifest.seeds)):
-        rows = population.filter(pl.col("world") == world)
-        mine = agents.filter(pl.col("world") == world) if agents is not None else None
+    for world, species in product(range(len(manifest.seeds)), manifest.species):
+        here = pl.col("world") == world
+        if manifest.columns.several:
+            here &= pl.col("species") == species
+        rows = population.filter(here)
+        mine = agents.filter(here) if agents is not None else None
         findings = list(_check_order(rows, world, manifest, ended))
         yield from findings
         if rows.height and not findings:
@@ -111,7 +115,7 @@ def _time_since(events: NDArray[np.int64], until: NDArray[np.int64]) -> NDArray[
 
 
 def _check_meals(rows: pl.DataFrame, agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
-    for kind in manifest.food_kinds:
+    for kind in (*manifest.food_kinds, *manifest.prey):
         eaten, recorded = int(agents[f"eaten_{kind}"].sum()), int(rows[f"eaten_{kind}"].sum())
         if rows["step"][-1] == manifest.steps_done[rows["world"][0]] and eaten != recorded:
             yield Finding(

@@ -34,7 +34,7 @@ from hedon.record.folder import (
 )
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.reader import open_run
-from hedon.record.schema import run_tables
+from hedon.record.schema import Columns, columns_of, run_tables
 from hedon.record.snapshot import load_snapshot
 
 
@@ -130,11 +130,16 @@ def _check_config(folder: _Folder) -> None:
         return
     if manifest.config_digest is not None and digest(config) != manifest.config_digest:
         folder.findings.append(Finding(CONFIG, "was changed: its digest differs from the one in the manifest"))
-    elif (tuple(config.food), config.genome.neutral_count) != (manifest.food_kinds, manifest.neutral_count):
-        what = "the kinds of food or the neutral markers differ from those in the config"
+    elif not _same_columns(columns_of(config), manifest.columns):
+        what = "the species, the kinds of food or the genes differ from those in the config"
         folder.findings.append(Finding(MANIFEST, what))
     else:
         folder.config = config
+
+
+def _same_columns(columns: Columns, others: Columns) -> bool:
+    known = [(each.food_kinds, each.species, each.gene_names) for each in (columns, others)]
+    return known[0] == known[1]
 
 
 def _check_checkpoints(folder: _Folder) -> None:
@@ -170,8 +175,7 @@ def _check_tables(folder: _Folder) -> None:
     if source is None:
         folder.notes.append("the tables were not checked: without manifest and config, their columns are not known")
         return
-    kinds = source.food_kinds if isinstance(source, Manifest) else tuple(source.food)
-    neutral = source.neutral_count if isinstance(source, Manifest) else source.genome.neutral_count
+    columns = source.columns if isinstance(source, Manifest) else columns_of(source)
     wrong = 0
     if folder.checkpoints:
         parts = folder.checkpoints[-1].head.parts
@@ -179,7 +183,7 @@ def _check_tables(folder: _Folder) -> None:
             not part_path(folder.path, table, len(each) - 1).is_file() for table, each in parts.items() if each
         )
         folder.add(check_digests(folder.path, parts))
-    for name, table in run_tables(kinds, neutral).items():
+    for name, table in run_tables(columns).items():
         wrong += folder.add(check_numbering(folder.path, name))
         if name == "agents" and not (folder.path / LIVING).exists():
             wrong += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
@@ -234,7 +238,7 @@ def _check_end(folder: _Folder) -> None:
     if manifest.status in ("finished", "interrupted") and not manifest.records_digest:
         folder.findings.append(Finding(MANIFEST, "has no digest of the records, which every ended run must have"))
     if manifest.records_digest and folder.whole:
-        found = records_digest(folder.path, manifest.food_kinds, manifest.neutral_count)
+        found = records_digest(folder.path, manifest.columns)
         if found != manifest.records_digest:
             folder.findings.append(
                 Finding("records", "rows were changed: their digest differs from the one in the manifest")

@@ -1,6 +1,7 @@
 """`hedon assay`: measure fitness directly, with founders of chosen genes."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,7 @@ from hedon.cli.console import make_console
 from hedon.cli.run import Checkpoint, Threads, parse_seeds
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.record.schema import columns_of
 from hedon.text import printable
 
 if TYPE_CHECKING:
@@ -50,6 +52,9 @@ def landscape(
     genes: Annotated[
         str | None, typer.Option(metavar="GENE,GENE", help="The two genes of the surface; by default food,action.")
     ] = None,
+    species: Annotated[
+        str | None, typer.Option(help="Whose genes, where there are several species; by default the first.")
+    ] = None,
     ends: Annotated[
         list[Path] | None,
         typer.Option(metavar="RUN|FILE", help="Show where these runs, summary.json or reproduction.json ended."),
@@ -72,24 +77,28 @@ def landscape(
     Examples:
       hedon assay landscape baseline
       hedon assay landscape poison --genes poison,action --seeds 1-20
+      hedon assay landscape predator --species prey --genes see_predator,see_prey
       hedon assay landscape baseline --set population.initial_count=100 --ends runs/baseline-corrected-s1-5
     """
     from hedon.assay.end import paper_ends, read_ends
     from hedon.assay.landscape import assay_config, measure_landscape, spread_founders
-    from hedon.assay.option import assay_plan, choose_genes, parse_spread
+    from hedon.assay.option import assay_plan, choose_genes, choose_species, parse_spread
     from hedon.assay.report_landscape import landscape_tables, write_landscape
+    from hedon.config.layout import of_species
     from hedon.config.load import load_config
 
     config = assay_config(load_config(source, fidelity, overrides or ()))
-    pair = choose_genes(genes, config)
-    found = [*paper_ends(config), *(end for path in ends or () for end in read_ends(path, config))]
-    founders = spread_founders(config, parse_spread(spread, sd, config))
+    own = choose_species(species, config)
+    pair = choose_genes(genes, config if own is None else of_species(config, own))
+    found = [] if own else paper_ends(config)
+    found += [end for path in ends or () for end in read_ends(path, config)]
+    founders = spread_founders(config, parse_spread(spread, sd, config), own)
     plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
     console = make_console()
     runs = make([plan], console)
     if runs is None:
         return
-    measured = measure_landscape(runs[0], pair)
+    measured = measure_landscape(runs[0], pair, own)
     finish(landscape_tables(measured, found), write_landscape(measured, runs[0], found, plan.out.parent), console)
 
 
@@ -122,7 +131,7 @@ def _shower(console: "Console") -> "Show":
             f"into {printable(str(plan.out))}",
             soft_wrap=True,
         )
-        with make_display(console, tuple(config.food), 0, plan.seeds) as display:
+        with make_display(console, replace(columns_of(config), neutral_count=0), plan.seeds) as display:
             return go(display)
 
     return show

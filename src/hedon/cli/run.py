@@ -12,6 +12,7 @@ from hedon.cli.report import show_report
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, different, seed_list
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
+from hedon.record.schema import columns_of
 from hedon.text import brief, printable
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
         f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {out}",
         soft_wrap=True,
     )
-    with make_display(console, tuple(config.food), config.genome.neutral_count, plan.seeds) as display:
+    with make_display(console, columns_of(config), plan.seeds) as display:
         manifest = go(display)
     for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:

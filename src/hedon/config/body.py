@@ -22,6 +22,16 @@ class BodyConfig:
         float,
         Doc("radius of a piece of food", "u", EITHER, Range(gt=0, le=1e3)),
     ] = 4.0
+    collides: Annotated[
+        tuple[str, ...],
+        Doc(
+            'species and kinds of food that it collides with and feels; "*" for all. It passes through all others, and '
+            "they through it",
+            "",
+            OURS,
+            Range(max_items=12),
+        ),
+    ] = ("*",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +46,10 @@ class MotorConfig:
         float,
         Doc("limit of each motor's force for very positive actions", "mass·u/s²", EITHER, Range(gt=0, le=1e4)),
     ] = 80.0
+    force_scale: Annotated[
+        float,
+        Doc("factor on both limits: for bodies of another size", "", OURS, Range(gt=0, le=1e3)),
+    ] = 1.0
     angle: Annotated[
         float,
         Doc("angle between each motor and the heading, one on each side", "degree", EITHER, Range(ge=0, le=180)),
@@ -63,10 +77,19 @@ class SensorConfig:
         float,
         Doc("length of a ray, from the surface of the body", "u", EITHER, Range(gt=0, le=1e5)),
     ] = 200.0
+    sees: Annotated[
+        tuple[str, ...],
+        Doc(
+            'species and kinds of food that rays meet, beside walls; "*" for all. Rays pass through all others',
+            "",
+            OURS,
+            Range(max_items=12),
+        ),
+    ] = ("*",)
     touch_sectors: Annotated[
         int,
         Doc(
-            "number of equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=16)
+            "number of equal sectors of the surface that feel touch, counter-clockwise", "", EITHER, Range(ge=1, le=32)
         ),
     ] = 6
     mouth_spread: Annotated[

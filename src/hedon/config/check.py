@@ -6,15 +6,12 @@ import struct
 from collections.abc import Iterator
 
 from hedon.config.arena import ArenaConfig, is_inside
+from hedon.config.check_species import species_problems
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
 from hedon.config.problem import Problem, format_value
 
-MAX_TOUCH_BITS = 64
-"""Most types times touch sectors that the engine has room for."""
-MAX_COVERAGE = 0.45
-"""Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 MIN_WALL = 0.01
 """Length of the shortest outer wall whose direction float32 can still hold [u]."""
 RESERVED_KINDS = ("agent", "wall", "action")
@@ -26,9 +23,9 @@ def contradictions(config: Config) -> Iterator[Problem]:
     yield from _names(config)
     yield from _rounding(config)
     yield from _arena(config)
-    yield from _bodies(config)
     yield from _kinds(config)
-    yield from _life(config)
+    yield from _founders(config)
+    yield from species_problems(config)
 
 
 def _names(config: Config) -> Iterator[Problem]:
@@ -74,24 +71,6 @@ def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
     return _corners_fit(arena) and not is_inside(arena, x, y)
 
 
-def _bodies(config: Config) -> Iterator[Problem]:
-    arena, radius, count = config.arena, config.body.radius, config.population.initial_count
-    if config.motor.min_force >= config.motor.max_force:
-        yield _problem(config, "motor.min_force", f"must be below motor.max_force = {config.motor.max_force:g}")
-    if 2 * max(radius, config.body.food_radius) >= min(arena.width, arena.height):
-        yield _problem(config, "body.radius", "a body does not fit into the arena")
-    elif count * math.pi * radius**2 > MAX_COVERAGE * arena.width * arena.height:
-        most = math.floor(MAX_COVERAGE * arena.width * arena.height / (math.pi * radius**2))
-        yield _problem(config, "population.initial_count", f"too many to place: the arena has room for {most}")
-    if count > config.population.capacity:
-        limit = config.population.capacity
-        yield _problem(config, "population.initial_count", f"must be at most population.capacity = {limit}")
-    types = len(config.food) + 2
-    if types * config.sensor.touch_sectors > MAX_TOUCH_BITS:
-        most = MAX_TOUCH_BITS // types
-        yield _problem(config, "sensor.touch_sectors", f"must be at most {most} with {len(config.food)} kinds of food")
-
-
 def _kinds(config: Config) -> Iterator[Problem]:
     if not 1 <= len(config.food) <= MAX_KINDS:
         yield Problem("food", f"there must be from 1 to {MAX_KINDS} kinds of food, not {len(config.food)}")
@@ -127,25 +106,14 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
         yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', format_value(place.sd))
 
 
-def _life(config: Config) -> Iterator[Problem]:
-    learning, genome = config.learning, config.genome
-    if config.birth.distance_unit == "arena_width" and config.birth.distance_sd > 1:
-        yield _problem(config, "birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"')
-    if config.energy.initial > config.energy.capacity:
-        yield _problem(config, "energy.initial", f"must be at most energy.capacity = {config.energy.capacity:g}")
-    if learning.rollout_steps % learning.minibatch_size:
-        yield _problem(
-            config,
-            "learning.minibatch_size",
-            f"must divide learning.rollout_steps = {learning.rollout_steps}",
-        )
+def _founders(config: Config) -> Iterator[Problem]:
     for path, _, value in leaves(config):
-        if path.endswith(".initial_mean") and abs(value) > genome.weight_limit:
-            rule = f"must be within ± genome.weight_limit = {genome.weight_limit:g}"
+        if path.endswith(".initial_mean") and abs(value) > config.genome.weight_limit:
+            rule = f"must be within ± genome.weight_limit = {config.genome.weight_limit:g}"
             yield Problem(path, rule, format_value(value))
-    if not re.fullmatch(r"([0-9a-f]{64})?", genome.founders):
+    if not re.fullmatch(r"([0-9a-f]{64})?", config.genome.founders):
         message = "must be empty, or the digest of a table of founders, which `--founders` sets"
-        yield Problem("genome.founders", message, format_value(genome.founders))
+        yield Problem("genome.founders", message, format_value(config.genome.founders))
 
 
 def _problem(config: Config, path: str, message: str) -> Problem:

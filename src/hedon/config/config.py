@@ -13,6 +13,7 @@ from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.physics import PhysicsConfig
 from hedon.config.population import PopulationConfig
+from hedon.config.species import ONLY, PER_SPECIES, DietConfig, SpeciesConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
 """Fields that say where a config came from; they change no result."""
@@ -43,6 +44,7 @@ class Config:
     motor: MotorConfig = field(default_factory=MotorConfig)
     sensor: SensorConfig = field(default_factory=SensorConfig)
     population: PopulationConfig = field(default_factory=PopulationConfig)
+    diet: DietConfig = field(default_factory=DietConfig)
     food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
     energy: EnergyConfig = field(default_factory=EnergyConfig)
     hazard: HazardConfig = field(default_factory=HazardConfig)
@@ -50,3 +52,11 @@ class Config:
     genome: GenomeConfig = field(default_factory=GenomeConfig)
     reward: RewardConfig = field(default_factory=RewardConfig)
     learning: LearningConfig = field(default_factory=LearningConfig)
+    species: dict[str, SpeciesConfig] = field(default_factory=dict)
+
+    @property
+    def agents(self) -> dict[str, SpeciesConfig]:
+        """Every species by name, in order; without `[species]` there is one, which the sections of the config describe."""
+        if self.species:
+            return self.species
+        return {ONLY: SpeciesConfig(**{name: getattr(self, name) for name in PER_SPECIES})}

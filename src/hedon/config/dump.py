@@ -23,6 +23,18 @@ EARLIER = {
     "birth.parents": "all",
     "birth.heading": "own",
     "genome.founders": "",
+    "body.collides": ("*",),
+    "motor.force_scale": 1.0,
+    "sensor.sees": ("*",),
+    "diet.eats": (("*", 1.0),),
+    "birth.delay": 0.0,
+    "diet.digestion_steps": 0,
+    "diet.prey_sharing": "one",
+    "genome.mutation_law": "cauchy",
+    "genome.mutation_df": 2.0,
+    "genome.mutation_probability": 1.0,
+    "genome.prey.initial_mean": 0.0,
+    "genome.prey.initial_sd": 0.1,
 }
 """Settings that older versions did not have, with what those versions did. A complete file without such a setting is
 older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""

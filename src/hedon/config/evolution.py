@@ -24,8 +24,8 @@ class GeneConfig:
 class GenomeConfig:
     """One weight per food kind, one for action, then neutral markers that have no effect on rewards.
 
-    `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, and
-    `[genome.neutral]` each neutral marker.
+    `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
+    that of each species that is eaten, and `[genome.neutral]` each neutral marker.
     """
 
     neutral_count: Annotated[
@@ -49,7 +49,7 @@ class GenomeConfig:
     ] = ""
     mutation_scale: Annotated[
         float,
-        Doc("scale of the Cauchy noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
+        Doc("scale of the noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
     ] = 0.02
     weight_limit: Annotated[
         float,
@@ -64,13 +64,41 @@ class GenomeConfig:
             PAPER + '; the code has "frozen"',
         ),
     ] = "independent"
+    mutation_law: Annotated[
+        Literal["cauchy", "student_t", "normal", "uniform"],
+        Doc("law of the noise added at birth; mutation_scale is its scale, or the largest noise if it is uniform", "", PAPER),
+    ] = "cauchy"
+    mutation_df: Annotated[
+        float,
+        Doc("degrees of freedom of student_t", "", OURS + "; the code of the sequel has 2", Range(gt=0, le=1e3)),
+    ] = 2.0
+    mutation_probability: Annotated[
+        float,
+        Doc("probability that a gene mutates at a birth", "", EITHER, Range(ge=0, le=1)),
+    ] = 1.0
     action: GeneConfig = field(default_factory=GeneConfig)
+    prey: GeneConfig = field(default_factory=GeneConfig)
     neutral: GeneConfig = field(default_factory=GeneConfig)
 
 
 @dataclass(frozen=True, slots=True)
+class SeeConfig:
+    """A reward for seeing a species or a kind of food, by its name: coef·weight·what the rays read of it."""
+
+    coef: Annotated[
+        float,
+        Doc("factor of the term", "", OURS + "; the code of the sequel has 0.1", Range(ge=-1e3, le=1e3)),
+    ] = 0.1
+    over_rays: Annotated[
+        Literal["mean", "max"],
+        Doc("how the readings of the rays, 0 for those that meet something else, become one number", "", OURS),
+    ] = "mean"
+    gene: GeneConfig = field(default_factory=GeneConfig)
+
+
+@dataclass(frozen=True, slots=True)
 class RewardConfig:
-    """Reward in a step: Σ weight·eaten over food kinds + action_coef·weight·|force|/norm."""
+    """Reward in a step: Σ weight·eaten over meals + action_coef·weight·|force|/norm + Σ coef·weight·seen."""
 
     action_coef: Annotated[
         float,
@@ -80,3 +108,4 @@ class RewardConfig:
         Literal["max_force", "none"],
         Doc("what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'),
     ] = "max_force"
+    see: dict[str, SeeConfig] = field(default_factory=dict)

@@ -110,6 +110,8 @@ def type_name(kind: Any) -> str:
     if kind in plain:
         return plain[kind]
     items = get_args(kind)
+    if items == (str, Ellipsis):
+        return "a list of texts"
     if len(items) == 2 and items[1] is Ellipsis:
         return "a list of " + type_name(items[0]).removeprefix("a list ").removeprefix("of ")
     return "[" + ", ".join(type_name(item).split(" ", 1)[1] for item in items) + "]"

@@ -2,11 +2,9 @@
 
 from hedon.config.config import Config
 from hedon.config.evolution import GeneConfig
+from hedon.config.layout import layouts
 
 
 def gene_config(config: Config, column: str) -> GeneConfig:
-    """How founders draw the gene of a column: `w_<kind>`, `w_action`, or a neutral marker."""
-    if column == "w_action":
-        return config.genome.action
-    kind = column.removeprefix("w_")
-    return config.genome.neutral if kind == column else config.food[kind].gene
+    """How founders draw the gene of a column; of the first species that has it."""
+    return next(gene.law for layout in layouts(config).values() for gene in layout.genes if gene.name == column)

@@ -43,6 +43,24 @@ def settle_food(tables: Table) -> Iterator[Problem]:
             yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
 
 
+def settle_species(tables: Table, sections: Iterable[str]) -> Iterator[Problem]:
+    """Completes the tables of each species, in place: what they do not say, the sections of the config say.
+
+    A species that is false is removed; yields what is wrong with the species.
+    """
+    species = tables.get("species")
+    if not isinstance(species, dict):
+        return
+    for name, own in list(species.items()):
+        if own is False:
+            del species[name]
+        elif not isinstance(own, dict):
+            yield Problem(f"species.{name}", "must be a table", format_value(own))
+        else:
+            shared = {section: tables[section] for section in sections if section in tables}
+            species[name] = _lay(shared, own)
+
+
 def _lay(base: Table, over: Table) -> Table:
     merged = dict(base)
     for name, value in over.items():

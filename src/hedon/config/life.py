@@ -34,7 +34,7 @@ class HazardConfig:
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
-    """Probability of a child: kappa/(1 + exp(−beta·energy)); it is born at a free place near its parent."""
+    """Probability of a child: kappa/(1 + exp(delay − beta·energy)); it is born at a free place near its parent."""
 
     kappa: Annotated[
         float,
@@ -49,6 +49,10 @@ class BirthConfig:
             Range(ge=0, le=100),
         ),
     ] = 0.1
+    delay: Annotated[
+        float,
+        Doc("how much energy, times beta, half of that probability takes", "", OURS, Range(ge=-1e3, le=1e3)),
+    ] = 0.0
     attempts: Annotated[
         int,
         Doc("random places tried for the child; if none is free, the birth fails", "", EITHER, Range(ge=1, le=1000)),

@@ -10,9 +10,10 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.dump import EARLIER, digest
 from hedon.config.earlier import with_genes
-from hedon.config.layer import Table, settle_food, stack
+from hedon.config.layer import Table, settle_food, settle_species, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.species import PER_SPECIES
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import from_tables
 from hedon.error import ArgumentError
@@ -20,8 +21,19 @@ from hedon.error import ArgumentError
 _FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "baseline"
 DEFAULT_FIDELITY = "corrected"
-PRESETS = ("baseline", "small", "large", "centered", "relocation", "poor", "poison")
+PAPER_PRESETS = ("baseline", "small", "large", "centered", "relocation", "poor", "poison")
 """The conditions of the paper."""
+SEQUEL_PRESETS = (
+    "predator",
+    "predator-square",
+    "predator-small-mouth",
+    "predator-large-mouth",
+    "predator-less-food",
+    "predator-frozen",
+    "prey-alone",
+)
+"""The conditions of its sequel, on predators and prey."""
+PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS)
 FIDELITIES = ("corrected", "released", "text")
 """Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
 
@@ -138,7 +150,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
 def _settled(layers: list[Table], origin: str) -> Table:
     merged = stack(layers)
     merged.pop("complete", None)
-    problems = list(settle_food(merged))
+    problems = [*settle_food(merged), *settle_species(merged, PER_SPECIES)]
     if problems:
         raise ConfigError(origin, problems)
     return merged
@@ -148,8 +160,11 @@ def _earlier() -> Table:
     """The layer below a complete file: values for settings that did not exist when an older file was written."""
     tables: Table = {}
     for path, value in EARLIER.items():
-        section, name = path.split(".")
-        tables.setdefault(section, {})[name] = value
+        *sections, name = path.split(".")
+        below = tables
+        for section in sections:
+            below = below.setdefault(section, {})
+        below[name] = value
     return tables
 
 

@@ -1,12 +1,16 @@
-"""A config in the form that the engine takes: the same names, in plain dicts and lists."""
+"""A config in the form that the engine takes: plain dicts and lists, with layouts in place of names."""
 
 from dataclasses import asdict
 from typing import Any
 
-from hedon.config.config import PROVENANCE, Config
+from hedon.config.config import Config
+from hedon.config.layout import SpeciesLayout, diet, layouts, types
+from hedon.config.species import SpeciesConfig
 
 PYTHON_ONLY = (
-    *PROVENANCE,
+    "name",
+    "preset",
+    "fidelity",
     "arena.corner_radius",
     "arena.corner_chords",
     "arena.inner_walls",
@@ -18,28 +22,89 @@ PYTHON_ONLY = (
 
 
 def engine_config(config: Config) -> dict[str, Any]:
-    """The nested dict that the engine's structs are filled from.
+    """The nested dict that the engine's structs are filled from."""
+    made = layouts(config)
+    return {
+        "arena": {"width": config.arena.width, "height": config.arena.height},
+        "physics": asdict(config.physics),
+        "rules": {
+            "eaten_food": config.sensor.eaten_food,
+            "mouths": config.sensor.mouths,
+            "prey_sharing": config.diet.prey_sharing,
+            "birth_order": config.birth.order,
+            "inheritance": config.birth.inheritance,
+            "parents": config.birth.parents,
+            "child_heading": config.birth.heading,
+        },
+        "food_radius": config.body.food_radius,
+        "food": [_without(asdict(food), "color", "gene") for food in config.food.values()],
+        "species": [_species(config, species, made[name]) for name, species in config.agents.items()],
+    }
 
-    Names are those of the dataclasses, with these differences: `arena` has only its size (see `arena.walls`
-    for the rest); `food` is a list in the order of the kinds, and
-    `genome.food` has their genes in this order; `birth.distance_sd` is (x, y) in u.
-    """
-    native = {name: section for name, section in asdict(config).items() if name not in PROVENANCE}
-    native["arena"] = {"width": config.arena.width, "height": config.arena.height}
-    foods = native["food"].values()
-    native["genome"] = _without(native["genome"], "founders") | {"food": [food["gene"] for food in foods]}
-    native["food"] = [_without(_without(food, "color"), "gene") for food in foods]
-    native["birth"] = _without(native["birth"], "distance_unit")
-    native["birth"]["distance_sd"] = distance_sd(config)
-    return native
 
-
-def distance_sd(config: Config) -> tuple[float, float]:
+def distance_sd(config: Config, species: SpeciesConfig) -> tuple[float, float]:
     """Standard deviation of a child's place around its parent along x and y [u]."""
-    scale = config.arena.width if config.birth.distance_unit == "arena_width" else 1.0
-    sd = config.birth.distance_sd * scale
+    scale = config.arena.width if species.birth.distance_unit == "arena_width" else 1.0
+    sd = species.birth.distance_sd * scale
     return sd, sd
 
 
-def _without(table: dict[str, Any], name: str) -> dict[str, Any]:
-    return {key: value for key, value in table.items() if key != name}
+def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
+    number = {name: i for i, name in enumerate(types(config))}
+    sensor = _without(asdict(species.sensor), "eaten_food", "mouths")
+    sensor["sees"] = [number[name] for name in layout.sees]
+    sensor["collides"] = [number[name] for name in layout.touches]
+    eaten = diet(config, species)
+    birth = _without(asdict(species.birth), "distance_unit", "order", "inheritance", "parents", "heading")
+    return {
+        "body": {"radius": species.body.radius, "density": species.body.density},
+        "motor": {
+            "min_force": species.motor.force_scale * species.motor.min_force,
+            "max_force": species.motor.force_scale * species.motor.max_force,
+            "angle": species.motor.angle,
+        },
+        "sensor": sensor,
+        "population": asdict(species.population),
+        "diet": {
+            "food": [eaten.get(kind, 0.0) for kind in config.food],
+            "prey": [eaten.get(name, 0.0) for name in config.agents],
+            "digestion_steps": species.diet.digestion_steps,
+        },
+        "energy": asdict(species.energy),
+        "hazard": asdict(species.hazard),
+        "birth": birth | {"distance_sd": distance_sd(config, species)},
+        "genome": _genome(species, layout),
+        "reward": _reward(species, layout),
+        "learning": asdict(species.learning),
+    }
+
+
+def _genome(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
+    genome = species.genome
+    return {
+        "mutation_noise": genome.mutation_noise,
+        "genes": [
+            {
+                "initial_mean": gene.law.initial_mean,
+                "initial_sd": gene.law.initial_sd,
+                "mutation_law": genome.mutation_law,
+                "mutation_scale": genome.mutation_scale,
+                "mutation_df": genome.mutation_df,
+                "mutation_probability": genome.mutation_probability,
+                "limit": genome.weight_limit,
+            }
+            for gene in layout.genes
+        ],
+    }
+
+
+def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
+    terms = [
+        {"input": term.input, "index": term.index, "gene": layout.gene_names.index(term.gene), "coef": term.coef}
+        for term in layout.terms
+    ]
+    return {"action_norm": species.reward.action_norm, "terms": terms}
+
+
+def _without(table: dict[str, Any], *names: str) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in names}

@@ -17,7 +17,7 @@ class PopulationConfig:
     ] = 200
     initial_count: Annotated[
         int,
-        Doc("number of founders, placed uniformly without overlap", "agent", EITHER, Range(ge=1, le=100_000)),
+        Doc("number of founders, placed uniformly without overlap", "agent", EITHER, Range(ge=0, le=100_000)),
     ] = 50
     heading_range: Annotated[
         float,

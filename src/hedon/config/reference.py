@@ -8,6 +8,7 @@ from hedon.config.config import Config
 from hedon.config.field import sections, settings, type_name
 from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
 from hedon.config.problem import format_value
+from hedon.config.species import SpeciesConfig
 
 _HEAD = """\
 # Settings
@@ -63,7 +64,12 @@ def _sections(section: type, path: str) -> Iterator[str]:
         )
         for setting in settings(section).values()
     )
-    yield _table(("name", "default", "meaning", "unit", "allowed", "source"), rows)
+    if settings(section):
+        yield _table(("name", "default", "meaning", "unit", "allowed", "source"), rows)
+    if section is SpeciesConfig:
+        names = ", ".join(f"`{name}`" for name in sections(section))
+        yield f"Each has the sections above that describe agents: {names}.\n"
+        return
     for name, inner in sections(section).items():
         below = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
         yield from _sections(inner.type, below)

@@ -44,7 +44,7 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
     if head.seeds != seeds:
         raise RecordError(f"{name} has seeds {_text(head.seeds)}, and the run has {_text(seeds)}")
     worlds = (len(head.sampled), len(head.digests))
-    if worlds != (len(seeds), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
+    if worlds != (len(seeds) * len(config.agents), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
         raise RecordError(f"{name} is not complete: worlds or tables are missing")
 
 
@@ -75,13 +75,17 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
         RecordError: The simulation cannot use the arrays. Do not use the simulation after that.
     """
     head = checkpoint.head
-    for world, sampled, digest in zip(simulation.worlds, head.sampled, head.digests, strict=True):
+    species = len(simulation.config.agents)
+    for world, digest in zip(simulation.worlds, head.digests, strict=True):
         try:
             simulation.engine.restore(world.index, checkpoint.world(world.index))
         except ValueError as error:
             raise RecordError(f"{name} does not fit: world {world.index}: {error}") from None
-        now = PopulationSampler(world).since
-        same_names = (now.counters.keys(), len(now.eaten)) == (sampled.counters.keys(), len(sampled.eaten))
+        now = [PopulationSampler(world, i).since for i in range(species)]
+        then = head.sampled[world.index * species : (world.index + 1) * species]
+        same_names = [(each.counters.keys(), len(each.eaten)) for each in now] == [
+            (each.counters.keys(), len(each.eaten)) for each in then
+        ]
         if world.digest() != digest or not same_names or not (world.extinct or world.step == head.step):
             raise RecordError(f"{name} is damaged: world {world.index} is not as it was saved")
     return Start(head.step, head.run_seconds, head.sampled)

@@ -9,7 +9,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.error import HedonError
 from hedon.experiment.native import engine_input
-from hedon.record.schema import run_tables
+from hedon.record.schema import columns_of, run_tables
 from hedon.record.writer import PART_ROWS
 
 CONTROL_GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
@@ -32,7 +32,7 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
     """
     given = engine_input(config)
     need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
-    tables = run_tables(tuple(config.food), config.genome.neutral_count).values()
+    tables = run_tables(columns_of(config)).values()
     # A checkpoint is a copy of all worlds until it is on disk; one world may be copied at the same time for its digest.
     learned = need["networks"] + need["rollouts"]
     return {

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from hedon.config.config import Config
+from hedon.config.layout import with_genome
 from hedon.config.validate import validated
 from hedon.error import ArgumentError
 from hedon.experiment.argument import (
@@ -113,7 +114,7 @@ def _with_founders(config: Config, founders: Founders | None) -> Config:
     """The config with the digest of its founders' table."""
     if founders is not None:
         founders.require(config)
-        return replace(config, genome=replace(config.genome, founders=founders.digest))
+        return with_genome(config, founders=founders.digest)
     if config.genome.founders:
         raise ArgumentError(
             "founders: the config names a table of founders, so give it, as in --founders RUN/founders.csv, or leave "

@@ -30,7 +30,7 @@ class Start:
     Attributes:
         step: Steps completed.
         seconds: Time spent on steps before [s].
-        sampled: What the next rows of the table `population` count from, one per world; empty at step 0.
+        sampled: What the next rows of the table `population` count from, one per world and species; empty at step 0.
     """
 
     step: int = 0
@@ -52,8 +52,9 @@ class Recorder:
         self.simulation = simulation
         self.writer = writer
         self.frames = frames
-        since = start.sampled or (None,) * len(simulation.worlds)
-        self.samplers = [PopulationSampler(world, at) for world, at in zip(simulation.worlds, since, strict=True)]
+        sampled = [(world, species) for world in simulation.worlds for species in range(len(world.config.agents))]
+        since = start.sampled or (None,) * len(sampled)
+        self.samplers = [PopulationSampler(*which, at) for which, at in zip(sampled, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
         self.first = start.step
         self.begun = time.perf_counter()
@@ -71,8 +72,8 @@ class Recorder:
 
     def interval(self) -> None:
         """Writes one population row per world that advanced since its last row."""
-        for i, (world, sampler) in enumerate(zip(self.simulation.worlds, self.samplers, strict=True)):
-            if world.step == sampler.since.step:
+        for i, sampler in enumerate(self.samplers):
+            if sampler.world.step == sampler.since.step:
                 continue
             self.rows[i] = sampler.row()
             sampler.advance()
@@ -133,6 +134,6 @@ class Recorder:
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows after `step` of `steps` steps, `seconds` into the session."""
-        extinct = tuple(world.extinct_step for world in self.simulation.worlds)
+        extinct = tuple(sampler.world.extinct_step for sampler in self.samplers)
         window = self.simulation.config.learning.rollout_steps
         return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct, window)

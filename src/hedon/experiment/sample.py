@@ -6,54 +6,66 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.arena import walls
+from hedon.config.config import Config
+from hedon.config.layout import layouts, types
 from hedon.experiment.simulation import World
 from hedon.record.checkpoint import Sampled
-from hedon.record.schema import weight_names
+from hedon.record.schema import CAUSES, Columns, columns_of
 from hedon.record.snapshot import Snapshot
 
 Rows = dict[str, Any]
 
-COUNTED = ("agent_steps", "births", "deaths", "births_failed_full", "births_failed_space", "learners")
-LEDGER = (
-    "energy_eaten",
-    "energy_basic",
-    "energy_action",
-    "energy_forgiven",
-    "energy_capped",
-    "energy_lost",
-    "energy_shared",
-)
-
-
 def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`)."""
-    kinds = tuple(world.config.food)
+    columns = columns_of(world.config)
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
     steps = np.maximum(end - lives["birth_step"], 1)
     direct = ("agent_id", "parent_id", "generation", "birth_step", "death_step", "birth_energy", "energy")
     direct += ("energy_gained", "energy_spent", "children", "distance")
-    return {
+    rows = {
         "world": world.index,
         "seed": world.seed,
         **{name: lives[name] for name in direct},
-        **{f"eaten_{kind}": lives["eaten"][:, k] for k, kind in enumerate(kinds)},
+        **{f"eaten_{name}": lives["eaten"][:, k] for name, k in _meals(columns).items()},
         "mean_force_left": lives["force_left"] / steps,
         "mean_force_right": lives["force_right"] / steps,
         "reward_sum": lives["reward"],
-        **{name: lives["genome"][:, g] for g, name in enumerate(_genes(world))},
+        **gene_rows(world.config, lives),
     }
+    if columns.several:
+        rows["species"] = np.array(columns.species)[lives["species"]]
+        if "cause" in lives:
+            rows["cause"] = np.array(CAUSES)[lives["cause"]]
+    return rows
+
+
+def gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
+    """The genes of agents by the names of their columns; NaN where a species lacks a gene."""
+    made = list(layouts(config).values())
+    rows: Rows = {}
+    for name in columns_of(config).gene_names:
+        values = np.full(len(lives["species"]), np.nan, np.float32)
+        for species, layout in enumerate(made):
+            if name in layout.gene_names:
+                mine = lives["species"] == species
+                values[mine] = lives["genome"][mine, layout.gene_names.index(name)]
+        rows[name] = values
+    return rows
 
 
 class PopulationSampler:
-    """Makes rows of the table `population` of one world: its state now, and counts since the last row.
+    """Makes rows of the table `population` of one species of a world: its state now, and counts since the last row.
 
     Args:
         world: The world.
+        species: Index of the species in the config's order.
         since: What the next row counts from; None for the world's present state.
     """
 
-    def __init__(self, world: World, since: Sampled | None = None) -> None:
+    def __init__(self, world: World, species: int = 0, since: Sampled | None = None) -> None:
         self.world = world
+        self.species = species
+        self.columns = columns_of(world.config)
         self.since = since or self._now()
 
     def advance(self) -> None:
@@ -64,6 +76,7 @@ class PopulationSampler:
         """The row of the interval that ends now."""
         world, since = self.world, self.since
         lives = world.agents()
+        lives = {name: values[lives["species"] == self.species] for name, values in lives.items()}
         now = self._now()
         present = world.view("food_stock.present")
         row: Rows = {
@@ -72,33 +85,45 @@ class PopulationSampler:
             "step": world.step,
             "steps": world.step - since.step,
         }
-        row["alive"] = world.alive
-        row |= {name: now.counters[name] - since.counters[name] for name in (*COUNTED, *LEDGER)}
+        if self.columns.several:
+            row["species"] = self.columns.species[self.species]
+        row["alive"] = len(lives["energy"])
+        counted = [name for name in now.counters if name != "energy_initial"]
+        row |= {name: now.counters[name] - since.counters[name] for name in counted}
         row |= _spread("energy", lives["energy"]) | _spread("age", lives["age"])
         generation = lives["generation"]
         row["generation_mean"] = generation.mean() if len(generation) else np.nan
         row["generation_max"] = generation.max() if len(generation) else -1
-        for g, name in enumerate(_genes(world)):
-            weight = lives["genome"][:, g]
+        for name, weight in gene_rows(world.config, lives).items():
             row[f"{name}_mean"] = weight.mean() if len(weight) else np.nan
             row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
         for k, kind in enumerate(world.config.food):
             row[f"food_{kind}"] = int(present[k])
-            row[f"eaten_{kind}"] = now.eaten[k] - since.eaten[k]
+        for name, k in _meals(self.columns).items():
+            row[f"eaten_{name}"] = now.eaten[k] - since.eaten[k]
         row["energy_total"] = lives["energy"].sum()
         return row
 
     def _now(self) -> Sampled:
         world = self.world
-        return Sampled(world.step, world.counters, tuple(world.view("food_stock.eaten").tolist()))
+        counters = world.counters_of(self.species)
+        if not self.columns.several:
+            return Sampled(world.step, counters, tuple(world.view("food_stock.eaten").tolist()))
+        for name in ("deaths_starved", "deaths_eaten", "energy_hunted", "energy_prey"):
+            known = world.view(f"hunt_counters.{name}")
+            counters[name] = known[self.species].item() if len(known) else 0
+        return Sampled(world.step, counters, tuple(world.view("eaten_by")[self.species].tolist()))
 
 
 def frame_rows(world: World) -> list[Rows]:
     """Rows of the table `frames`: every agent and every food of a world as it is now."""
     lives, foods = world.agents(), world.foods()
     here = {"world": world.index, "step": world.step}
-    agents = {name: lives[name] for name in ("x", "y", "angle", "energy")}
-    rows = [{**here, "kind": "agent", "id": lives["agent_id"], **agents}]
+    rows = []
+    for species, name in enumerate(world.config.agents):
+        mine = lives["species"] == species
+        agents = {column: lives[column][mine] for column in ("x", "y", "angle", "energy")}
+        rows.append({**here, "kind": name, "id": lives["agent_id"][mine], **agents})
     for k, kind in enumerate(world.config.food):
         mine = foods["kind"] == k
         rows.append({**here, "kind": kind, "x": foods["x"][mine], "y": foods["y"][mine]})
@@ -108,28 +133,46 @@ def frame_rows(world: World) -> list[Rows]:
 def snapshot(world: World) -> Snapshot:
     """The present state of a world, for a picture."""
     lives, foods, config = world.agents(), world.foods(), world.config
+    kinds = list(config.agents.values())
     return Snapshot(
         world=world.index,
         seed=world.seed,
         step=world.step,
-        **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy")},
-        rays=world.rays(),
+        **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy", "species")},
+        rays=_rays(world, lives["species"]),
         food_kind=foods["kind"],
         food_x=foods["x"],
         food_y=foods["y"],
         walls=walls(config.arena),
         food_kinds=tuple(config.food),
-        radius=config.body.radius,
+        species_names=tuple(config.agents),
         food_radius=config.body.food_radius,
-        ray_length=config.sensor.ray_length,
-        ray_spread=config.sensor.ray_spread,
-        mouth_spread=config.sensor.mouth_spread,
-        energy_capacity=config.energy.capacity,
+        radius=np.array([kind.body.radius for kind in kinds]),
+        ray_count=np.array([kind.sensor.ray_count for kind in kinds]),
+        ray_length=np.array([kind.sensor.ray_length for kind in kinds]),
+        ray_spread=np.array([kind.sensor.ray_spread for kind in kinds]),
+        mouth_spread=np.array([kind.sensor.mouth_spread for kind in kinds]),
     )
 
 
-def _genes(world: World) -> tuple[str, ...]:
-    return weight_names(tuple(world.config.food), world.config.genome.neutral_count)
+def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
+    """The rays of all agents, by the types of the world."""
+    every = types(world.config)
+    most = max(kind.sensor.ray_count for kind in world.config.agents.values())
+    rays = np.full((len(species), most, len(every)), -1.0, np.float32)
+    for i, layout in enumerate(layouts(world.config).values()):
+        mine = np.flatnonzero(species == i)
+        if len(mine):
+            seen = world.rays(i)
+            channels = [every.index(name) for name in layout.sees]
+            rays[np.ix_(mine, np.arange(seen.shape[1]), channels)] = seen
+    return rays
+
+
+def _meals(columns: Columns) -> dict[str, int]:
+    """What agents eat, with its index in the engine's arrays: kinds of food, then species."""
+    kinds = {kind: k for k, kind in enumerate(columns.food_kinds)}
+    return kinds | {name: len(kinds) + columns.species.index(name) for name in columns.prey}
 
 
 def _spread(name: str, values: NDArray[Any]) -> Rows:

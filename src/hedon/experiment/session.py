@@ -1,6 +1,6 @@
 """The manifest that a session of a run writes at its beginning and at its end."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 from hedon.config.dump import digest
 from hedon.config.load import is_modified
@@ -9,6 +9,7 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.digest import records_digest
 from hedon.record.manifest import Manifest, Session
 from hedon.record.provenance import collect_provenance, utc_now
+from hedon.record.schema import columns_of
 from hedon.record.writer import Writer
 
 
@@ -16,8 +17,7 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
     """The manifest of a run that begins now, at step 0 or, for a branch, at a later one."""
     config = plan.config
     manifest = Manifest(
-        food_kinds=tuple(config.food),
-        neutral_count=config.genome.neutral_count,
+        **asdict(columns_of(config)),
         seeds=plan.seeds,
         steps_asked=plan.steps,
         preset=config.preset,
@@ -64,7 +64,7 @@ def last_manifest(manifest: Manifest, simulation: Simulation, status: str, secon
     if status != "failed":
         writer.flush()
         digests = tuple(world.digest() for world in simulation.worlds)
-        records = records_digest(writer.folder, manifest.food_kinds, manifest.neutral_count)
+        records = records_digest(writer.folder, manifest.columns)
     manifest = replace(
         manifest,
         status=status,

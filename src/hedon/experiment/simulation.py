@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from hedon import _engine
 from hedon.config.config import Config
+from hedon.config.layout import layouts
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.native import engine_input
 from hedon.record.founder import Founders
-from hedon.record.schema import weight_names
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
@@ -86,11 +86,15 @@ class Simulation:
             FounderError: The table does not fit the config.
         """
         founders.require(self.config)
-        names = weight_names(tuple(self.config.food), self.config.genome.neutral_count)
         for world in self.worlds:
-            drawn = world.agents()["genome"]
-            given = founders.genomes(world.seed, len(drawn), names)
-            self.engine.set_genomes(world.index, np.where(np.isnan(given), drawn, given).astype(np.float32))
+            agents = world.agents()
+            genomes = agents["genome"].copy()
+            for i, (name, layout) in enumerate(layouts(self.config).items()):
+                mine = np.flatnonzero(agents["species"] == i)
+                given = founders.of_species(name).genomes(world.seed, len(mine), layout.gene_names)
+                at = np.ix_(mine, np.arange(len(layout.genes)))
+                genomes[at] = np.where(np.isnan(given), genomes[at], given)
+            self.engine.set_genomes(world.index, genomes.astype(np.float32))
 
     @property
     def extinct(self) -> bool:
@@ -135,8 +139,13 @@ class World:
 
     @property
     def counters(self) -> dict[str, Any]:
-        """Births, deaths, failures and the energy ledger since the world began."""
-        return self._engine.counters(self.index)
+        """Births, deaths, failures and the energy ledger since the world began, over all species."""
+        each = [self.counters_of(species) for species in range(len(self.config.agents))]
+        return {name: sum(counters[name] for counters in each) for name in each[0]}
+
+    def counters_of(self, species: int) -> dict[str, Any]:
+        """The same of one species, by its index in the config's order."""
+        return self._engine.counters(self.index, species)
 
     @property
     def seconds(self) -> dict[str, float]:
@@ -184,14 +193,15 @@ class World:
         circles = {name: self.view(f"physics.circles.{name}")[present] for name in ("x", "y")}
         return {"kind": kind[present], **circles}
 
-    def observations(self) -> NDArray[np.float32]:
-        """What each living agent observes now, (alive, observation size)."""
-        return self._engine.observations(self.index)
+    def observations(self, species: int = 0) -> NDArray[np.float32]:
+        """What each living agent of a species observes now, (alive, observation size)."""
+        return self._engine.observations(self.index, species)
 
-    def rays(self) -> NDArray[np.float32]:
-        """The rays of the observations: (alive, rays, types); the types are agent, each food kind, wall."""
-        rays, types = self.config.sensor.ray_count, len(self.config.food) + 2
-        return self.observations()[:, : types * rays].reshape(-1, types, rays).swapaxes(1, 2)
+    def rays(self, species: int = 0) -> NDArray[np.float32]:
+        """The rays of the observations of a species: (alive, rays, types that it sees)."""
+        name = list(self.config.agents)[species]
+        rays, seen = self.config.agents[name].sensor.ray_count, len(layouts(self.config)[name].sees)
+        return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
 
     def digest(self) -> str:
         """A hash of the world's whole state: equal for equal bits."""

@@ -19,6 +19,7 @@ AGENT_COLOR = "#bed3e6"
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
 _AGENT_RAY = "#1f63a0"
+_SPECIES_COLORS = (MUTED, "#b8322a", "#3a5fa8", "#7a4fa3")
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
 _LEGEND_COLUMNS = 5  # as many as fit beside each other
 _WIDTH = 7.2  # of the figure [inch]
@@ -81,15 +82,16 @@ def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray
     Returns:
         Segments [u], shape (rays, 2, 2), and the type hit per ray, shape (rays,), −1 where nothing is hit.
     """
-    readings = snapshot.rays[index]
-    spread = np.radians(snapshot.ray_spread)
+    own = snapshot.species[index]
+    readings = snapshot.rays[index, : snapshot.ray_count[own]]
+    spread = np.radians(snapshot.ray_spread[own])
     angle = snapshot.angle[index] + np.linspace(-spread, spread, len(readings))
     direction = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
     best = readings.max(axis=1)
     kind = np.where(best >= 0, readings.argmax(axis=1), -1)
-    length = np.where(kind >= 0, (1 - best) * snapshot.ray_length, snapshot.ray_length)
+    length = np.where(kind >= 0, (1 - best) * snapshot.ray_length[own], snapshot.ray_length[own])
     center = np.array([snapshot.x[index], snapshot.y[index]])
-    start = center + snapshot.radius * direction
+    start = center + snapshot.radius[own] * direction
     return np.stack([start, start + length[:, None] * direction], axis=1), kind
 
 
@@ -122,21 +124,30 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
         The discs.
     """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
-    discs = _discs(axes, centers, snapshot.radius, edgecolors=MUTED, linewidths=0.5)
-    if top is None:
-        discs.set_facecolor(AGENT_COLOR)
-    else:
-        discs.set(array=snapshot.energy, cmap=_ENERGY_COLORS, norm=Normalize(0, top))
+    for species in np.unique(snapshot.species):
+        mine = snapshot.species == species
+        edge = {"edgecolors": species_color(species), "linewidths": 1.8 if species else 0.5}
+        discs = _discs(axes, centers[mine], snapshot.radius[species], **edge)
+        if top is None:
+            discs.set_facecolor(AGENT_COLOR)
+        else:
+            discs.set(array=snapshot.energy[mine], cmap=_ENERGY_COLORS, norm=Normalize(0, top))
+    radius, spread = snapshot.radius[snapshot.species], snapshot.mouth_spread[snapshot.species]
     degree = np.degrees(snapshot.angle) + 90.0  # Matplotlib counts from +x
     mouths = [
-        Wedge((x, y), snapshot.radius, a - snapshot.mouth_spread, a + snapshot.mouth_spread, width=1.9)
-        for (x, y), a in zip(centers, degree, strict=True)
+        Wedge((x, y), r, a - half, a + half, width=1.9)
+        for (x, y), a, r, half in zip(centers, degree, radius, spread, strict=True)
     ]
     axes.add_collection(PatchCollection(mouths, facecolor=INK, edgecolor="none", zorder=4))
     ahead = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
-    noses = np.stack([centers, centers + 0.82 * snapshot.radius * ahead], axis=1)
+    noses = np.stack([centers, centers + 0.82 * radius[:, None] * ahead], axis=1)
     axes.add_collection(LineCollection(list(noses), colors=INK, linewidths=0.9, zorder=4))
     return discs
+
+
+def species_color(index: int) -> str:
+    """The color of a species' outline."""
+    return _SPECIES_COLORS[index]
 
 
 def _top_energy(energy: np.ndarray) -> float:
@@ -152,8 +163,10 @@ def _draw_energy_bar(figure: Figure, axes: Axes, snapshot: Snapshot, discs: Elli
 
 
 def _draw_rings(axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
-    chosen = np.stack([snapshot.x, snapshot.y], axis=-1)[list(rays_of)]
-    _discs(axes, chosen, snapshot.radius + 1.5, facecolors="none", edgecolors=INK, linewidths=1.4)
+    for index in rays_of:
+        center = np.array([[snapshot.x[index], snapshot.y[index]]])
+        radius = snapshot.radius[snapshot.species[index]] + 1.5
+        _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
 
 
 def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, str]) -> None:
@@ -168,7 +181,8 @@ def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, 
 
 
 def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
-    return [_AGENT_RAY, *(colors[kind] for kind in snapshot.food_kinds), MUTED]
+    species = [_AGENT_RAY, *_SPECIES_COLORS[1:]][: len(snapshot.species_names)]
+    return [*species, *(colors[kind] for kind in snapshot.food_kinds), MUTED]
 
 
 def _discs(axes: Axes, centers: np.ndarray, radius: float, **look: object) -> EllipseCollection:
@@ -197,8 +211,15 @@ def _draw_scale(axes: Axes, low: np.ndarray, width: float) -> None:
 def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_rays: bool) -> None:
     dot = {"marker": "o", "linestyle": "", "markersize": 5}
     handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds]
+    ring = {"marker": "o", "markersize": 8, "linestyle": "", "markerfacecolor": "none", "markeredgewidth": 1.8}
+    handles += [
+        Line2D([], [], markeredgecolor=species_color(i), label=name, **ring)
+        for i, name in enumerate(snapshot.species_names)
+        if len(snapshot.species_names) > 1
+    ]
     if with_rays:
-        rays = {"ray that sees an agent": _AGENT_RAY}
+        names = [name if len(snapshot.species_names) > 1 else "an agent" for name in snapshot.species_names]
+        rays = {f"ray that sees {name}": color for name, color in zip(names, _type_colors(snapshot, colors), strict=False)}
         rays |= {f"sees {kind} food": colors[kind] for kind in snapshot.food_kinds}
         rays |= {"sees a wall": MUTED, "sees nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]

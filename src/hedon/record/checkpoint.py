@@ -47,7 +47,7 @@ class CheckpointHead:
         hedon_version: the version that made it.
         frames: steps between two frames; 0 for none [step].
         run_seconds: time spent on steps so far [s].
-        sampled: one per world.
+        sampled: one per world and species.
         digests: `World.digest()` of each world.
         parts: SHA-256 of each part that was on disk, in order, by table. They hold all rows up to here, none later.
     """

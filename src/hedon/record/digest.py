@@ -9,13 +9,13 @@ import polars as pl
 from hedon.record.column import Table
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, part_paths
-from hedon.record.schema import run_tables
+from hedon.record.schema import Columns, run_tables
 
 PARTS_AT_ONCE = 64
 """Parts that are in memory together: at most about 100 MB."""
 
 
-def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int) -> str:
+def records_digest(folder: Path, columns: Columns) -> str:
     """The digest of all tables of a run: SHA-256, 64 hexadecimal digits.
 
     The rows of each world count in the order in which they were written, which is the same in every repetition of a
@@ -25,7 +25,7 @@ def records_digest(folder: Path, food_kinds: tuple[str, ...], neutral_count: int
         RecordError: a part cannot be read.
     """
     digest = hashlib.sha256()
-    for name, table in run_tables(food_kinds, neutral_count).items():
+    for name, table in run_tables(columns).items():
         paths = part_paths(folder, name)
         if name == "agents" and (folder / LIVING).exists():
             paths.append(folder / LIVING)

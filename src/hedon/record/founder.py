@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.config.layout import gene_columns, layouts, of_species
 from hedon.config.problem import nearest
 from hedon.error import HedonError
-from hedon.record.schema import weight_names
 from hedon.text import brief
 
 FOUNDERS = "founders.csv"
@@ -100,6 +100,12 @@ class Founders:
             found[:, list(names).index(gene)] = self.values[rows, i]
         return found
 
+    def of_species(self, name: str) -> "Founders":
+        """The genes for one species: those that name it, as in `prey.w_action`, and those that name none."""
+        mine = [i for i, gene in enumerate(self.genes) if "." not in gene or gene.startswith(f"{name}.")]
+        genes = tuple(self.genes[i].removeprefix(f"{name}.") for i in mine)
+        return replace(self, genes=genes, values=self.values[:, mine])
+
     def changed(self, gene: str, value: float) -> "Founders":
         """The same table with one gene, which it must have, at one value."""
         values = self.values.copy()
@@ -151,16 +157,21 @@ def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[flo
 def column_of(config: Config, name: str) -> str | None:
     """The column of a gene that is named by its column, its kind of food, or `action`; None if there is no such gene.
 
-    `food` is the first kind, unless a kind has this name.
+    `food` is the first kind, unless a kind has this name. A gene of only one species begins with the name of the
+    species, as in `prey.action`.
     """
-    columns = weight_names(tuple(config.food), config.genome.neutral_count)
+    species, dot, gene = name.rpartition(".")
+    if dot:
+        column = column_of(of_species(config, species), gene) if species in config.species else None
+        return None if column is None or column not in layouts(config)[species].gene_names else f"{species}.{column}"
+    columns = gene_columns(config)
     return next((column for column in (name, f"w_{name}") if column in columns), columns[0] if name == "food" else None)
 
 
 def unknown_gene(config: Config, name: str) -> str:
     """Says that there is no such gene, which there are, and which is near."""
-    columns = weight_names(tuple(config.food), config.genome.neutral_count)
-    shown = [column.removeprefix("w_") for column in columns[: len(config.food) + 1]]
+    columns = gene_columns(config)
+    shown = [column.removeprefix("w_") for column in columns if column.startswith("w_")]
     neutral = f", neutral_1 to neutral_{config.genome.neutral_count}" if config.genome.neutral_count else ""
     near = nearest(name, [*columns, *shown, "food"])
     hint = f"; did you mean {near}?" if near else ""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import MANIFEST
-from hedon.record.schema import FORMAT_VERSION
+from hedon.record.schema import FORMAT_VERSION, Columns
 from hedon.text import LINE, brief
 
 if TYPE_CHECKING:
@@ -70,6 +70,9 @@ class Manifest:
         food_kinds: names, in the order of the config; fixes the columns of the tables.
         neutral_count: number of neutral markers; fixes the columns of the tables.
         seeds: one per world.
+        species: names, in the order of the config.
+        rewards: names of the genes that have an effect on the reward; empty for one per food kind, and action.
+        prey: names of the species that are eaten by others.
         steps_asked: total steps that each world is to run [step].
         preset: name of the preset that the config is based on.
         fidelity: "corrected", "released" or "text".
@@ -127,6 +130,9 @@ class Manifest:
     world_digests: tuple[str, ...] = ()
     records_digest: str | None = None
     fault: str | None = None
+    species: tuple[str, ...] = ("agent",)
+    rewards: tuple[str, ...] = ()
+    prey: tuple[str, ...] = ()
     format_version: int = FORMAT_VERSION
 
     def __post_init__(self) -> None:
@@ -137,6 +143,11 @@ class Manifest:
         for problem in self._problems():
             raise RecordError(f"manifest: {problem}")
 
+    @property
+    def columns(self) -> Columns:
+        """What the columns of the tables follow from."""
+        return Columns(self.food_kinds, self.neutral_count, self.species, self.rewards, self.prey)
+
     def _problems(self) -> Iterator[str]:
         """What no run can have been, and what tables and figures could not be made with."""
         if self.status not in STATUSES:
@@ -144,6 +155,9 @@ class Manifest:
         for kind in self.food_kinds:
             if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind):
                 yield f"food_kinds: {brief(repr(kind))} is not the name of a food kind"
+        for name in (*self.species, *self.rewards, *self.prey):
+            if not re.fullmatch(r"[a-z][a-z0-9_]{0,63}", name):
+                yield f"species, rewards: {brief(repr(name))} is not the name of a species or a gene"
         for color in self.food_colors:
             if not re.fullmatch(r"#[0-9a-fA-F]{6}", color):
                 yield f'food_colors: {brief(repr(color))} is not a color "#rrggbb"'

@@ -20,7 +20,7 @@ from hedon.record.folder import (
     require_unicode,
 )
 from hedon.record.manifest import Manifest, load_manifest
-from hedon.record.schema import food_weight_names, neutral_names, run_tables, weight_names
+from hedon.record.schema import Columns, run_tables
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,11 @@ class Run:
     config_text: str
 
     @property
+    def columns(self) -> Columns:
+        """What the columns of the tables follow from."""
+        return self.manifest.columns
+
+    @property
     def food_kinds(self) -> tuple[str, ...]:
         """Names of the food kinds, in the order of the config."""
         return self.manifest.food_kinds
@@ -45,17 +50,17 @@ class Run:
     @property
     def weight_names(self) -> tuple[str, ...]:
         """Names of all genome columns, in order."""
-        return weight_names(self.food_kinds, self.manifest.neutral_count)
+        return self.columns.gene_names
 
     @property
     def reward_names(self) -> tuple[str, ...]:
-        """Names of the genome columns that have an effect on the reward: food kinds, then action."""
-        return (*food_weight_names(self.food_kinds), "w_action")
+        """Names of the genome columns that have an effect on the reward."""
+        return self.columns.reward_names
 
     @property
     def neutral_names(self) -> tuple[str, ...]:
         """Names of the neutral markers."""
-        return neutral_names(self.manifest.neutral_count)
+        return self.columns.neutral_names
 
     def agents(self, *, skip_damaged: bool = False) -> pl.DataFrame:
         """All agents of one moment: the dead, in the order in which they were written, then the living.
@@ -107,7 +112,7 @@ class Run:
 
     @property
     def _tables(self) -> dict[str, Table]:
-        return run_tables(self.manifest.food_kinds, self.manifest.neutral_count)
+        return run_tables(self.columns)
 
 
 def open_run(path: Path | str) -> Run:

@@ -5,8 +5,10 @@ kind, in the order of the config, and one `neutral_<i>` for each neutral marker.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from dataclasses import dataclass
 
+from hedon.config.config import Config
+from hedon.config.layout import diet, layouts
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -16,41 +18,90 @@ WORLD = Column("world", "i32", "1", "index of the world in the run")
 SEED = Column("seed", "i64", "1", "seed of the world")
 
 
-def food_weight_names(food_kinds: Sequence[str]) -> tuple[str, ...]:
-    """Names of the reward weights for food, in genome order."""
-    return tuple(f"w_{kind}" for kind in food_kinds)
+@dataclass(frozen=True)
+class Columns:
+    """What the columns of a run's tables follow from.
+
+    Attributes:
+        food_kinds: names, in the order of the config.
+        neutral_count: number of neutral markers.
+        species: names, in the order of the config.
+        rewards: names of the genes that have an effect on the reward, of all species, in order.
+        prey: names of the species that are eaten by others.
+    """
+
+    food_kinds: tuple[str, ...]
+    neutral_count: int
+    species: tuple[str, ...] = ("agent",)
+    rewards: tuple[str, ...] = ()
+    prey: tuple[str, ...] = ()
+
+    @property
+    def reward_names(self) -> tuple[str, ...]:
+        """Names of the weights; runs that do not name them have one per food kind, and action."""
+        return self.rewards or (*(f"w_{kind}" for kind in self.food_kinds), "w_action")
+
+    @property
+    def neutral_names(self) -> tuple[str, ...]:
+        """Names of the neutral markers."""
+        return tuple(f"neutral_{i + 1}" for i in range(self.neutral_count))
+
+    @property
+    def gene_names(self) -> tuple[str, ...]:
+        """Names of all genes, in order."""
+        return (*self.reward_names, *self.neutral_names)
+
+    @property
+    def shown_names(self) -> tuple[str, ...]:
+        """The genes as a terminal shows them: the weights, and one neutral marker as a control."""
+        return (*self.reward_names, *self.neutral_names[:1])
+
+    @property
+    def several(self) -> bool:
+        """Whether there are several species: then rows say which."""
+        return len(self.species) > 1
 
 
-def neutral_names(neutral_count: int) -> tuple[str, ...]:
-    """Names of the neutral markers, in genome order."""
-    return tuple(f"neutral_{i + 1}" for i in range(neutral_count))
+def columns_of(config: Config) -> Columns:
+    """The columns of a config's runs."""
+    made = layouts(config)
+    rewards = dict.fromkeys(gene.name for each in made.values() for gene in each.genes if gene.role != "neutral")
+    neutral = max(species.genome.neutral_count for species in config.agents.values())
+    eaten = {name for species in config.agents.values() for name in diet(config, species)}
+    prey = tuple(name for name in config.agents if name in eaten)
+    return Columns(tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey)
 
 
-def weight_names(food_kinds: Sequence[str], neutral_count: int) -> tuple[str, ...]:
-    """Names of the whole genome, in order: one weight per food kind, action, the neutral markers."""
-    return (*food_weight_names(food_kinds), "w_action", *neutral_names(neutral_count))
+SPECIES = Column("species", "string", "", "name of the species")
+CAUSES = ("age_energy", "starved", "eaten")
+"""Why agents die, in the engine's order."""
+_CAUSE = Column("cause", "string", "", "why it died: " + ", ".join(CAUSES) + "; missing while it lives", nullable=True)
+_HUNTING = (
+    Column("deaths_starved", "i32", "1", "deaths by starvation in the interval"),
+    Column("deaths_eaten", "i32", "1", "agents of the species that were eaten in the interval"),
+    Column("energy_hunted", "f64", "energy", "gained by eating agents in the interval"),
+    Column("energy_prey", "f64", "energy", "held by those that were eaten in the interval; part of energy_lost"),
+)
 
 
-def shown_weight_names(food_kinds: Sequence[str], neutral_count: int) -> tuple[str, ...]:
-    """The genome as a terminal shows it: the weights, and one neutral marker as a control."""
-    return weight_names(food_kinds, min(neutral_count, 1))
-
-
-def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
+def agent_table(columns: Columns) -> Table:
     """One row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
     return _table(
         "agents",
         "one agent; living agents have no death_step",
         WORLD,
         SEED,
+        *([SPECIES] if columns.several else []),
         Column("agent_id", "i64", "1", "unique within the world, never used again"),
         Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
         Column("generation", "i32", "1", "generations since the founders; 0 for founders"),
         Column("birth_step", "i64", "step", "steps completed when the agent was born; 0 for founders"),
         Column("death_step", "i64", "step", "steps completed when it died; missing while it lives", nullable=True),
+        *([_CAUSE] if columns.several else []),
         Column("birth_energy", "f32", "energy", "energy at birth"),
         Column("energy", "f32", "energy", "energy at death, or at the last flush"),
-        *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in food_kinds),
+        *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in columns.food_kinds),
+        *(Column(f"eaten_{name}", "i32", "1", f"agents of the species {name} eaten") for name in columns.prey),
         Column("energy_gained", "f32", "energy", "energy of all food eaten; poison counts negative"),
         Column("energy_spent", "f32", "energy", "energy charged for living and for action"),
         Column("children", "i32", "1", "children born"),
@@ -58,17 +109,18 @@ def agent_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
         Column("mean_force_left", "f32", "u·mass/s²", "mean force of the left motor over its life"),
         Column("mean_force_right", "f32", "u·mass/s²", "mean force of the right motor over its life"),
         Column("reward_sum", "f32", "1", "sum of all rewards received"),
-        *(_weight_column(name, food_kinds) for name in weight_names(food_kinds, neutral_count)),
+        *(_gene_column(name, columns) for name in columns.gene_names),
     )
 
 
-def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
+def population_table(columns: Columns) -> Table:
     """One row per world and interval: state at its end, counts and the energy ledger over it."""
     return _table(
         "population",
-        "one world over one interval of steps",
+        "one species of one world over one interval of steps" if columns.several else "one world over one interval of steps",
         WORLD,
         SEED,
+        *([SPECIES] if columns.several else []),
         Column("step", "i64", "step", "end of the interval"),
         Column("steps", "i32", "step", "length of the interval"),
         Column("alive", "i32", "1", "agents alive at the end"),
@@ -83,17 +135,22 @@ def population_table(food_kinds: Sequence[str], neutral_count: int) -> Table:
         Column("generation_max", "i32", "1", "largest generation of the living at the end", nullable=True),
         *(
             Column(f"{name}_{statistic}", "f32", "1", f"{word} of {name} among the living at the end", True)
-            for name in weight_names(food_kinds, neutral_count)
+            for name in columns.gene_names
             for statistic, word in (("mean", "mean"), ("sd", "standard deviation"))
         ),
         *(
             Column(f"food_{kind}", "i32", "1", f"pieces of food of kind {kind} present at the end")
-            for kind in food_kinds
+            for kind in columns.food_kinds
         ),
         *(
             Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten in the interval")
-            for kind in food_kinds
+            for kind in columns.food_kinds
         ),
+        *(
+            Column(f"eaten_{name}", "i32", "1", f"agents of the species {name} eaten in the interval")
+            for name in columns.prey
+        ),
+        *(_HUNTING if columns.several else []),
         Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
         Column("energy_eaten", "f64", "energy", "gained from food in the interval; poison counts negative"),
         Column("energy_basic", "f64", "energy", "charged for living in the interval"),
@@ -113,7 +170,7 @@ def frame_table() -> Table:
         "one agent or one food in one frame",
         WORLD,
         Column("step", "i64", "step", "steps completed when the frame was taken"),
-        Column("kind", "string", "", '"agent", or the name of the food kind'),
+        Column("kind", "string", "", "the name of the species, or of the food kind"),
         Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
         Column("x", "f32", "u", "position of the center"),
         Column("y", "f32", "u", "position of the center"),
@@ -122,22 +179,27 @@ def frame_table() -> Table:
     )
 
 
-def run_tables(food_kinds: Sequence[str], neutral_count: int) -> dict[str, Table]:
+def run_tables(columns: Columns) -> dict[str, Table]:
     """All tables of a run by name: agents, population and frames."""
     tables = (
-        agent_table(food_kinds, neutral_count),
-        population_table(food_kinds, neutral_count),
+        agent_table(columns),
+        population_table(columns),
         frame_table(),
     )
     return {table.name: table for table in tables}
 
 
-def _weight_column(name: str, food_kinds: Sequence[str]) -> Column:
-    if name in food_weight_names(food_kinds):
-        return Column(name, "f32", "1", f"reward weight for a food of kind {name.removeprefix('w_')}")
+def _gene_column(name: str, columns: Columns) -> Column:
+    meaning = "neutral marker: inherited and mutated, no effect on the reward"
     if name == "w_action":
-        return Column(name, "f32", "1", "reward weight for motor action")
-    return Column(name, "f32", "1", "neutral marker: inherited and mutated, no effect on the reward")
+        meaning = "reward weight for motor action"
+    elif name.startswith("w_see_"):
+        meaning = f"reward weight for seeing {name.removeprefix('w_see_')}"
+    elif name.removeprefix("w_") in columns.prey:
+        meaning = f"reward weight for eating a {name.removeprefix('w_')}"
+    elif name in columns.reward_names:
+        meaning = f"reward weight for a food of kind {name.removeprefix('w_')}"
+    return Column(name, "f32", "1", meaning, nullable=columns.several)
 
 
 def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:

@@ -11,17 +11,23 @@ from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import SNAPSHOT
 
-_ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays and t types)
+_ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays, t types and s species)
     "agent_id": (np.int64, "n"),
     "x": (np.float32, "n"),
     "y": (np.float32, "n"),
     "angle": (np.float32, "n"),
     "energy": (np.float32, "n"),
     "rays": (np.float32, "nrt"),
+    "species": (np.int32, "n"),
     "food_kind": (np.int32, "m"),
     "food_x": (np.float32, "m"),
     "food_y": (np.float32, "m"),
     "walls": (np.float32, "w4"),
+    "radius": (np.float32, "s"),
+    "ray_count": (np.int32, "s"),
+    "ray_length": (np.float32, "s"),
+    "ray_spread": (np.float32, "s"),
+    "mouth_spread": (np.float32, "s"),
 }
 
 
@@ -38,16 +44,19 @@ class Snapshot:
         angle: their headings [rad], 0 along +y, counter-clockwise, shape (n,).
         energy: their energies, shape (n,).
         rays: readings of their rays, shape (n, rays, types): 1 − distance / ray length for the type that is
-            hit, −1 for the others; types are agent, each food kind, wall. Without agents (0, rays, types).
+            hit, −1 for the others; types are each species, each food kind, wall. Without agents (0, rays, types).
+            Past the last ray of a species, −1.
+        species: index into `species_names`, shape (n,).
         food_kind: index into `food_kinds` of the m foods present, shape (m,).
         food_x, food_y: their positions [u], shape (m,).
         walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4).
         food_kinds: names, in the order of the config.
-        radius, food_radius: of the bodies [u].
-        ray_length: [u].
-        ray_spread: angle between the heading and the outermost ray on each side [degree].
-        mouth_spread: half-width of the mouth [degree].
-        energy_capacity: largest energy that an agent can hold.
+        food_radius: [u].
+        species_names: in the order of the config.
+        radius: of the bodies of each species [u], shape (s,).
+        ray_count, ray_length: number and length of the rays of each species, the latter in [u], shape (s,).
+        ray_spread: angle between the heading and the outermost ray on each side [degree], shape (s,).
+        mouth_spread: half-width of the mouth [degree], shape (s,).
     """
 
     world: int
@@ -63,13 +72,15 @@ class Snapshot:
     food_x: np.ndarray
     food_y: np.ndarray
     walls: np.ndarray
+    species: np.ndarray
+    radius: np.ndarray
+    ray_count: np.ndarray
+    ray_length: np.ndarray
+    ray_spread: np.ndarray
+    mouth_spread: np.ndarray
     food_kinds: tuple[str, ...]
-    radius: float = 10.0
+    species_names: tuple[str, ...] = ("agent",)
     food_radius: float = 4.0
-    ray_length: float = 200.0
-    ray_spread: float = 60.0
-    mouth_spread: float = 60.0
-    energy_capacity: float = 400.0
 
     def __post_init__(self) -> None:
         sizes: dict[str, int] = {"4": 4}
@@ -110,4 +121,5 @@ def load_snapshot(folder: Path) -> Snapshot | None:
     except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise RecordError(f"damaged snapshot {path}: {error}") from error
     scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
-    return Snapshot(**{**values, **scalars, "food_kinds": tuple(values["food_kinds"].tolist())})
+    names = {name: tuple(values[name].tolist()) for name in ("food_kinds", "species_names")}
+    return Snapshot(**{**values, **scalars, **names})

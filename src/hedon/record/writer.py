@@ -63,7 +63,7 @@ class Writer:
         founders: Founders | None = None,
     ) -> None:
         self.folder = Path(folder)
-        self.tables = run_tables(manifest.food_kinds, manifest.neutral_count)
+        self.tables = run_tables(manifest.columns)
         if parts is None:
             self._prepare(config_text, manifest, founders)
         else:

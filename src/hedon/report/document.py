@@ -9,7 +9,7 @@ from dataclasses import fields
 
 from hedon.record.column import Table
 from hedon.record.manifest import Manifest, Session
-from hedon.record.schema import FORMAT_VERSION, run_tables
+from hedon.record.schema import FORMAT_VERSION, Columns, run_tables
 from hedon.record.snapshot import Snapshot
 from hedon.report.figure import FIGURES
 from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
@@ -71,7 +71,7 @@ Means over worlds are objects with these keys:
 
 def records_page() -> str:
     """The page, as Markdown."""
-    tables = run_tables(("normal",), 1)
+    tables = run_tables(Columns(("normal",), 1))
     parts = [_HEAD]
     for table in tables.values():
         parts.append(_table_section(table))

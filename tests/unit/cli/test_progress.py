@@ -4,6 +4,7 @@ import io
 
 from hedon.cli.display.run import LineDisplay
 from hedon.experiment.plan import Moment
+from hedon.record.schema import Columns
 
 WINDOW = 1000
 ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean": 0.0, "w_action_mean": 0.0}
@@ -12,7 +13,7 @@ ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean"
 def shown(moments: list[tuple[float, int]]) -> list[str]:
     """The lines for moments (seconds, step) of a run of 100 windows."""
     stream = io.StringIO()
-    display = LineDisplay(stream, ("normal",), 0, (1,))
+    display = LineDisplay(stream, Columns(("normal",), 0), (1,))
     for seconds, step in moments:
         display.update(Moment(0, step, 100 * WINDOW, seconds, (ROW,), (None,), WINDOW))
     return stream.getvalue().splitlines()

@@ -10,31 +10,31 @@ from hedon.record.error import RecordError
 from hedon.record.manifest import Manifest, load_manifest, save_manifest
 from hedon.record.provenance import collect_provenance, git_revision
 from hedon.record.reader import open_run
-from hedon.record.schema import agent_table, run_tables, weight_names
+from hedon.record.schema import Columns, agent_table, run_tables
 from hedon.record.snapshot import load_snapshot, save_snapshot
 
 
 def test_names_follow_the_genome() -> None:
-    assert weight_names(("normal", "poison"), 2) == (
+    assert Columns(("normal", "poison"), 2).gene_names == (
         "w_normal",
         "w_poison",
         "w_action",
         "neutral_1",
         "neutral_2",
     )
-    names = [column.name for column in agent_table(("normal", "poison"), 2).columns]
+    names = [column.name for column in agent_table(Columns(("normal", "poison"), 2)).columns]
     assert names[-5:] == ["w_normal", "w_poison", "w_action", "neutral_1", "neutral_2"]
     assert names.index("eaten_normal") + 1 == names.index("eaten_poison")
 
 
 def test_every_column_is_documented() -> None:
-    for table in run_tables(("normal",), 1).values():
+    for table in run_tables(Columns(("normal",), 1)).values():
         assert all(column.meaning for column in table.columns)
 
 
 def test_a_food_kind_that_repeats_a_column_is_refused() -> None:
     with pytest.raises(RecordError, match="w_action appear twice"):
-        run_tables(("action",), 1)
+        run_tables(Columns(("action",), 1))
 
 
 def test_weights_split_into_rewards_and_markers(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, holds_run, part_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
-from hedon.record.schema import run_tables
+from hedon.record.schema import Columns, run_tables
 from hedon.record.writer import Writer
 
 MANIFEST = Manifest(food_kinds=("normal",), neutral_count=1, seeds=(1,), steps_asked=10_000)
@@ -28,7 +28,7 @@ def test_rows_come_back_as_they_were_given(tmp_path: Path) -> None:
         writer.replace_living(living)
     run = open_run(tmp_path / "run")
     agents, population = run.agents(), run.population()
-    assert agents.schema == run_tables(("normal",), 1)["agents"].polars_schema
+    assert agents.schema == run_tables(Columns(("normal",), 1))["agents"].polars_schema
     assert population["energy_total"].to_list() == [row["energy_total"] for row in rows]
     assert agents["death_step"].null_count() == agents.height == len(living["agent_id"])
     assert agents["parent_id"].null_count() == int((living["parent_id"] == -1).sum())

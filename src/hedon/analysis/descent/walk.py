@@ -28,7 +28,10 @@ class MutationLaw:
 
     Attributes:
         mean, sd: of the founders' normal distribution.
-        scale: of the Cauchy noise that each birth adds.
+        noise: name of the law of the noise that each birth adds.
+        df: degrees of freedom of the noise, where its law has them.
+        probability: that a birth adds any.
+        scale: of the noise.
         limit: weights are clipped to ± this.
         frozen: whether the noise is the same for all births of equal `birth_number`.
         window: length of a window [step].
@@ -42,6 +45,21 @@ class MutationLaw:
     frozen: bool
     window: int
     late: bool
+    noise: str = "cauchy"
+    df: float = 2.0
+    probability: float = 1.0
+
+    def draw(self, rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.float64]:
+        """Noise of scale 1."""
+        if self.noise == "student_t":
+            noise = rng.standard_t(self.df, shape)
+        elif self.noise == "normal":
+            noise = rng.standard_normal(shape)
+        elif self.noise == "uniform":
+            noise = rng.uniform(-1.0, 1.0, shape)
+        else:
+            noise = rng.standard_cauchy(shape)
+        return noise if self.probability >= 1.0 else noise * (rng.random(shape) < self.probability)
 
 
 def mutation_law(config: Config, gene: GeneConfig | None = None) -> MutationLaw:
@@ -56,6 +74,9 @@ def mutation_law(config: Config, gene: GeneConfig | None = None) -> MutationLaw:
         frozen=genome.mutation_noise == "frozen",
         window=config.learning.rollout_steps,
         late=config.birth.inheritance == "at_window_end",
+        noise=genome.mutation_law,
+        df=genome.mutation_df,
+        probability=genome.mutation_probability,
     )
 
 
@@ -127,9 +148,9 @@ def _walked(
         gene = np.empty((len(nodes), count), np.float32)
         founders = rng.normal(law.mean, law.sd, (len(levels[0]), count))
         gene[levels[0]] = np.clip(founders, -law.limit, law.limit)
-        table = rng.standard_cauchy((int(number.max()) + 1 if law.frozen else 0, count))
+        table = law.draw(rng, (int(number.max()) + 1 if law.frozen else 0, count))
         for level in levels[1:]:
-            noise = table[number[level]] if law.frozen else rng.standard_cauchy((len(level), count))
+            noise = table[number[level]] if law.frozen else law.draw(rng, (len(level), count))
             gene[level] = np.clip(gene[parent[level]] + law.scale * noise, -law.limit, law.limit)
         yield gene
 
@@ -154,12 +175,12 @@ def lineages(
     shape = (worlds, count, genes)
     values = np.empty((mutations + 1, *shape), np.float32)
     values[0] = np.clip(rng.normal(law.mean, law.sd, shape), -law.limit, law.limit)
-    table = rng.standard_cauchy((worlds, births if law.frozen else 0, genes))
+    table = law.draw(rng, (worlds, births if law.frozen else 0, genes))
     for i in range(mutations):
         if law.frozen:
             noise = np.take_along_axis(table, rng.integers(births, size=(worlds, count))[..., None], axis=1)
         else:
-            noise = rng.standard_cauchy(shape)
+            noise = law.draw(rng, shape)
         values[i + 1] = np.clip(values[i] + law.scale * noise, -law.limit, law.limit)
     return values
 

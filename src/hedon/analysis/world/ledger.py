@@ -69,6 +69,8 @@ def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) ->
     initial = None if agents is None else _initial(population, agents)
     total = population["energy_total"].to_numpy()
     flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
+    if "energy_hunted" in population.columns:
+        flow = flow + population["energy_hunted"].to_numpy()
     before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
     return np.abs(total - before - flow)
 

@@ -9,6 +9,7 @@ import polars as pl
 
 from hedon.analysis.world.population import extinct_step
 from hedon.config import Config, load_config
+from hedon.config.layout import layouts, of_species
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
@@ -18,13 +19,14 @@ SEED = 20240717
 
 @dataclass(frozen=True, eq=False)
 class WorldRecord:
-    """All that the records say of one world. Two records are equal only if they are the same object.
+    """All that the records say of one world, or of one species of it. Two records are equal only if they are the same object.
 
     Attributes:
-        condition: the setting that the world repeats: worlds of equal config share it.
+        condition: the setting that the world repeats: worlds of equal config share it. Where there are several
+            species, with the name of the species.
         run: name of the run's folder.
         seed: of the world.
-        config: the resolved config.
+        config: the resolved config; where there are several species, its sections are those of this one.
         food_kinds, reward_names, neutral_names: of the tables' columns, in their order.
         agents: its rows of the table `agents`, by agent_id.
         population: its rows of the table `population`, by step.
@@ -102,9 +104,9 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
         key = run.manifest.config_digest or str(run.path)
         condition = labels.setdefault(key, _label(run, set(labels.values())))
         for world in _run_worlds(run, condition):
-            before = kept.get((condition, world.seed))
+            before = kept.get((world.condition, world.seed))
             if before is None or before.last_step < world.last_step:
-                kept[condition, world.seed] = world
+                kept[world.condition, world.seed] = world
     return list(kept.values())
 
 
@@ -129,6 +131,27 @@ def generator(world: WorldRecord) -> np.random.Generator:
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
     config = load_config(str(run.path / CONFIG))
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
+    if not run.columns.several:
+        return _records(run, condition, config, agents, population, run.reward_names)
+    worlds = []
+    for name, layout in layouts(config).items():
+        own = pl.col("species") == name
+        absent = [gene for gene in run.weight_names if gene not in layout.gene_names]
+        dropped = [*absent, *(f"{gene}_{what}" for gene in absent for what in ("mean", "sd"))]
+        rewards = tuple(gene for gene in run.reward_names if gene in layout.gene_names)
+        tables = [table.filter(own).drop(dropped, strict=False) for table in (agents, population)]
+        worlds += _records(run, f"{condition}: {name}", of_species(config, name), *tables, rewards)
+    return worlds
+
+
+def _records(
+    run: Run,
+    condition: str,
+    config: Config,
+    agents: pl.DataFrame,
+    population: pl.DataFrame,
+    reward_names: tuple[str, ...],
+) -> list[WorldRecord]:
     worlds = []
     for index, seed in enumerate(run.manifest.seeds):
         mine = agents.filter(pl.col("world") == index).sort("agent_id")
@@ -144,7 +167,7 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
                 seed,
                 config,
                 run.food_kinds,
-                run.reward_names,
+                reward_names,
                 run.neutral_names,
                 mine,
                 rows,

@@ -1,5 +1,6 @@
 """Shows the progress of a run: a live table on a terminal, plain lines elsewhere."""
 
+import math
 import time
 from collections import deque
 from typing import IO, Any
@@ -11,7 +12,7 @@ from rich.text import Text
 
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.record.schema import shown_weight_names
+from hedon.record.schema import Columns
 
 FIRST_LINE_SECONDS = 1.0
 LINE_SECONDS = 10.0
@@ -57,10 +58,10 @@ def _head(moment: Moment, speed: float | None, gap: str) -> str:
 class LineDisplay:
     """Plain lines from time to time, for logs."""
 
-    def __init__(self, stream: IO[str], kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
+    def __init__(self, stream: IO[str], columns: Columns, seeds: tuple[int, ...]) -> None:
         self._stream = stream
-        self._weights = shown_weight_names(kinds, neutral_count)
-        self._seeds = seeds
+        self._weights = columns.shown_names
+        self._labels = _labels(columns, seeds)
         self._speed = _Speed()
         self._due = FIRST_LINE_SECONDS
 
@@ -77,12 +78,18 @@ class LineDisplay:
             return
         self._due = moment.seconds + LINE_SECONDS
         head = _head(moment, speed, "  ")
-        for seed, row, extinct in zip(self._seeds, moment.rows, moment.extinct, strict=True):
+        for label, row, extinct in zip(self._labels, moment.rows, moment.extinct, strict=True):
             print(
-                f"{head}  seed {seed}: {_describe(row, extinct, self._weights)}",
+                f"{head}  seed {label}: {_describe(row, extinct, self._weights)}",
                 file=self._stream,
                 flush=True,
             )
+
+
+def _labels(columns: Columns, seeds: tuple[int, ...]) -> list[str]:
+    """What each row is of: the seed of its world, and its species where there are several."""
+    species = [f" {name}" for name in columns.species] if columns.several else [""]
+    return [f"{seed}{name}" for seed in seeds for name in species]
 
 
 def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]) -> str:
@@ -90,16 +97,16 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
         return f"extinct at step {extinct:,}"
     parts = [f"{row['alive']} alive", f"{row['births']} births", f"{row['deaths']} deaths"]
     parts.append(f"energy {row['energy_mean']:.2f}")
-    parts += [f"{name} {row[f'{name}_mean']:+.2f}" for name in weights]
+    parts += [f"{name} {row[f'{name}_mean']:+.2f}" for name in weights if not math.isnan(row[f"{name}_mean"])]
     return ", ".join(parts)
 
 
 class LiveDisplay:
     """A progress bar and a table of the worlds, updated on a terminal."""
 
-    def __init__(self, console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]) -> None:
-        self._weights = shown_weight_names(kinds, neutral_count)
-        self._seeds = seeds
+    def __init__(self, console: Console, columns: Columns, seeds: tuple[int, ...]) -> None:
+        self._weights = columns.shown_names
+        self._labels = _labels(columns, seeds)
         self._speed = _Speed()
         self._live = Live(console=console, auto_refresh=False, transient=True)
         self._due = 0.0
@@ -124,8 +131,8 @@ class LiveDisplay:
         head = Text(_head(moment, speed, "   "))
         bar = ProgressBar(total=moment.steps, completed=moment.step, width=72)
         headers = ("seed", "alive", "births", "deaths", "energy", "generation", "food eaten", *self._weights)
-        worlds = list(zip(self._seeds, moment.rows, moment.extinct, strict=True))
-        ends = [f"Seed {seed} died out at step {extinct:,}." for seed, _, extinct in worlds if extinct is not None]
+        worlds = list(zip(self._labels, moment.rows, moment.extinct, strict=True))
+        ends = [f"Seed {label} died out at step {extinct:,}." for label, _, extinct in worlds if extinct is not None]
         return Group(
             head,
             bar,
@@ -137,19 +144,20 @@ class LiveDisplay:
             ),
         )
 
-    def _cells(self, seed: int, row: dict[str, Any], extinct: int | None) -> list[str]:
+    def _cells(self, label: str, row: dict[str, Any], extinct: int | None) -> list[str]:
         if extinct is not None:
-            return [str(seed), "0"]
+            return [label, "0"]
         eaten = sum(value for name, value in row.items() if name.startswith("eaten_"))
-        cells = [str(seed), *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
+        cells = [label, *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
         cells += [f"{row['energy_mean']:.2f}", f"{row['generation_mean']:.1f}", f"{eaten:,}"]
-        return cells + [f"{row[f'{name}_mean']:+.3f}" for name in self._weights]
+        means = [row[f"{name}_mean"] for name in self._weights]
+        return cells + ["" if math.isnan(mean) else f"{mean:+.3f}" for mean in means]
 
 
 def make_display(
-    console: Console, kinds: tuple[str, ...], neutral_count: int, seeds: tuple[int, ...]
+    console: Console, columns: Columns, seeds: tuple[int, ...]
 ) -> LiveDisplay | LineDisplay:
     """The display that fits the output: a terminal or not."""
     if console.is_terminal:
-        return LiveDisplay(console, kinds, neutral_count, seeds)
-    return LineDisplay(console.file, kinds, neutral_count, seeds)
+        return LiveDisplay(console, columns, seeds)
+    return LineDisplay(console.file, columns, seeds)

@@ -8,7 +8,6 @@ from rich.text import Text
 
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
-from hedon.record.schema import neutral_names
 from hedon.replication.paper import STEPS
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
@@ -102,7 +101,7 @@ def _weights(summary: Mapping[str, Any]) -> PrintedTable:
 
 def _shown(summary: Mapping[str, Any]) -> list[str]:
     """The weights, and of the neutral markers the first."""
-    neutral = neutral_names(len(summary["weights"]))
+    neutral = [name for name in summary["weights"] if name.startswith("neutral_")]
     return [name for name in summary["weights"] if name not in neutral[1:]]
 
 

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hedon.analysis.table import ResultTable, table
-from hedon.config import FIDELITIES, PRESETS
+from hedon.config import FIDELITIES
+from hedon.config.load import PAPER_PRESETS
 from hedon.config.config import PROVENANCE
 from hedon.config.dump import flatten
 from hedon.config.field import leaves
@@ -38,7 +39,7 @@ def _parameters(material: Material) -> Iterator[ResultTable]:
         mine = [row for row in rows if row["setting"].split(".")[0] in sections]
         yield table(name, f"{title} (baseline, {fidelity})", _without_empty(mine), explained + _differences(mine))
         explained = ""
-    presets = " ".join(f"{preset}: {describe_preset(preset)}" for preset in PRESETS)
+    presets = " ".join(f"{preset}: {describe_preset(preset)}" for preset in PAPER_PRESETS)
     note = f"A kind of food that is added is compared with the first kind of the baseline. {presets}"
     yield table("parameters_condition", f"What the other conditions change ({fidelity})", _conditions(fidelity), note)
 
@@ -64,7 +65,7 @@ def _conditions(fidelity: str) -> Iterator[Row]:
     """A row per setting in which a preset differs from the baseline."""
     baseline = BASELINE.config(fidelity)
     base, first = flatten(baseline), next(iter(baseline.food))
-    for preset in PRESETS:
+    for preset in PAPER_PRESETS:
         config = Arm(preset, preset).config(fidelity)
         like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
         for path, setting, value in leaves(config):

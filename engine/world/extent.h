@@ -1,0 +1,121 @@
+/// How long the arrays of a world are, and how long their contents last. `HEDON_ARRAYS` names both for each array.
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/kernel.h"
+#include "learning/network.h"
+#include "world/shape.h"
+
+namespace hedon {
+
+/// A number of rows, or of values in a row.
+enum class Extent : uint8_t {
+  one,
+  slots,
+  mixed_slots,   ///< slots, if there are several species
+  old_slots,     ///< slots, if only agents in old slots have children
+  packed_slots,  ///< slots, if some act with weights in pairs
+  species,
+  mixed_species,  ///< the same, if there are several
+  kinds,
+  foods,
+  ghosts,          ///< foods, if those just eaten are seen
+  newborns,        ///< births that wait for their genomes
+  mixed_newborns,  ///< the same, if there are several species
+  events,          ///< deaths that wait for the reader
+  walls,
+  circles,
+  cell_ends,   ///< cells of the ray grid, and one
+  candidates,  ///< for each member of a team: lists of circles that its rays may hit
+  genes,
+  params,
+  pairs,
+  hidden,
+  steps,         ///< of a rollout
+  step_actions,      ///< actions of a rollout
+  observations,      ///< cache lines of the observations of a rollout, and of the one after it
+  wide_slots,        ///< slots, if some observations are wide
+  hunted_slots,      ///< slots, if some species eats another
+  hunts,             ///< species, if some species eats another
+  meals,             ///< what an agent can eat: food kinds, and species if some species eats another
+};
+
+/// How long the contents of an array last.
+enum class Lifetime : uint8_t {
+  saved,    ///< the state: in checkpoints and digests
+  rollout,  ///< the same, for agents that will learn from the window
+  derived,  ///< follows from the saved arrays: computed again after a restore
+  waiting,  ///< for the reader of the records
+  scratch,  ///< not valid between steps
+};
+
+struct ArrayShape {
+  Extent rows, width;
+  Lifetime lifetime;
+};
+
+/// members   of the team that steps the world
+HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
+  switch (of) {
+    case Extent::one:
+      return 1;
+    case Extent::slots:
+      return shape.capacity;
+    case Extent::mixed_slots:
+      return shape.species > 1 ? shape.capacity : 0;
+    case Extent::old_slots:
+      return shape.old_slots ? shape.capacity : 0;
+    case Extent::packed_slots:
+      return shape.packed ? shape.capacity : 0;
+    case Extent::species:
+      return shape.species;
+    case Extent::mixed_species:
+      return shape.species > 1 ? shape.species : 0;
+    case Extent::kinds:
+      return shape.kinds;
+    case Extent::foods:
+      return shape.foods;
+    case Extent::ghosts:
+      return shape.ghosts ? shape.foods : 0;
+    case Extent::newborns:
+      return shape.newborns;
+    case Extent::mixed_newborns:
+      return shape.species > 1 ? shape.newborns : 0;
+    case Extent::events:
+      return shape.events;
+    case Extent::walls:
+      return shape.walls;
+    case Extent::circles:
+      return shape.circles;
+    case Extent::cell_ends:
+      return int64_t{shape.scene.columns} * shape.scene.rows + 1;
+    case Extent::candidates:
+      return members * RAY_ARCS * (int64_t{shape.circles} + 16);
+    case Extent::genes:
+      return shape.genes;
+    case Extent::params:
+      return shape.params;
+    case Extent::pairs:
+      return shape.pairs;
+    case Extent::hidden:
+      return HIDDEN;
+    case Extent::steps:
+      return shape.steps;
+    case Extent::step_actions:
+      return int64_t{shape.steps} * ACTIONS;
+    case Extent::observations:
+      return (int64_t{shape.steps} + 1) * shape.lines;
+    case Extent::wide_slots:
+      return shape.lines > NARROW_LINES ? shape.capacity : 0;
+    case Extent::hunted_slots:
+      return shape.hunting ? shape.capacity : 0;
+    case Extent::hunts:
+      return shape.hunting ? shape.species : 0;
+    case Extent::meals:
+      return shape.meals();
+  }
+  return 0;
+}
+
+}  // namespace hedon

@@ -1,0 +1,145 @@
+/// Agents that eat agents: who would eat whom, and who does.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/random.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// The eaters of a step and their prey: at most one claim for each eater, on the nearest agent at its mouth.
+struct Claims {
+  const StepScratch& scratch;
+  int32_t count = 0;
+
+  HEDON_FN void add(int32_t eater, int32_t prey, float distance) {
+    int32_t& at = scratch.claim_of[eater];
+    if (at < 0) {
+      at = count++;
+    } else if (scratch.claim_distance[at] <= distance) {
+      return;
+    }
+    scratch.claim_eater[at] = eater;
+    scratch.claim_prey[at] = prey;
+    scratch.claim_distance[at] = distance;
+  }
+
+  HEDON_FN void remove(int32_t at) {
+    --count;
+    scratch.claim_of[scratch.claim_eater[at]] = -1;
+    if (at == count) return;
+    scratch.claim_eater[at] = scratch.claim_eater[count];
+    scratch.claim_prey[at] = scratch.claim_prey[count];
+    scratch.claim_of[scratch.claim_eater[at]] = at;
+  }
+
+  /// Whether somebody has a claim on this agent.
+  HEDON_FN bool is_claimed(int32_t slot) const {
+    for (int32_t i = 0; i < count; ++i) {
+      if (scratch.claim_prey[i] == slot) return true;
+    }
+    return false;
+  }
+};
+
+/// The number by which agents are drawn when the order matters; equal for all agents of a step only by chance.
+HEDON_FN uint32_t hunt_draw(const World& world, int32_t slot) {
+  const RandomStream random{world.seed, Purpose::hunt, static_cast<uint32_t>(world.state.life[slot].agent_id),
+                            static_cast<uint32_t>(world.head().step)};
+  return random.draw(0).word[0];
+}
+
+/// From the contacts of the step: each mouth that touches prey has a claim, unless its owner still digests.
+HEDON_FN Claims find_claims(const World& world) {
+  const WorldState& state = world.state;
+  const BodyState& body = state.physics.bodies;
+  const NeighborList& list = state.physics.neighbors;
+  Claims claims{world.scratch};
+  for (int32_t i = 0; i < world.head().living_count; ++i) world.scratch.claim_of[state.living[i]] = -1;
+  for (int32_t pair = 0; pair < list.bodies.start[list.head[0].bodies]; ++pair) {
+    const uint8_t mark = list.bodies.mark[pair];
+    if (mark == 0) continue;
+    const int32_t a = list.slot[list.bodies.first[pair]], b = list.slot[list.bodies.second[pair]];
+    const Vec2 apart{body.x[b] - body.x[a], body.y[b] - body.y[a]};
+    if ((mark & FIRST) != 0 && state.digestion[a] == 0) claims.add(a, b, squared_length(apart));
+    if ((mark & SECOND) != 0 && state.digestion[b] == 0) claims.add(b, a, squared_length(apart));
+  }
+  return claims;
+}
+
+/// The claim that is settled next: of the eaters that nobody claims, or of all if each is claimed by another, the one
+/// with the least draw.
+HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
+  const StepScratch& scratch = world.scratch;
+  for (const bool only_free : {true, false}) {
+    int32_t best = -1;
+    uint32_t least = 0;
+    for (int32_t i = 0; i < claims.count; ++i) {
+      if (only_free && claims.is_claimed(scratch.claim_eater[i])) continue;
+      const uint32_t draw = hunt_draw(world, scratch.claim_eater[i]);
+      const bool first = best < 0 || draw < least ||
+                         (draw == least && world.state.life[scratch.claim_eater[i]].agent_id <
+                                               world.state.life[scratch.claim_eater[best]].agent_id);
+      if (first) {
+        best = i;
+        least = draw;
+      }
+    }
+    if (best >= 0) return best;
+  }
+  return -1;
+}
+
+/// Gives an eater its share of what its prey has left.
+HEDON_FN void gain_from(World& world, int32_t eater, int32_t prey) {
+  const SpeciesConfig& config = *world.species(eater).config;
+  const int32_t s = world.shape->species_of(prey);
+  Life& life = world.state.life[eater];
+  const double gained = static_cast<double>(config.diet.prey[s]) * world.state.life[prey].energy;
+  const double wanted = life.energy + gained, capacity = config.energy.capacity;
+  world.scratch.energy_capped[eater] += wanted > capacity ? wanted - capacity : 0.0;
+  world.state.hunt_counters[world.shape->species_of(eater)].energy_hunted += gained;
+  life.energy = wanted > capacity ? capacity : wanted;
+  life.energy_gained += gained;
+  const int32_t meal = world.shape->kinds + s;
+  world.meal(eater)[meal] += 1;
+  world.state.eaten[int64_t{eater} * world.shape->meals() + meal] += 1;
+  world.state.digestion[eater] = config.diet.digestion_steps;
+}
+
+/// Settles all claims of a step at once: who is eaten eats nothing, and its own prey stays alive. Of several eaters of
+/// one agent one gets it, by a draw, or each in full. Who starves in this step neither eats nor is eaten.
+HEDON_FN void hunt(World& world) {
+  const StepScratch& scratch = world.scratch;
+  const WorldState& state = world.state;
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    const int32_t slot = state.living[i];
+    scratch.eaten[slot] = 0;
+  }
+  Claims claims = find_claims(world);
+  for (int32_t i = claims.count - 1; i >= 0; --i) {
+    if (scratch.starved[scratch.claim_eater[i]] != 0 || scratch.starved[scratch.claim_prey[i]] != 0) claims.remove(i);
+  }
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    int32_t& clock = state.digestion[state.living[i]];
+    if (clock > 0) --clock;
+  }
+  const bool each = world.config->rules.prey_sharing == PreySharing::each;
+  while (claims.count > 0) {
+    const int32_t at = next_claim(world, claims);
+    const int32_t eater = scratch.claim_eater[at], prey = scratch.claim_prey[at];
+    scratch.eaten[prey] = 1;
+    gain_from(world, eater, prey);
+    claims.remove(at);
+    for (int32_t i = claims.count - 1; i >= 0; --i) {
+      if (i >= claims.count) continue;
+      const bool rival = scratch.claim_prey[i] == prey;
+      if (rival && each && !claims.is_claimed(scratch.claim_eater[i])) gain_from(world, scratch.claim_eater[i], prey);
+      if (rival || scratch.claim_eater[i] == prey) claims.remove(i);
+    }
+  }
+}
+
+}  // namespace hedon

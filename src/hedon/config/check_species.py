@@ -1,0 +1,133 @@
+"""Contradictions in what makes a species, and between the species of a world."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+from hedon.config.config import Config
+from hedon.config.layout import WALL, chosen
+from hedon.config.problem import Problem, format_value, nearest
+from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
+
+MAX_TOUCH_BITS = 128
+"""Most types times touch sectors that the engine has room for."""
+MAX_COVERAGE = 0.45
+"""Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
+
+
+def species_problems(config: Config) -> Iterator[Problem]:
+    """Yields what is wrong with a species, or with several together."""
+    yield from _names(config)
+    for name, species in config.agents.items():
+        path = f"species.{name}." if config.species else ""
+        yield from _rules(config, species, path)
+        yield from _body(config, species, path)
+        yield from _life(config, species, path)
+        yield from _lists(config, species, path)
+        yield from _sight(config, species, path)
+    yield from _nobody(config)
+    yield from _crowd(config)
+    yield from _collisions(config)
+
+
+def _names(config: Config) -> Iterator[Problem]:
+    if len(config.species) > MAX_SPECIES:
+        yield Problem("species", f"there must be at most {MAX_SPECIES} species, not {len(config.species)}")
+    for name in config.species:
+        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in (*config.food, WALL, "action"):
+            rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
+            yield Problem(f"species.{name}", f"{rule} and be no kind of food and not {WALL} or action")
+
+
+def _rules(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    """A species has no rules of its own where one rule holds for the world."""
+    for rule in RULES:
+        section, setting = rule.split(".")
+        own, common = getattr(getattr(species, section), setting), getattr(getattr(config, section), setting)
+        if own != common:
+            yield Problem(path + rule, f"holds for the whole world: set it in [{section}]", format_value(own))
+
+
+def _body(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    arena, motor = config.arena, species.motor
+    if motor.min_force >= motor.max_force:
+        rule = f"must be below motor.max_force = {motor.max_force:g}"
+        yield Problem(f"{path}motor.min_force", rule, format_value(motor.min_force))
+    if 2 * max(species.body.radius, config.body.food_radius) >= min(arena.width, arena.height):
+        yield Problem(f"{path}body.radius", "a body does not fit into the arena", format_value(species.body.radius))
+    touched = len(chosen(config, species.body.collides))
+    if touched * species.sensor.touch_sectors > MAX_TOUCH_BITS:
+        most = MAX_TOUCH_BITS // touched
+        rule = f"must be at most {most} with {touched} types to touch"
+        yield Problem(f"{path}sensor.touch_sectors", rule, format_value(species.sensor.touch_sectors))
+
+
+def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    learning, birth, energy = species.learning, species.birth, species.energy
+    count, capacity = species.population.initial_count, species.population.capacity
+    if count > capacity:
+        rule = f"must be at most population.capacity = {capacity}"
+        yield Problem(f"{path}population.initial_count", rule, format_value(count))
+    if birth.distance_unit == "arena_width" and birth.distance_sd > 1:
+        rule = 'must be at most 1 with birth.distance_unit = "arena_width"'
+        yield Problem(f"{path}birth.distance_sd", rule, format_value(birth.distance_sd))
+    if energy.initial > energy.capacity:
+        rule = f"must be at most energy.capacity = {energy.capacity:g}"
+        yield Problem(f"{path}energy.initial", rule, format_value(energy.initial))
+    if learning.rollout_steps % learning.minibatch_size:
+        rule = f"must divide learning.rollout_steps = {learning.rollout_steps}"
+        yield Problem(f"{path}learning.minibatch_size", rule, format_value(learning.minibatch_size))
+
+
+def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    everything = [*config.agents, *config.food]
+    yield from _known(f"{path}sensor.sees", species.sensor.sees, everything)
+    yield from _known(f"{path}body.collides", species.body.collides, everything)
+    yield from _known(f"{path}diet.eats", [name for name, _ in species.diet.eats], [*config.food, *config.species])
+    for name, share in species.diet.eats:
+        if name in config.species and not 0 <= share <= 1:
+            yield Problem(f"{path}diet.eats", f"the share of a {name} must be from 0 to 1", format_value(share))
+        if name in everything and name not in chosen(config, species.body.collides):
+            yield Problem(f"{path}diet.eats", f"it passes through {name}, so it cannot eat it: add it to body.collides")
+
+
+def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    seen = chosen(config, species.sensor.sees)
+    for name in species.reward.see:
+        if name not in seen:
+            rule = "it does not see this: it sees " + ", ".join(seen)
+            yield Problem(f"{path}reward.see.{name}", rule, nearest=nearest(name, seen))
+
+
+def _known(path: str, names: Sequence[str], known: Sequence[str]) -> Iterator[Problem]:
+    for name in names:
+        if name not in known and name != EVERYTHING:
+            rule = "must be names of " + ", ".join(known) + f', or "{EVERYTHING}"'
+            yield Problem(path, rule, format_value(name), nearest(name, known))
+
+
+def _nobody(config: Config) -> Iterator[Problem]:
+    if all(species.population.initial_count == 0 for species in config.agents.values()):
+        name = f"species.{next(iter(config.species))}." if config.species else ""
+        yield Problem(f"{name}population.initial_count", "there must be at least one founder", "0")
+
+
+def _crowd(config: Config) -> Iterator[Problem]:
+    """Founders of all species together must fit into the arena."""
+    area, room = 0.0, MAX_COVERAGE * config.arena.width * config.arena.height
+    for name, species in config.agents.items():
+        each = math.pi * species.body.radius**2
+        most = math.floor((room - area) / each)
+        area += species.population.initial_count * each
+        if area > room:
+            path = f"species.{name}.population.initial_count" if config.species else "population.initial_count"
+            rule = f"too many to place: the arena has room for {most}"
+            yield Problem(path, rule, format_value(species.population.initial_count))
+
+
+def _collisions(config: Config) -> Iterator[Problem]:
+    """Two species pass through one another, or both collide."""
+    for name, species in config.species.items():
+        for other, theirs in config.species.items():
+            if other in chosen(config, species.body.collides) and name not in chosen(config, theirs.body.collides):
+                yield Problem(f"species.{other}.body.collides", f"must have {name}, since {name} collides with {other}")

@@ -1,0 +1,83 @@
+"""Species: everything that makes a kind of agent, in the sections that a config has anyway."""
+
+from dataclasses import dataclass, field, fields
+from typing import Annotated, Literal
+
+from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
+from hedon.config.energy import EnergyConfig
+from hedon.config.evolution import GenomeConfig, RewardConfig
+from hedon.config.field import OURS, Doc, Range
+from hedon.config.learning import LearningConfig
+from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.population import PopulationConfig
+
+MAX_SPECIES = 4
+"""Most species that the engine has room for."""
+ONLY = "agent"
+"""The name of the species of a config without `[species]`."""
+EVERYTHING = "*"
+"""In a list of names, what stands for all of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class DietConfig:
+    """What a species eats."""
+
+    eats: Annotated[
+        tuple[tuple[str, float], ...],
+        Doc(
+            'kinds of food, each with a factor on its energy, and species, each with the share of its energy that is '
+            'gained; "*" for every kind of food. What is not named is touched, but not eaten',
+            "",
+            OURS,
+            Range(max_items=12),
+        ),
+    ] = ((EVERYTHING, 1.0),)
+    digestion_steps: Annotated[
+        int,
+        Doc("after eating an agent, for how long no other is eaten", "step", OURS, Range(ge=0, le=1_000_000)),
+    ] = 0
+    prey_sharing: Annotated[
+        Literal["one", "each"],
+        Doc(
+            "who gains by an agent that several eat in the same step: one of them, by a draw, or each in full",
+            "",
+            OURS + '; the code of the sequel has "each"',
+        ),
+    ] = "one"
+
+
+@dataclass(frozen=True, slots=True)
+class SpeciesConfig:
+    """The sections that describe one species. `[species.NAME.energy]` changes what differs from `[energy]`, and so on."""
+
+    body: BodyConfig = field(default_factory=BodyConfig)
+    motor: MotorConfig = field(default_factory=MotorConfig)
+    sensor: SensorConfig = field(default_factory=SensorConfig)
+    population: PopulationConfig = field(default_factory=PopulationConfig)
+    diet: DietConfig = field(default_factory=DietConfig)
+    energy: EnergyConfig = field(default_factory=EnergyConfig)
+    hazard: HazardConfig = field(default_factory=HazardConfig)
+    birth: BirthConfig = field(default_factory=BirthConfig)
+    genome: GenomeConfig = field(default_factory=GenomeConfig)
+    reward: RewardConfig = field(default_factory=RewardConfig)
+    learning: LearningConfig = field(default_factory=LearningConfig)
+
+
+PER_SPECIES = tuple(each.name for each in fields(SpeciesConfig))
+"""The sections of a config that describe every species."""
+
+RULES = (
+    "body.food_radius",
+    "sensor.eaten_food",
+    "sensor.mouths",
+    "diet.prey_sharing",
+    "birth.order",
+    "birth.inheritance",
+    "birth.parents",
+    "birth.heading",
+    "genome.founders",
+    "genome.mutation_noise",
+    "learning.rollout_steps",
+)
+"""Settings in these sections that hold for the whole world: a species cannot have its own."""
