@@ -7,7 +7,7 @@ moved them, and says what the world is after the step. Physics, senses and learn
 
 import math
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,6 @@ from reference_draw import PURPOSES, cauchy, fine_uniform, normals, philox, unif
 
 from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
 
 FOUNDING_TRIES = 20_000
 COUNTED = (
@@ -117,11 +116,22 @@ def _rounded(value: Any) -> Any:
     return float(np.float32(value)) if isinstance(value, float) else value
 
 
+def _plain(config: Config) -> dict[str, Any]:
+    """The sections of a config with one species, its kinds of food as a list."""
+    plain = asdict(config)
+    foods = list(plain["food"].values())
+    plain["genome"]["food"] = [food["gene"] for food in foods]
+    plain["food"] = foods
+    scale = config.arena.width if config.birth.distance_unit == "arena_width" else 1.0
+    plain["birth"]["distance_sd"] = (config.birth.distance_sd * scale,) * 2
+    return plain
+
+
 class Model:
     """The rules of one world under a config and a seed."""
 
     def __init__(self, config: Config, seed: int) -> None:
-        self.config = _rounded(engine_config(config))
+        self.config = _rounded(_plain(config))
         self.seed = seed
         self.walls = walls(config.arena).astype(float).tolist()
         self.outline = self.walls[: outer_count(config.arena)]

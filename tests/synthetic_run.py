@@ -239,4 +239,10 @@ def synthetic_snapshot(food_kinds: tuple[str, ...] = ("normal",), agents: int = 
         food_y=places[agents:, 1].astype(np.float32),
         walls=np.concatenate([corners, np.roll(corners, -1, axis=0)], axis=1),
         food_kinds=food_kinds,
+        species=np.zeros(agents, np.int32),
+        radius=np.array([10.0]),
+        ray_count=np.array([rays]),
+        ray_length=np.array([200.0]),
+        ray_spread=np.array([60.0]),
+        mouth_spread=np.array([60.0]),
     )

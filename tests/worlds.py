@@ -54,4 +54,6 @@ def set_scene(
     kind = np.zeros(len(food), np.int32) if kinds is None else np.asarray(kinds, np.int32)
     x, y, angle = (np.ascontiguousarray(column) for column in body.T)
     food_x, food_y = (np.ascontiguousarray(column) for column in food.T)
-    simulation.engine.set_scene(0, x, y, angle, np.full(len(body), energy, np.float32), np.zeros(len(body), np.int32), food_x, food_y, kind)
+    simulation.engine.set_scene(
+        0, x, y, angle, np.full(len(body), energy, np.float32), np.zeros(len(body), np.int32), food_x, food_y, kind
+    )

@@ -83,7 +83,7 @@ struct BatchArrays {
       }
       if (touches < 64 && (one.touch >> touches) != 0) throw nb::value_error("observation: touch out of range");
     }
-    batch = {observation.first(),          action.data(), log_prob.data(), first.data(), second.data(), nullptr,
+    batch = {observation.first(),        action.data(), log_prob.data(), first.data(), second.data(), nullptr,
              static_cast<int32_t>(count)};
   }
 };
@@ -126,7 +126,8 @@ struct LearnerArrays {
 
 BytesOut pack(FloatRows ray, nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu> ray_type,
               nb::ndarray<const uint64_t, nb::c_contig, nb::device::cpu> touch, FloatRows dense) {
-  const size_t count = ray.shape(0), rays = ray.shape(1), words = touch.ndim() == 2 ? touch.shape(1) : 1, width = dense.shape(1);
+  const size_t count = ray.shape(0), rays = ray.shape(1), words = touch.ndim() == 2 ? touch.shape(1) : 1,
+               width = dense.shape(1);
   constexpr size_t NARROW = MAX_DENSE, MOST = MAX_DENSE + MAX_EXTRA_DENSE;
   if (rays > PACKED_RAYS || ray_type.shape(1) != rays) throw nb::value_error("ray: at most 32 columns, as ray_type");
   if (width > MOST) throw nb::value_error("dense: at most 20 columns");
@@ -258,9 +259,10 @@ void bind_learning(nb::module_& module) {
   learning.def(
       "param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
       "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
-  learning.def("pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
-               "Packed observations (n, 192), or (n, 256) if they are wide, from reading + 1 and type of each ray, touch bits "
-               "(n, 1 or 2) and dense entries.");
+  learning.def(
+      "pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
+      "Packed observations (n, 192), or (n, 256) if they are wide, from reading + 1 and type of each ray, touch bits "
+      "(n, 1 or 2) and dense entries.");
   learning.def("unpack", unpack_all, nb::arg("shape"), nb::arg("observation"), "Full observations (n, size).");
   learning.def("pair_weights", pair_all, nb::arg("first"), nb::arg("second"),
                "Two weights in the bits of each float: the lower 16 are the second in bfloat16, the whole is near the "

@@ -89,6 +89,7 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   std::vector<int32_t> species;
   for (const int64_t slot : rows) species.push_back(from.shape->species_of(static_cast<int32_t>(slot)));
   out["species"] = copy_array(std::move(species), {rows.size()});
+  out["cause"] = copy_array(std::vector<int32_t>(rows.size(), -1), {rows.size()});
   return out;
 }
 

@@ -25,7 +25,7 @@ struct GeneConfig {
   float mutation_scale;
   float mutation_df;           ///< degrees of freedom of student_t
   float mutation_probability;  ///< that the gene mutates at a birth
-  float limit;  ///< values are clipped to ± this
+  float limit;                 ///< values are clipped to ± this
 
   HEDON_FIELDS(GeneConfig, initial_mean, initial_sd, mutation_law, mutation_scale, mutation_df, mutation_probability,
                limit)

@@ -42,9 +42,9 @@ HEDON_FN float mutation_noise(const GeneConfig& gene, const Random4& bits) {
   return 0.0f;
 }
 
-/// A child's genome: the parent's plus noise of each gene's law and `mutation_scale`, clipped to its limit. `parent` and
-/// `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on the
-/// seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
+/// A child's genome: the parent's plus noise of each gene's law and `mutation_scale`, clipped to its limit. `parent`
+/// and `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on
+/// the seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
 /// noise.
 HEDON_FN void inherit(const GenomeConfig& config, uint64_t seed, uint32_t child_id, BirthNumber number,
                       const float* parent, float* child) {

@@ -5,16 +5,16 @@
 
 #include "base/device.h"
 #include "evolution/config.h"
-#include "learning/observation.h"
 
 namespace hedon {
 
 /// What rewards may be paid for in one step of one agent.
 struct RewardInputs {
-  const int32_t* eaten;  ///< foods of each kind, then agents of each species
-  float force;           ///< Euclidean norm of the two applied forces
-  float max_force;       ///< the norm of both motors at full force; not used if the action is not normalized
-  const PackedObservation* seen;  ///< what it acted on
+  const int32_t* eaten;     ///< foods of each kind, then agents of each species
+  float force;              ///< Euclidean norm of the two applied forces
+  float max_force;          ///< the norm of both motors at full force; not used if the action is not normalized
+  const float* ray;         ///< what it acted on: reading + 1 of each ray, 0 where it met nothing (rays)
+  const uint8_t* ray_type;  ///< the channel that each ray met (rays)
   int32_t rays;
 };
 
@@ -22,8 +22,8 @@ struct RewardInputs {
 HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) {
   float sum = 0.0f, largest = 0.0f;
   for (int32_t r = 0; r < inputs.rays; ++r) {
-    if (inputs.seen->ray_type[r] != channel || !(inputs.seen->ray[r] > 0.0f)) continue;
-    const float reading = inputs.seen->ray[r] - 1.0f;
+    if (inputs.ray_type[r] != channel || !(inputs.ray[r] > 0.0f)) continue;
+    const float reading = inputs.ray[r] - 1.0f;
     sum += reading;
     largest = reading > largest ? reading : largest;
   }

@@ -11,8 +11,8 @@ namespace {
 
 /// The samples `order[0 .. count)` of a block: pointers to their observations, and the data for the loss, filled up to
 /// a multiple of 16 by repeating the last one with share 0.
-HEDON_INLINE void gather(const ObservationShape& shape, const PpoBatch& batch, const int32_t* order, int count, float share, BlockSamples& block,
-                         const PackedObservation** observation) {
+HEDON_INLINE void gather(const ObservationShape& shape, const PpoBatch& batch, const int32_t* order, int count,
+                         float share, BlockSamples& block, const PackedObservation** observation) {
   const int padded = (count + LANES - 1) / LANES * LANES;
   for (int s = 0; s < padded; ++s) {
     const int32_t i = order[s < count ? s : count - 1];

@@ -33,12 +33,12 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   steps,         ///< of a rollout
-  step_actions,      ///< actions of a rollout
-  observations,      ///< cache lines of the observations of a rollout, and of the one after it
-  wide_slots,        ///< slots, if some observations are wide
-  hunted_slots,      ///< slots, if some species eats another
-  hunts,             ///< species, if some species eats another
-  meals,             ///< what an agent can eat: food kinds, and species if some species eats another
+  step_actions,  ///< actions of a rollout
+  observations,  ///< cache lines of the observations of a rollout, and of the one after it
+  wide_slots,    ///< slots, if some observations are wide
+  hunted_slots,  ///< slots, if some species eats another
+  hunts,         ///< species, if some species eats another
+  meals,         ///< what an agent can eat: food kinds, and species if some species eats another
 };
 
 /// How long the contents of an array last.

@@ -39,7 +39,8 @@ HEDON_FN bool is_eaten(const World& world, int32_t slot) {
 HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
   const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
-  world.scratch.dies[slot] = world.scratch.starved[slot] != 0 || is_eaten(world, slot) ||
+  world.scratch.dies[slot] =
+      world.scratch.starved[slot] != 0 || is_eaten(world, slot) ||
       world.scratch.death_draw[slot] < hazard(world.species(slot).config->hazard, age, life.energy);
 }
 
@@ -79,8 +80,9 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
 /// One agent's reward for this step, into its rollout.
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
-  const RewardInputs inputs{world.meal(slot), applied_force(world, slot), species.max_force,
-                            &world.observation(slot, t), species.config->sensor.ray_count};
+  const PackedObservation& seen = world.observation(slot, t);
+  const RewardInputs inputs{world.meal(slot), applied_force(world, slot),      species.max_force, seen.ray,
+                            seen.ray_type,    species.config->sensor.ray_count};
   const float r = reward(species.config->reward, world.genome(slot), inputs);
   world.state.reward[slot * int64_t{world.shape->steps} + t] = r;
   world.state.life[slot].reward += r;
@@ -93,8 +95,9 @@ HEDON_FN void draw_fates(World& world, int32_t slot) {
   const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
                             static_cast<uint32_t>(world.head().step)};
   const Random4 bits = random.draw(0);
-  scratch.breeds[slot] = scratch.starved[slot] == 0 && !is_eaten(world, slot) && to_fine_uniform(bits.word[0], bits.word[1]) <
-                                                           birth_rate(world.species(slot).config->birth, life.energy);
+  scratch.breeds[slot] =
+      scratch.starved[slot] == 0 && !is_eaten(world, slot) &&
+      to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(world.species(slot).config->birth, life.energy);
   scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
   decide_death(world, slot);
 }

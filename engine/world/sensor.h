@@ -22,7 +22,8 @@ HEDON_FN void note_start(World& world, int32_t slot) {
   scratch.start_y[slot] = body.y[slot];
 }
 
-/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the scene.
+/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the
+/// scene.
 HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservation& out) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;

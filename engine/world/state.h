@@ -170,9 +170,9 @@ struct WorldState {
                (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),
                (free, slots, one, derived), (free_count, species, one, derived), (life, slots, one, saved),
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
-               (physics, one, one, saved), (species, mixed_slots, one, saved),
-               (touch_more, wide_slots, one, saved), (digestion, hunted_slots, one, saved),
-               (hunt_counters, hunts, one, saved), (eaten_by, mixed_species, meals, saved), (params, slots, params, saved),
+               (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
+               (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
+               (eaten_by, mixed_species, meals, saved), (params, slots, params, saved),
                (folded_bias, slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
                (first_moment, slots, params, saved), (second_moment, slots, params, saved),
                (updates, slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
@@ -180,8 +180,8 @@ struct WorldState {
                (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
                (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
                (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
-               (event_species, events, one, waiting), (event_cause, events, one, waiting), (event_eaten, events, meals, waiting),
-               (event_genome, events, genes, waiting))
+               (event_species, events, one, waiting), (event_cause, events, one, waiting),
+               (event_eaten, events, meals, waiting), (event_genome, events, genes, waiting))
 };
 
 }  // namespace hedon

@@ -45,11 +45,11 @@ struct StepScratch {
   Array<int32_t> meal;       ///< foods, and agents of each species, eaten in this step
   Array<double> death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
-  Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
-  Array<Finding> finding;                ///< of the audit at the end of a window
-  Array<int32_t> eater;                  ///< slot of the agent that gets the food, -1 for none
-  Array<float> eater_distance;           ///< squared
-  Array<uint8_t> eaten;                  ///< 1 where an agent was eaten in this step
+  Array<uint8_t> starved, breeds, dies;    ///< 1 where it does
+  Array<Finding> finding;                  ///< of the audit at the end of a window
+  Array<int32_t> eater;                    ///< slot of the agent that gets the food, -1 for none
+  Array<float> eater_distance;             ///< squared
+  Array<uint8_t> eaten;                    ///< 1 where an agent was eaten in this step
   Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
   Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
   Array<float> claim_distance;             ///< squared
@@ -68,7 +68,8 @@ struct StepScratch {
                (finding, slots, one, scratch), (eater, foods, one, scratch), (eater_distance, foods, one, scratch),
                (eaten, hunted_slots, one, scratch), (claim_eater, hunted_slots, one, scratch),
                (claim_prey, hunted_slots, one, scratch), (claim_of, hunted_slots, one, scratch),
-               (claim_distance, hunted_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
+               (claim_distance, hunted_slots, one, scratch), (parent, slots, one, scratch),
+               (parent_key, slots, one, scratch))
 };
 
 struct World {

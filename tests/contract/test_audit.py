@@ -88,7 +88,7 @@ def test_a_slot_held_twice_is_named(world):
         world.engine.save(0)
 
 
-@pytest.mark.parametrize(("path", "index", "value"), [("free", 0, 0), ("alive", 150, 1), ("head.free_count", 0, 3)])
+@pytest.mark.parametrize(("path", "index", "value"), [("free", 0, 0), ("alive", 150, 1), ("free_count", 0, 3)])
 def test_slots_that_do_not_fit_are_named(world, path, index, value):
     poke(world, path, index, value)
     with pytest.raises(EngineError, match="slots_inconsistent"):

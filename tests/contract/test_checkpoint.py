@@ -8,14 +8,13 @@ LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 WINDOW = 64
 
 # How each array of the state gets into a checkpoint. An array that stands nowhere here would be forgotten.
-DERIVED = {"alive", "living", "free", "folded_bias", "packed_weights"}
-TAKEN_BY_READER = {"event", "event_eaten", "event_genome"}
+DERIVED = {"alive", "living", "free", "free_count", "folded_bias", "packed_weights"}
+TAKEN_BY_READER = {"event", "event_species", "event_cause", "event_eaten", "event_genome"}
 FROM_CONFIG = {"physics.walls"}
 IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}
 SAVED_AS = {
     "physics.bodies": "body",
     "physics.circles": "food",
-    "newborn_genome": "newborn.genome",
     "fault": None,
 }
 
@@ -156,11 +155,13 @@ def test_every_array_of_the_state_is_saved_or_known_to_follow_from_others():
     engine.run(WINDOW + 1)
     saved = set(engine.save(0))
     for path in engine.view_names():
+        if engine.view(0, path).size == 0:  # of a rule that this world does not have
+            continue
         if path.split(".")[0] in DERIVED | TAKEN_BY_READER or path.startswith(tuple(FROM_CONFIG | IMPULSES)):
             continue
         for prefix, name in SAVED_AS.items():
             if path.startswith(prefix):
                 path = None if name is None else path.replace(prefix, name)
                 break
-        derived = path in (None, "head.free_count", "head.event_count", "head.reserved", "food.present")
+        derived = path in (None, "head.event_count", "food.present")
         assert derived or path in saved, path

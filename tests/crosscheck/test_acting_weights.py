@@ -86,7 +86,7 @@ def test_a_world_acts_by_its_own_weights_rounded(kernel: str):
     params = world.view("params")[world.living]
     count = params.shape[1] - AFTER_W2
     read = as_read(params)[:, :count].reshape(len(params), -1, 2, 16)
-    words = world.view("paired_weights")[world.living].reshape(len(params), -1, 16)
+    words = world.view("packed_weights")[world.living].reshape(len(params), -1, 16)
     matrices = np.ones(len(read[0]), bool)
     matrices[(count - HIDDEN * (HIDDEN + 1)) // 32 :][:2] = False  # the first bias is not read from here
     for got, wanted in zip(unpair(words), (read[:, :, 0], read[:, :, 1]), strict=True):
@@ -98,7 +98,7 @@ def test_a_world_acts_by_its_own_weights_rounded(kernel: str):
 
 def test_float32_reads_the_parameters_themselves():
     simulation = make_simulation(*QUICK, 'learning.acting_weights="float32"')
-    assert simulation.worlds[0].view("paired_weights").size == 0
+    assert simulation.worlds[0].view("packed_weights").size == 0
     assert simulation.engine.bytes_per_world < make_simulation(*QUICK).engine.bytes_per_world
 
 

@@ -107,7 +107,7 @@ def read_world(simulation: Simulation) -> World:
     head = simulation.engine.head(0)
     counters = {name: world.counters[name] for name in COUNTED}
     genome, old = world.view("genome").reshape(-1, rows["genome"].shape[1]).astype(float), np.zeros(0, bool)
-    free = world.view("free")[: head["free_count"]].tolist()
+    free = world.view("free")[: world.view("free_count")[0]].tolist()
     vacancies = [Vacancy(genome[slot]) for slot in free]
     if world.config.birth.parents == "old_slots":
         old = world.view("old_slot") != 0

@@ -43,7 +43,9 @@ def choose_species(text: str | None, config: Config) -> str | None:
     if text is not None and text not in known:
         there = ", ".join(known) if known else "the condition has only one, without a name"
         near = nearest(text, known)
-        raise AssayError(f"--species {brief(text)}: no such species ({there})" + (f"; did you mean {near}?" if near else ""))
+        raise AssayError(
+            f"--species {brief(text)}: no such species ({there})" + (f"; did you mean {near}?" if near else "")
+        )
     return text if text is not None else next(iter(known), None)
 
 

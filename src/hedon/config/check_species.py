@@ -116,6 +116,8 @@ def _crowd(config: Config) -> Iterator[Problem]:
     """Founders of all species together must fit into the arena."""
     area, room = 0.0, MAX_COVERAGE * config.arena.width * config.arena.height
     for name, species in config.agents.items():
+        if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
+            return  # that is said already
         each = math.pi * species.body.radius**2
         most = math.floor((room - area) / each)
         area += species.population.initial_count * each

@@ -56,7 +56,7 @@ class Config:
 
     @property
     def agents(self) -> dict[str, SpeciesConfig]:
-        """Every species by name, in order; without `[species]` there is one, which the sections of the config describe."""
+        """Every species by name, in order; without `[species]` there is one, which the config's sections describe."""
         if self.species:
             return self.species
         return {ONLY: SpeciesConfig(**{name: getattr(self, name) for name in PER_SPECIES})}

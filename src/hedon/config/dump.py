@@ -66,7 +66,8 @@ def dump_toml(config: Config, section: str | None = None) -> str:
 
 def section_paths(config: Config) -> list[str]:
     """The sections that `dump_toml` can write separately."""
-    return [*sections(Config), *(f"food.{kind}" for kind in config.food)]
+    shown = [name for name in sections(Config) if name != "species" or config.species]
+    return [*shown, *(f"food.{kind}" for kind in config.food), *(f"species.{name}" for name in config.species)]
 
 
 def flatten(config: Config) -> dict[str, Any]:

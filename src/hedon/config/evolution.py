@@ -66,7 +66,11 @@ class GenomeConfig:
     ] = "independent"
     mutation_law: Annotated[
         Literal["cauchy", "student_t", "normal", "uniform"],
-        Doc("law of the noise added at birth; mutation_scale is its scale, or the largest noise if it is uniform", "", PAPER),
+        Doc(
+            "law of the noise added at birth; mutation_scale is its scale, or the largest noise if it is uniform",
+            "",
+            PAPER,
+        ),
     ] = "cauchy"
     mutation_df: Annotated[
         float,

@@ -173,7 +173,8 @@ def places(section: type, name: str, path: str = "") -> Iterator[str]:
         below = f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
         if name in settings(inner.type):
             yield below + name
-        yield from places(inner.type, name, below)
+        if inner_name != "species":  # whose sections are those of the config once more
+            yield from places(inner.type, name, below)
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:

@@ -101,9 +101,7 @@ def of_species(config: Config, name: str) -> Config:
 
 def with_genome(config: Config, **changes: Any) -> Config:
     """A config with other settings of `[genome]`, in all of its species."""
-    species = {
-        name: replace(each, genome=replace(each.genome, **changes)) for name, each in config.species.items()
-    }
+    species = {name: replace(each, genome=replace(each.genome, **changes)) for name, each in config.species.items()}
     return replace(config, genome=replace(config.genome, **changes), species=species)
 
 

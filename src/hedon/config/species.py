@@ -26,7 +26,7 @@ class DietConfig:
     eats: Annotated[
         tuple[tuple[str, float], ...],
         Doc(
-            'kinds of food, each with a factor on its energy, and species, each with the share of its energy that is '
+            "kinds of food, each with a factor on its energy, and species, each with the share of its energy that is "
             'gained; "*" for every kind of food. What is not named is touched, but not eaten',
             "",
             OURS,
@@ -49,7 +49,7 @@ class DietConfig:
 
 @dataclass(frozen=True, slots=True)
 class SpeciesConfig:
-    """The sections that describe one species. `[species.NAME.energy]` changes what differs from `[energy]`, and so on."""
+    """What describes one species: `[species.NAME.energy]` changes what differs from `[energy]`, and so on."""
 
     body: BodyConfig = field(default_factory=BodyConfig)
     motor: MotorConfig = field(default_factory=MotorConfig)

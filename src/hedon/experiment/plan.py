@@ -1,7 +1,7 @@
 """The plan of a run: what to compute, where its records go, and what its progress display shows."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 

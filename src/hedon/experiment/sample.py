@@ -15,6 +15,7 @@ from hedon.record.snapshot import Snapshot
 
 Rows = dict[str, Any]
 
+
 def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`)."""
     columns = columns_of(world.config)
@@ -34,8 +35,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     }
     if columns.several:
         rows["species"] = np.array(columns.species)[lives["species"]]
-        if "cause" in lives:
-            rows["cause"] = np.array(CAUSES)[lives["cause"]]
+        rows["cause"] = np.array([*CAUSES, None])[lives["cause"]]  # -1 while it lives
     return rows
 
 
@@ -164,7 +164,7 @@ def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
         mine = np.flatnonzero(species == i)
         if len(mine):
             seen = world.rays(i)
-            channels = [every.index(name) for name in layout.sees]
+            channels = np.array([every.index(name) for name in layout.sees])
             rays[np.ix_(mine, np.arange(seen.shape[1]), channels)] = seen
     return rays
 

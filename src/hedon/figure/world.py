@@ -124,10 +124,11 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
         The discs.
     """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
-    for species in np.unique(snapshot.species):
+    discs = None
+    for species in np.unique(snapshot.species).tolist():
         mine = snapshot.species == species
         edge = {"edgecolors": species_color(species), "linewidths": 1.8 if species else 0.5}
-        discs = _discs(axes, centers[mine], snapshot.radius[species], **edge)
+        discs = _discs(axes, centers[mine], float(snapshot.radius[species]), **edge)
         if top is None:
             discs.set_facecolor(AGENT_COLOR)
         else:
@@ -142,6 +143,8 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
     ahead = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
     noses = np.stack([centers, centers + 0.82 * radius[:, None] * ahead], axis=1)
     axes.add_collection(LineCollection(list(noses), colors=INK, linewidths=0.9, zorder=4))
+    if discs is None:
+        raise ValueError("nobody lives")
     return discs
 
 
@@ -165,7 +168,7 @@ def _draw_energy_bar(figure: Figure, axes: Axes, snapshot: Snapshot, discs: Elli
 def _draw_rings(axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
     for index in rays_of:
         center = np.array([[snapshot.x[index], snapshot.y[index]]])
-        radius = snapshot.radius[snapshot.species[index]] + 1.5
+        radius = float(snapshot.radius[snapshot.species[index]]) + 1.5
         _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
 
 
@@ -219,7 +222,9 @@ def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_
     ]
     if with_rays:
         names = [name if len(snapshot.species_names) > 1 else "an agent" for name in snapshot.species_names]
-        rays = {f"ray that sees {name}": color for name, color in zip(names, _type_colors(snapshot, colors), strict=False)}
+        rays = {
+            f"ray that sees {name}": color for name, color in zip(names, _type_colors(snapshot, colors), strict=False)
+        }
         rays |= {f"sees {kind} food": colors[kind] for kind in snapshot.food_kinds}
         rays |= {"sees a wall": MUTED, "sees nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]

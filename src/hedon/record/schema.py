@@ -117,7 +117,9 @@ def population_table(columns: Columns) -> Table:
     """One row per world and interval: state at its end, counts and the energy ledger over it."""
     return _table(
         "population",
-        "one species of one world over one interval of steps" if columns.several else "one world over one interval of steps",
+        "one species of one world over one interval of steps"
+        if columns.several
+        else "one world over one interval of steps",
         WORLD,
         SEED,
         *([SPECIES] if columns.several else []),

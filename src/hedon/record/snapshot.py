@@ -23,11 +23,11 @@ _ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays, t typ
     "food_x": (np.float32, "m"),
     "food_y": (np.float32, "m"),
     "walls": (np.float32, "w4"),
-    "radius": (np.float32, "s"),
+    "radius": (np.float64, "s"),
     "ray_count": (np.int32, "s"),
-    "ray_length": (np.float32, "s"),
-    "ray_spread": (np.float32, "s"),
-    "mouth_spread": (np.float32, "s"),
+    "ray_length": (np.float64, "s"),
+    "ray_spread": (np.float64, "s"),
+    "mouth_spread": (np.float64, "s"),
 }
 
 

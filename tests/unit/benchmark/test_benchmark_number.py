@@ -86,8 +86,10 @@ def test_a_world_without_one_density_is_refused(preset):
 
 
 def test_tiles_repeat_a_scene_side_by_side():
-    single = (np.array(values, np.float32) for values in ([1, 2], [3, 4], [0.1, 0.2], [5, 6], [7], [8]))
-    scene = Scene(*single, food_kind=np.array([1], np.int32)).tiled(2, 4, 100, 50)
+    agents = {"x": [1, 2], "y": [3, 4], "angle": [0.1, 0.2], "energy": [5, 6]}
+    foods = {"food_x": [7], "food_y": [8]}
+    single = {name: np.array(values, np.float32) for name, values in (agents | foods).items()}
+    scene = Scene(**single, species=np.array([0, 1], np.int32), food_kind=np.array([1], np.int32)).tiled(2, 4, 100, 50)
     expected = sorted(
         (x + 100 * i, y + 50 * j) for x, y in ((1, 3), (2, 4)) for i, j in itertools.product(range(2), range(4))
     )
@@ -95,6 +97,7 @@ def test_tiles_repeat_a_scene_side_by_side():
     assert sorted(set(zip(scene.food_x.tolist(), scene.food_y.tolist(), strict=True)))[-1] == (107, 158)
     assert len(scene.food_kind) == 8
     assert scene.energy[scene.x % 100 == 2].tolist() == [6] * 8
+    assert scene.species[scene.x % 100 == 2].tolist() == [1] * 8
 
 
 def test_a_size_that_finds_no_memory_says_so(monkeypatch):
@@ -134,11 +137,10 @@ def test_a_world_that_died_out_fails_its_check():
 
 def test_an_agent_outside_of_the_walls_fails_its_check():
     simulation = make_simulation(*QUICK)
-    out = Scene(
-        *(np.array([value], np.float32) for value in (-5, 50, 0, 40)),
-        *([np.zeros(0, np.float32)] * 2),
-        food_kind=np.zeros(0, np.int32),
-    )
+    one = {"x": -5, "y": 50, "angle": 0, "energy": 40}
+    place = {name: np.array([value], np.float32) for name, value in one.items()}
+    none = {"food_x": np.zeros(0, np.float32), "food_y": np.zeros(0, np.float32), "food_kind": np.zeros(0, np.int32)}
+    out = Scene(**place, species=np.zeros(1, np.int32), **none)
     out.put_into(simulation)
     with pytest.raises(CheckError, match="1 agents outside its walls"):
         check_world(simulation.worlds[0])

@@ -35,8 +35,8 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
         (["energy.capacity=30"], "energy.initial = 40.0: must be at most energy.capacity = 30"),
         (NINE_KINDS, "food: there must be from 1 to 8 kinds of food, not 9"),
         (
-            ["sensor.touch_sectors=16", "food.b.energy=1", "food.c.energy=1"],
-            "sensor.touch_sectors = 16: must be at most 12 with 3 kinds of food",
+            ["sensor.touch_sectors=32", "food.b.energy=1", "food.c.energy=1"],
+            "sensor.touch_sectors = 32: must be at most 25 with 5 types to touch",
         ),
         (
             ["food.normal.placement.form=gaussian", "food.normal.placement.sd=[1, 1]"],

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, load_config
-from hedon.config.load import describe_fidelity, describe_preset, is_modified
+from hedon.config.load import PAPER_PRESETS, describe_fidelity, describe_preset, is_modified
 
 Write = Callable[[str], Path]
 
@@ -58,7 +58,7 @@ def test_places_of_food() -> None:
     assert (moving.sd, moving.switch_after) == ((48, 36), 1000)
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", PAPER_PRESETS)
 def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_senses(preset: str) -> None:
     released, corrected = load_config(preset, "released"), load_config(preset)
     assert released.genome.mutation_noise == "frozen"
@@ -79,7 +79,7 @@ def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_sen
     assert undone == corrected
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", PAPER_PRESETS)
 def test_text_is_what_the_paper_prints(preset: str) -> None:
     text, corrected = load_config(preset, "text"), load_config(preset)
     assert all(food.growth_rate == 0.02 for food in text.food.values())

@@ -1,4 +1,7 @@
+"""What the engine gets of a config: every setting, under the names of the engine's structs."""
+
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -6,10 +9,21 @@ import pytest
 
 from hedon.config import engine_config, load_config
 from hedon.config.config import Config
-from hedon.config.field import Setting, sections, settings
+from hedon.config.field import Setting, leaves
 from hedon.config.native import PYTHON_ONLY, distance_sd
 
 ENGINE = Path(__file__).parents[3] / "engine"
+CONFIG = load_config("poison", overrides=["reward.see.poison.coef=0.1"])
+LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
+OTHER: dict[str, Any] = {
+    "body.collides": ("normal",),
+    "sensor.sees": ("normal", "poison"),
+    "diet.eats": (("normal", 0.5),),
+    "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),
+    "food.normal.placement.centers": ((1.0, 1.0),),
+    "food.poison.placement.centers": ((1.0, 1.0),),
+}
+"""Other values of settings that are lists."""
 
 
 def engine_structs() -> dict[str, list[str]]:
@@ -19,53 +33,70 @@ def engine_structs() -> dict[str, list[str]]:
     return {name: [field.strip() for field in fields.split(",")] for name, fields in lists}
 
 
-def paths(section: type = Config, path: str = "") -> list[tuple[str, Setting]]:
-    here = [(f"{path}{name}", setting) for name, setting in settings(section).items()]
-    return here + [found for name, inner in sections(section).items() for found in paths(inner.type, f"{path}{name}.")]
+def changed(config: Any, path: str, value: Any) -> Any:
+    """A config, or a part of one, with one setting replaced, unchecked."""
+    name, _, rest = path.partition(".")
+    if isinstance(config, dict):
+        return {**config, name: changed(config[name], rest, value)}
+    return replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
 
 
-def reach(native: dict[str, Any], path: str) -> Any:
-    value: Any = native
-    for name in path.split("."):
-        value = value[0] if isinstance(value, list) else value
-        value = value[name]
-    return value
+def other_value(path: str, setting: Setting) -> Any:
+    if path in OTHER:
+        return OTHER[path]
+    if setting.choices:
+        return next(choice for choice in setting.choices if choice != value_of(path))
+    value = value_of(path)
+    if isinstance(value, tuple):
+        return tuple(item + 1.0 for item in value)
+    return value + "x" if isinstance(value, str) else value + 1
+
+
+def value_of(path: str) -> Any:
+    return next(value for name, _, value in leaves(CONFIG) if name == path)
 
 
 def test_names_are_those_of_the_engines_structs() -> None:
     structs = engine_structs()
-    native = engine_config(load_config("poison"))
+    native = engine_config(CONFIG)
     assert list(native) == structs["WorldConfig"]
-    for name, section in native.items():
-        for table in section if isinstance(section, list) else [section]:
-            assert list(table) == structs[f"{name.capitalize()}Config"]
+    for name in ("arena", "physics"):
+        assert list(native[name]) == structs[f"{name.capitalize()}Config"]
+    assert list(native["rules"]) == structs["RuleConfig"]
+    assert list(native["food"][0]) == structs["FoodConfig"]
     assert list(native["food"][0]["placement"]) == structs["PlacementConfig"]
+    species = native["species"][0]
+    assert list(species) == structs["SpeciesConfig"]
+    for name, section in species.items():
+        assert set(section) == set(structs[f"{name.capitalize()}Config"]), name
+    assert list(species["genome"]["genes"][0]) == structs["GeneConfig"]
+    assert list(species["reward"]["terms"][0]) == structs["RewardTerm"]
 
 
-@pytest.mark.parametrize(("path", "setting"), paths(), ids=lambda value: value if isinstance(value, str) else "")
-def test_every_setting_arrives_or_is_listed(path: str, setting: Setting) -> None:
-    native = engine_config(Config())
-    if path in PYTHON_ONLY:
-        with pytest.raises(KeyError):
-            reach(native, path)
-    elif path == "birth.distance_sd":
-        assert reach(native, path) == (setting.default, setting.default)
-    elif path.startswith("food.gene."):  # the engine's genome has the genes of all kinds
-        assert reach(native, path.replace("food.gene.", "genome.food.")) == setting.default
-    else:
-        assert reach(native, path) == setting.default
+@pytest.mark.parametrize("path", LEAVES)
+def test_every_setting_arrives_or_is_listed(path: str) -> None:
+    other = engine_config(changed(CONFIG, path, other_value(path, LEAVES[path])))
+    plain = re.sub(r"^(food|reward\.see)\.\w+\.", r"\1.", path)
+    # These act only where a species eats another one.
+    quiet = {"genome.prey.initial_mean", "genome.prey.initial_sd"}
+    assert (other != engine_config(CONFIG)) == (plain not in {*PYTHON_ONLY, *quiet} - {"birth.distance_unit"}), path
 
 
 def test_python_only_settings_exist() -> None:
-    assert set(PYTHON_ONLY) <= {path for path, _ in paths()}
+    plain = {re.sub(r"^food\.\w+\.", "food.", path) for path in LEAVES}
+    assert set(PYTHON_ONLY) <= plain
 
 
-def test_food_is_a_list_in_the_order_of_the_kinds() -> None:
-    native = engine_config(load_config("poison"))
-    assert [food["energy"] for food in native["food"]] == [1.0, -0.6]
+def test_genes_stand_in_the_order_of_the_layout() -> None:
+    config = load_config("poison", overrides=["food.poison.gene.initial_mean=3", "genome.action.initial_mean=-2"])
+    genome = engine_config(config)["species"][0]["genome"]
+    assert [gene["initial_mean"] for gene in genome["genes"]][:4] == [0, 3, -2, 0]
+    assert len(genome["genes"]) == 3 + config.genome.neutral_count
 
 
 def test_distance_is_in_arena_units() -> None:
-    assert distance_sd(load_config("small")) == (100.0, 100.0)
-    assert engine_config(load_config("small", "text"))["birth"]["distance_sd"] == pytest.approx((28.8, 28.8))
-    assert distance_sd(load_config("large", "text")) == pytest.approx((38.4, 38.4))
+    def sd(config: Config) -> tuple[float, float]:
+        return distance_sd(config, config.agents["agent"])
+
+    assert sd(load_config("baseline")) == (100.0, 100.0)
+    assert sd(load_config("small", "text")) == pytest.approx((28.8, 28.8))

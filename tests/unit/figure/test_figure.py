@@ -153,5 +153,5 @@ def _pixel(figure: Figure, image: np.ndarray, x: float, y: float) -> np.ndarray:
 
 
 def _without_agents(snapshot: Snapshot) -> Snapshot:
-    names = ("agent_id", "x", "y", "angle", "energy", "rays")
+    names = ("agent_id", "x", "y", "angle", "energy", "rays", "species")
     return replace(snapshot, **{name: getattr(snapshot, name)[:0] for name in names})

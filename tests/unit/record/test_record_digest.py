@@ -9,8 +9,9 @@ from synthetic_run import write_run
 from hedon.record.digest import records_digest
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, part_path, part_paths
+from hedon.record.schema import Columns
 
-KINDS = (("normal",), 1)
+KINDS = Columns(("normal",), 1)
 
 
 @pytest.fixture
@@ -24,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_the_cut_into_parts_and_the_order_of_worlds_do_not_count(folder: Path) -> None:
-    before = records_digest(folder, *KINDS)
+    before = records_digest(folder, KINDS)
     for table in ("agents", "population", "frames"):
         rows = pl.concat([pl.read_parquet(path) for path in part_paths(folder, table)])
         for path in part_paths(folder, table):
@@ -33,12 +34,12 @@ def test_the_cut_into_parts_and_the_order_of_worlds_do_not_count(folder: Path) -
         third = rows.height // 3
         for index, part in enumerate((rows[:third], rows[third : third + 1], rows[third + 1 :])):
             part.write_parquet(part_path(folder, table, index))
-    assert records_digest(folder, *KINDS) == before
+    assert records_digest(folder, KINDS) == before
 
 
 @pytest.mark.parametrize("change", ["value", "null", "text", "double", "lost", "living"])
 def test_every_row_and_value_counts(folder: Path, change: str) -> None:
-    before = records_digest(folder, *KINDS)
+    before = records_digest(folder, KINDS)
     path = folder / LIVING if change == "living" else part_path(folder, "frames", 0)
     rows = pl.read_parquet(path)
     changed = {
@@ -50,11 +51,11 @@ def test_every_row_and_value_counts(folder: Path, change: str) -> None:
         "living": lambda: rows.with_columns(pl.col("generation") + 1),
     }[change]()
     changed.write_parquet(path)
-    assert records_digest(folder, *KINDS) != before
+    assert records_digest(folder, KINDS) != before
 
 
 def test_a_damaged_part_is_named(folder: Path) -> None:
     path = part_paths(folder, "population")[0]
     path.write_bytes(path.read_bytes()[:-9])
     with pytest.raises(RecordError, match=r"damaged part .*population.part-000000"):
-        records_digest(folder, *KINDS)
+        records_digest(folder, KINDS)

@@ -10,7 +10,8 @@ from matplotlib.image import imread
 from matplotlib.patches import Circle, Ellipse, FancyArrowPatch, Wedge
 from synthetic_run import synthetic_snapshot
 
-from hedon.config import PRESETS, load_config
+from hedon.config import load_config
+from hedon.config.load import PAPER_PRESETS
 from hedon.figure.body import draw_body, ray_directions
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
@@ -102,7 +103,7 @@ def test_captions_say_which_world_is_shown_and_when() -> None:
 def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
     [named] = make("arenas")
     shown = panels(named.figure)
-    assert sorted(shown) == sorted(PRESETS) == sorted(arm.preset for arm in ITEMS["arenas"].arms)
+    assert sorted(shown) == sorted(PAPER_PRESETS) == sorted(arm.preset for arm in ITEMS["arenas"].arms)
     size = named.figure.get_size_inches()
     for preset, axes in shown.items():
         arena = load_config(preset).arena
@@ -111,7 +112,7 @@ def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
         assert (axes.get_xlim(), axes.get_ylim()) == ((0, arena.width), (0, arena.height))
         assert discs(axes) == []
         assert any("no run" in text.get_text() for text in axes.texts)
-    assert all(preset in named.caption for preset in PRESETS)
+    assert all(preset in named.caption for preset in PAPER_PRESETS)
 
 
 def test_panels_do_not_overlap() -> None:
@@ -158,5 +159,5 @@ def test_the_legend_tells_each_color_once() -> None:
 
 def nobody() -> Snapshot:
     snapshot = synthetic_snapshot()
-    names = ("agent_id", "x", "y", "angle", "energy", "rays")
+    names = ("agent_id", "x", "y", "angle", "energy", "rays", "species")
     return replace(snapshot, **{name: getattr(snapshot, name)[:0] for name in names})

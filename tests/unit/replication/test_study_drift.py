@@ -10,7 +10,7 @@ from synthetic_run import write_run
 
 from hedon.analysis.table import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.config import PRESETS
+from hedon.config.load import PAPER_PRESETS
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 from hedon.replication.item.item import Material
@@ -34,7 +34,7 @@ def make(found: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTa
 
 
 def test_the_arms_are_the_papers_conditions() -> None:
-    assert sorted(arm.preset for arm in ARMS) == sorted(PRESETS)
+    assert sorted(arm.preset for arm in ARMS) == sorted(PAPER_PRESETS)
     assert all(arm.overrides == () for arm in ARMS)
     assert (len(ITEM.scale.seeds), ITEM.scale.steps) == (5, STEPS)
 

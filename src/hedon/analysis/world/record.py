@@ -19,7 +19,9 @@ SEED = 20240717
 
 @dataclass(frozen=True, eq=False)
 class WorldRecord:
-    """All that the records say of one world, or of one species of it. Two records are equal only if they are the same object.
+    """All that the records say of one world, or of one species of it.
+
+    Two records are equal only if they are the same object.
 
     Attributes:
         condition: the setting that the world repeats: worlds of equal config share it. Where there are several
@@ -139,8 +141,8 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
         absent = [gene for gene in run.weight_names if gene not in layout.gene_names]
         dropped = [*absent, *(f"{gene}_{what}" for gene in absent for what in ("mean", "sd"))]
         rewards = tuple(gene for gene in run.reward_names if gene in layout.gene_names)
-        tables = [table.filter(own).drop(dropped, strict=False) for table in (agents, population)]
-        worlds += _records(run, f"{condition}: {name}", of_species(config, name), *tables, rewards)
+        mine, rows = (table.filter(own).drop(dropped, strict=False) for table in (agents, population))
+        worlds += _records(run, f"{condition}: {name}", of_species(config, name), mine, rows, rewards)
     return worlds
 
 

@@ -154,9 +154,7 @@ class LiveDisplay:
         return cells + ["" if math.isnan(mean) else f"{mean:+.3f}" for mean in means]
 
 
-def make_display(
-    console: Console, columns: Columns, seeds: tuple[int, ...]
-) -> LiveDisplay | LineDisplay:
+def make_display(console: Console, columns: Columns, seeds: tuple[int, ...]) -> LiveDisplay | LineDisplay:
     """The display that fits the output: a terminal or not."""
     if console.is_terminal:
         return LiveDisplay(console, columns, seeds)

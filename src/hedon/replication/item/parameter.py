@@ -5,11 +5,10 @@ from typing import Any
 
 from hedon.analysis.table import ResultTable, table
 from hedon.config import FIDELITIES
-from hedon.config.load import PAPER_PRESETS
 from hedon.config.config import PROVENANCE
 from hedon.config.dump import flatten
 from hedon.config.field import leaves
-from hedon.config.load import describe_preset
+from hedon.config.load import PAPER_PRESETS, describe_preset
 from hedon.config.problem import format_value
 from hedon.replication.item.condition import BASELINE
 from hedon.replication.item.item import Arm, Item, Material
@@ -17,12 +16,12 @@ from hedon.replication.item.item import Arm, Item, Material
 CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_physics": ("Bodies and physics", ("arena", "body", "physics")),
     "parameters_sense": ("Motors and senses", ("motor", "sensor")),
-    "parameters_food": ("Food", ("food",)),
+    "parameters_food": ("Food", ("food", "diet")),
     "parameters_life": ("Energy, birth and death", ("population", "energy", "hazard", "birth")),
     "parameters_evolution": ("Genome and reward", ("genome", "reward")),
     "parameters_learning": ("Learning", ("learning",)),
 }
-"""Per table its title and the sections of the config that it tells."""
+"""Per table its title and the sections of the config that it tells; the paper has one species."""
 _ORIGIN = (
     'Origin: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, '
     '"ours" is a choice of this project; "paper or code" is the paper\'s value where it prints one, else the code\'s.'
