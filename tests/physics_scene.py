@@ -45,13 +45,14 @@ def arena_walls(width=480.0, height=360.0, corner=19.0, chords=4):
 def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=(480.0, 360.0), **settings):
     """A scene with bodies at (n, 2) places, circles at (m, 2) places and walls (k, 4).
 
-    `slots[i]` is where body i lives; `settings` override `CONFIG`, or give `pair_limit` and
-    `outer_walls`.
+    `slots[i]` is where body i lives; `settings` override `CONFIG`, or give `pair_limit`, `outer_walls`, and
+    `classes`: first slot, radius and density of each further class of bodies.
     """
     bodies = np.asarray(bodies, dtype=np.float32).reshape(-1, 2)
     circles = np.asarray(circles, dtype=np.float32).reshape(-1, 2)
     limit = settings.pop("pair_limit", 0)
     ring = settings.pop("outer_walls", 0)
+    classes = settings.pop("classes", [])
     slots = np.arange(len(bodies)) if slots is None else np.asarray(slots)
     scene = _engine.physics.Scene(
         CONFIG | settings,
@@ -65,6 +66,7 @@ def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=
         [tuple(map(float, wall)) for wall in walls],
         limit,
         ring,
+        classes,
     )
     scene.array("x")[slots], scene.array("y")[slots] = bodies.T
     scene.array("circle_x")[:], scene.array("circle_y")[:] = circles.T

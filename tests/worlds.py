@@ -47,13 +47,13 @@ def set_scene(
     foods: ArrayLike = (),
     kinds: ArrayLike | None = None,
     energy: float = 40.0,
+    species: ArrayLike | None = None,
 ) -> None:
-    """Replaces world 0 by agents (x, y, angle) and foods (x, y), the latter of kind 0 unless told."""
+    """Replaces world 0 by agents (x, y, angle) and foods (x, y), of the first species and of kind 0 unless told."""
     body = np.asarray(agents, np.float32).reshape(-1, 3)
     food = np.asarray(foods, np.float32).reshape(-1, 2)
     kind = np.zeros(len(food), np.int32) if kinds is None else np.asarray(kinds, np.int32)
     x, y, angle = (np.ascontiguousarray(column) for column in body.T)
     food_x, food_y = (np.ascontiguousarray(column) for column in food.T)
-    simulation.engine.set_scene(
-        0, x, y, angle, np.full(len(body), energy, np.float32), np.zeros(len(body), np.int32), food_x, food_y, kind
-    )
+    of = np.zeros(len(body), np.int32) if species is None else np.asarray(species, np.int32)
+    simulation.engine.set_scene(0, x, y, angle, np.full(len(body), energy, np.float32), of, food_x, food_y, kind)

@@ -3,6 +3,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -49,10 +51,21 @@ struct Recorder {
 class Scene {
  public:
   Scene(nb::dict config, float width, float height, float radius, float density, float circle_radius, int64_t bodies,
-        int64_t circles, const std::vector<std::array<float, 4>>& walls, int64_t pair_limit, int32_t outer_walls)
+        int64_t circles, const std::vector<std::array<float, 4>>& walls, int64_t pair_limit, int32_t outer_walls,
+        const std::vector<std::tuple<int32_t, float, float>>& classes)
       : config_(to_config<PhysicsConfig>(config)),
         shape_(make_disc(radius, density)),
         table_(uniform_bodies(shape_, circle_radius, bodies, circles)) {
+    for (const auto& [first, own_radius, own_density] : classes) {
+      const int32_t c = table_.classes++;
+      if (c >= MAX_BODY_CLASSES || first < table_.first_slot[c - 1] || first > bodies)
+        throw nb::value_error("classes: at most 3 more, with ascending first slots");
+      table_.first_slot[c] = first;
+      table_.first_slot[c + 1] = static_cast<int32_t>(bodies);
+      table_.shape[c] = make_disc(own_radius, own_density);
+      for (int32_t other = 0; other <= c; ++other) table_.meets_bodies[other] = (2u << c) - 1u;
+      table_.meets_circles[c] = 1;
+    }
     capacity_ = physics_capacity(bodies, circles, static_cast<int64_t>(walls.size()), width, height, table_, config_);
     if (pair_limit > 0) capacity_.body_pairs = pair_limit;
     const auto allocate = [this](const char*, auto& array, int64_t count) {
@@ -215,10 +228,11 @@ void bind_physics(nb::module_& module) {
   nb::module_ physics = module.def_submodule("physics", "Rigid bodies without the rest of the model.");
   nb::class_<Scene>(physics, "Scene", "Discs, static circles and walls, with their memory.")
       .def(nb::init<nb::dict, float, float, float, float, float, int64_t, int64_t,
-                    const std::vector<std::array<float, 4>>&, int64_t, int32_t>(),
+                    const std::vector<std::array<float, 4>>&, int64_t, int32_t,
+                    const std::vector<std::tuple<int32_t, float, float>>&>(),
            nb::arg("config"), nb::arg("width"), nb::arg("height"), nb::arg("radius"), nb::arg("density"),
            nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"), nb::arg("pair_limit") = 0,
-           nb::arg("outer_walls") = 0)
+           nb::arg("outer_walls") = 0, nb::arg("classes") = std::vector<std::tuple<int32_t, float, float>>{})
       .def("step", &Scene::step, nb::arg("steps") = 1, nb::arg("threads") = 1, nb::arg("record") = true,
            nb::call_guard<nb::gil_scoped_release>(), "Steps; raises RuntimeError with the name of a fault.")
       .def("set_order", &Scene::set_order, nb::arg("slots"), "Slots of the bodies that live, in canonical order.")

@@ -56,8 +56,10 @@ void bind_random(nb::module_& module) {
             out[i] = to_normal(r.word[0], r.word[1]).first;
           else if (name == "cauchy")
             out[i] = to_cauchy(r.word[0]);
+          else if (name == "student_t")
+            out[i] = to_student_t(2.0, r.word[0], r.word[1]);
           else
-            throw nb::value_error("form: 'uniform', 'normal' or 'cauchy'");
+            throw nb::value_error("form: 'uniform', 'normal', 'cauchy' or 'student_t' (2 degrees of freedom)");
         }
         return own(std::move(out));
       },

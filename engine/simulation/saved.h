@@ -78,20 +78,16 @@ class SavedArrays {
     if (size.lifetime != Lifetime::saved) return;
     // What depends on a rule that a world does not have is not there.
     if (array.count == 0 && size.rows != Extent::slots) return;
-    switch (size.rows) {
-      case Extent::slots:
-      case Extent::mixed_slots:
-      case Extent::old_slots:
-        return by_slot(name, array, width);
-      case Extent::newborns:
-      case Extent::mixed_newborns:
-        if (name == "newborn") free_slots();
-        return columns(name, array.data, nullptr, extent_.newborns, width);
-      case Extent::ghosts:
-        return columns(name, array.data, nullptr, extent_.ghosts, width);
-      default:
-        columns(name, array.data, nullptr, array.count, width);
-        if (name == "food_stock") foods();
+    if (is_by_slot(size.rows)) {
+      by_slot(name, array, width);
+    } else if (size.rows == Extent::newborns || size.rows == Extent::mixed_newborns) {
+      if (name == "newborn") free_slots();
+      columns(name, array.data, nullptr, extent_.newborns, width);
+    } else if (size.rows == Extent::ghosts) {
+      columns(name, array.data, nullptr, extent_.ghosts, width);
+    } else {
+      columns(name, array.data, nullptr, hedon::extent(shape_, size.rows, 1), width);
+      if (name == "food_stock") foods();
     }
   }
 

@@ -50,6 +50,12 @@ enum class Lifetime : uint8_t {
   scratch,  ///< not valid between steps
 };
 
+/// Whether an array with these rows has one for each slot, or none at all.
+HEDON_FN bool is_by_slot(Extent rows) {
+  return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
+         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::hunted_slots;
+}
+
 struct ArrayShape {
   Extent rows, width;
   Lifetime lifetime;

@@ -9,7 +9,7 @@ import numpy.typing
 class Scene:
     """Discs, static circles and walls, with their memory."""
 
-    def __init__(self, config: dict, width: float, height: float, radius: float, density: float, circle_radius: float, bodies: int, circles: int, walls: Sequence[Sequence[float]], pair_limit: int = 0, outer_walls: int = 0) -> None: ...
+    def __init__(self, config: dict, width: float, height: float, radius: float, density: float, circle_radius: float, bodies: int, circles: int, walls: Sequence[Sequence[float]], pair_limit: int = 0, outer_walls: int = 0, classes: Sequence[tuple[int, float, float]] = []) -> None: ...
 
     def step(self, steps: int = 1, threads: int = 1, record: bool = True) -> None:
         """Steps; raises RuntimeError with the name of a fault."""
