@@ -16,7 +16,7 @@ from hedon.text import brief
 
 PAPER_ENDS = ("food=5,action=5", "food=5,action=-0.5")
 """Our reading of where the paper's baseline ends: food "mostly above 4", action "largely positive or slightly
-negative". It prints no numbers (docs/model.md, section 13)."""
+negative". It prints no numbers (docs/model.md, section 14)."""
 
 
 @dataclass(frozen=True)

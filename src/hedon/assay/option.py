@@ -8,7 +8,6 @@ from hedon.assay.landscape import NEUTRAL, AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.config.layout import with_genome
-from hedon.config.problem import nearest
 from hedon.experiment.plan import RunPlan, seed_span
 from hedon.record.folder import CONFIG
 from hedon.record.founder import Founders, column_of, join, unknown_gene
@@ -31,22 +30,6 @@ def choose_genes(text: str | None, config: Config) -> tuple[str, str]:
     if first is None or second is None or first == second:
         raise AssayError(f"--genes {brief(str(text))}: must be two different genes, as in food,action")
     return first, second
-
-
-def choose_species(text: str | None, config: Config) -> str | None:
-    """The species that an assay is about; None where there is only one.
-
-    Raises:
-        AssayError: There is no such species.
-    """
-    known = list(config.species)
-    if text is not None and text not in known:
-        there = ", ".join(known) if known else "the condition has only one, without a name"
-        near = nearest(text, known)
-        raise AssayError(
-            f"--species {brief(text)}: no such species ({there})" + (f"; did you mean {near}?" if near else "")
-        )
-    return text if text is not None else next(iter(known), None)
 
 
 def parse_spread(text: str, sd: float | None, config: Config) -> Spread:

@@ -82,9 +82,9 @@ def landscape(
     """
     from hedon.assay.end import paper_ends, read_ends
     from hedon.assay.landscape import assay_config, measure_landscape, spread_founders
-    from hedon.assay.option import assay_plan, choose_genes, choose_species, parse_spread
+    from hedon.assay.option import assay_plan, choose_genes, parse_spread
     from hedon.assay.report_landscape import landscape_tables, write_landscape
-    from hedon.config.layout import of_species
+    from hedon.config.layout import choose_species, of_species
     from hedon.config.load import load_config
 
     config = assay_config(load_config(source, fidelity, overrides or ()))

@@ -1,10 +1,21 @@
 """The command `hedon demography`."""
 
+from typing import Annotated
+
+import typer
+
 from hedon.cli.config import Fidelity, Overrides, Source
 from hedon.cli.console import make_console
 
 
-def demography(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
+def demography(
+    source: Source,
+    species: Annotated[
+        str | None, typer.Option(help="Of which species, where there are several; by default the first.")
+    ] = None,
+    fidelity: Fidelity = None,
+    overrides: Overrides = None,
+) -> None:
     """Predict, before a run, whether a population can grow, can die out, and what limits it.
 
     Prints the length of life and the number of children at constant energy, the energy that agents need and that
@@ -15,11 +26,15 @@ def demography(source: Source, fidelity: Fidelity = None, overrides: Overrides =
     Examples:
       hedon demography baseline
       hedon demography baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
+      hedon demography predator --species predator
       hedon demography my.toml --fidelity text
     """
     from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config
+    from hedon.config.layout import choose_species, of_species
     from hedon.demography.forecast import forecast
 
     config = load_config(source, fidelity, overrides or ())
+    chosen = choose_species(species, config)
+    config = config if chosen is None else of_species(config, chosen)
     make_console().print(forecast_group(config, forecast(config)))

@@ -9,7 +9,10 @@ from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.evolution import GeneConfig
+from hedon.config.problem import nearest
 from hedon.config.species import EVERYTHING, PER_SPECIES, SpeciesConfig
+from hedon.error import ArgumentError
+from hedon.text import brief
 
 WALL = "wall"
 """What senses call a wall."""
@@ -88,6 +91,21 @@ def gene_columns(config: Config) -> tuple[str, ...]:
         *(name for name, gene in genes.items() if gene.role != "neutral"),
         *(name for name, gene in genes.items() if gene.role == "neutral"),
     )
+
+
+def choose_species(name: str | None, config: Config) -> str | None:
+    """The species of this name, or by default the first; None where there is only one, without a name.
+
+    Raises:
+        ArgumentError: There is no such species.
+    """
+    known = list(config.species)
+    if name is not None and name not in known:
+        there = "there are " + ", ".join(known) if known else "the config has only one, without a name"
+        near = nearest(name, known)
+        hint = f"; did you mean {near}?" if near else ""
+        raise ArgumentError(f"species {brief(name)!r}: there is no such species ({there}){hint}")
+    return name if name is not None else next(iter(known), None)
 
 
 def of_species(config: Config, name: str) -> Config:

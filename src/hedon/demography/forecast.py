@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hedon.config import Config
+from hedon.config.layout import diet
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
 
@@ -100,7 +101,9 @@ def _energies(config: Config) -> list[float]:
 def _balance(config: Config) -> tuple[float, float, float]:
     """Energy that an agent with a fresh policy is charged, energy that grows [energy/step], agents that it pays for."""
     need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
-    supply = sum(food.growth_rate * food.energy for food in config.food.values() if food.energy > 0)
+    eaten = diet(config, next(iter(config.agents.values())))
+    energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
+    supply = sum(food.growth_rate * energies[kind] for kind, food in config.food.items() if energies[kind] > 0)
     return need, supply, supply / need if need else math.inf
 
 

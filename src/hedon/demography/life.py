@@ -42,8 +42,8 @@ def energy_hazard(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.floa
 
 
 def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
-    """Chance of trying to have a child: kappa/(1 + exp(−beta·energy)) [1/step]."""
-    return config.kappa / (1.0 + np.exp(-config.beta * np.asarray(energy, dtype=np.float64)))
+    """Chance of trying to have a child: kappa/(1 + exp(delay − beta·energy)) [1/step]."""
+    return config.kappa / (1.0 + np.exp(config.delay - config.beta * np.asarray(energy, dtype=np.float64)))
 
 
 def cumulative_hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":

@@ -9,7 +9,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.world.population import history
-from hedon.figure.style import ACTION_COLOR, MUTED, NEUTRAL_COLOR, new_figure, say_empty, step_unit, styled
+from hedon.figure.style import (
+    MUTED,
+    NEUTRAL_COLOR,
+    new_figure,
+    say_empty,
+    step_unit,
+    styled,
+    weight_colors,
+    weight_title,
+)
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
 _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
@@ -38,17 +47,17 @@ class HistoryRow:
 
 def draw_history(
     population: pl.DataFrame,
-    food_kinds: Sequence[str],
+    reward_names: Sequence[str],
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
     """One panel per reward weight and one for the neutral genes, all with the same axes; see `draw_histories`."""
-    return draw_histories([HistoryRow(population)], food_kinds, neutral_names, colors)
+    return draw_histories([HistoryRow(population)], reward_names, neutral_names, colors)
 
 
 def draw_histories(
     settings: Sequence[HistoryRow],
-    food_kinds: Sequence[str],
+    reward_names: Sequence[str],
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
@@ -61,12 +70,12 @@ def draw_histories(
 
     Args:
         settings: from top to bottom, at least one.
-        food_kinds: names, of all settings.
-        neutral_names: genome columns.
+        reward_names: genome columns that have an effect, of all settings.
+        neutral_names: the other genome columns.
         colors: per food kind.
     """
-    shown = {f"w_{kind}": (f"weight of {kind} food", colors[kind]) for kind in food_kinds}
-    shown["w_action"] = ("weight of action", ACTION_COLOR)
+    tints = weight_colors(reward_names, colors)
+    shown = {name: (weight_title(name), tints[name]) for name in reward_names}
     columns = len(shown) + bool(neutral_names)
     end = max(last_step(setting.population) for setting in settings)
     with styled():
@@ -76,7 +85,7 @@ def draw_histories(
         grid = figure.subplots(len(settings), columns, sharex=True, sharey=True, squeeze=False)
         reach = 0.0
         for setting, panels in zip(settings, grid, strict=True):
-            rows = history(setting.population, food_kinds, [*shown, *neutral_names], _POINTS, end)
+            rows = history(setting.population, (), [*shown, *neutral_names], _POINTS, end)
             reach = max(reach, *(_draw_range(axes, rows, neutral_names, end) for axes in panels[: len(shown)]))
             for axes, (name, (title, color)) in zip(panels, shown.items(), strict=False):
                 draw_zero_line(axes)

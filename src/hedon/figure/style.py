@@ -176,16 +176,31 @@ def draw_message(text: str) -> Figure:
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
     """What the panel of each weight is called: those that enter the reward, and the first neutral marker."""
-    titles = {name: f"weight of {name.removeprefix('w_')} food" for name in reward_names}
-    return titles | {"w_action": "weight of action"} | dict.fromkeys(neutral_names[:1], "neutral marker")
+    return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
+
+
+def weight_title(name: str) -> str:
+    """What a weight is called: of action, of seeing something, or of a food."""
+    if name == "w_action":
+        return "weight of action"
+    what = name.removeprefix("w_")
+    return f"weight of seeing {what.removeprefix('see_')}" if what.startswith("see_") else f"weight of {what} food"
 
 
 def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
-    """A color per weight: that of the food kind, or those of action and of neutral markers.
+    """A color per weight: that of the food kind, or those of action, of other rewards and of neutral markers.
 
     Args:
         names: genome columns.
         kinds: color per food kind.
     """
-    special = {"w_action": ACTION_COLOR}
-    return {name: special.get(name) or kinds.get(name.removeprefix("w_"), NEUTRAL_COLOR) for name in names}
+    others = iter(_OTHER_COLORS * 8)
+    colors = {}
+    for name in names:
+        known = {"w_action": ACTION_COLOR}.get(name) or kinds.get(name.removeprefix("w_"))
+        colors[name] = known or (next(others) if name.startswith("w_") else NEUTRAL_COLOR)
+    return colors
+
+
+_OTHER_COLORS = ("#b8322a", "#3a5fa8", "#7a4fa3", "#b07d1a")
+"""Of weights that are neither for a food nor for action."""

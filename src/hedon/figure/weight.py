@@ -23,6 +23,7 @@ from hedon.figure.style import (
     seed_color,
     step_unit,
     styled,
+    weight_title,
 )
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes
@@ -57,23 +58,23 @@ class WeightGroup:
         return list(dict.fromkeys(name for panel in self.panels for name in panel))
 
 
-def against_action(food_kinds: Sequence[str]) -> list[tuple[str, str]]:
-    """A panel per food kind: its weight along the x axis, that of action along the y axis."""
-    return [(f"w_{kind}", "w_action") for kind in food_kinds]
+def against_action(reward_names: Sequence[str]) -> list[tuple[str, str]]:
+    """A panel per other weight: along the x axis; that of action along the y axis."""
+    return [(name, "w_action") for name in reward_names if name != "w_action"]
 
 
 def draw_weights(
-    agents: pl.DataFrame, food_kinds: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
+    agents: pl.DataFrame, reward_names: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
 ) -> Figure:
-    """The weights of the agents of one setting that were born last: of each food against that of action.
+    """The weights of the agents of one setting that were born last: each against that of action.
 
     Args:
         agents: table `agents`.
-        food_kinds: names.
-        neutral_names: genome columns.
+        reward_names: genome columns that have an effect.
+        neutral_names: the other genome columns.
         count: agents per world.
     """
-    return draw_weight_groups([WeightGroup(last_agents(agents, count), against_action(food_kinds))], neutral_names)
+    return draw_weight_groups([WeightGroup(last_agents(agents, count), against_action(reward_names))], neutral_names)
 
 
 def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[str]) -> Figure:
@@ -128,7 +129,7 @@ def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[st
 
 
 def _set_axes(axes: Axes, panel: tuple[str, str], reach: float, *, first: bool) -> None:
-    x, y = map(_title, panel)
+    x, y = map(weight_title, panel)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=x)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
@@ -136,11 +137,6 @@ def _set_axes(axes: Axes, panel: tuple[str, str], reach: float, *, first: bool) 
         axes.set_ylabel(y)
     else:
         axes.tick_params(labelleft=False)
-
-
-def _title(name: str) -> str:
-    """What a genome column is called along an axis."""
-    return "weight of action" if name == "w_action" else f"weight of {name.removeprefix('w_')} food"
 
 
 def _neutral(group: WeightGroup, neutral_names: Sequence[str]) -> np.ndarray:

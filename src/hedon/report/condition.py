@@ -38,8 +38,8 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
         return mine.get(name, pl.DataFrame())
 
     kinds, neutral = first.food_kinds, first.neutral_names
-    yield figure.WEIGHTS.drawn(draw_weights(agents, kinds, neutral))
-    yield figure.HISTORY.drawn(draw_history(population, kinds, neutral, colors))
+    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
+    yield figure.HISTORY.drawn(draw_history(population, first.reward_names, neutral, colors))
     yield figure.POPULATION.drawn(draw_population(population, kinds, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))

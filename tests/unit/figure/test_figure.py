@@ -29,7 +29,7 @@ def test_style_leaves_the_callers_settings_alone(tmp_path: Path) -> None:
 
 def test_weights_have_a_panel_per_kind_and_its_points(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=2, food_kinds=("normal", "poison")))
-    figure = draw_weights(run.agents(), run.food_kinds, run.neutral_names, count=30)
+    figure = draw_weights(run.agents(), run.reward_names, run.neutral_names, count=30)
     labels = [axes.get_xlabel() for axes in figure.axes]
     assert [label for label in labels if label] == ["weight of normal food", "weight of poison food"]
     points = np.asarray(figure.axes[0].collections[0].get_offsets())
@@ -45,7 +45,7 @@ def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> No
         w_normal=pl.when(far).then(9.5).otherwise(pl.col("w_normal").clip(-0.5, 0.5)).cast(pl.Float32),
         w_action=pl.col("w_action").clip(-0.5, 0.5),
     )
-    figure = draw_weights(agents, run.food_kinds, run.neutral_names)
+    figure = draw_weights(agents, run.reward_names, run.neutral_names)
     axes = figure.axes[0]
     assert axes.get_xlim() == axes.get_ylim() == (-1, 1)
     marks = np.asarray(axes.collections[-1].get_offsets())
@@ -55,7 +55,7 @@ def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> No
 
 def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=3))
-    figure = draw_history(run.population(), run.food_kinds, run.neutral_names, food_colors(run.food_kinds))
+    figure = draw_history(run.population(), run.reward_names, run.neutral_names, food_colors(run.food_kinds))
     assert [axes.get_title("left") for axes in figure.axes] == [
         "weight of normal food",
         "weight of action",

@@ -24,7 +24,7 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.demography.life import cumulative_hazard
 from hedon.replication.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP, LIFESPAN, PAPER, SEEDS, STEPS
 
-SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 13"
+SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 14"
 SAME_FACTOR = 1.5
 """Lifetimes, rates of food and distances from a start within this factor count as the same."""
 MOST = 0.5

@@ -16,7 +16,7 @@ _READ = (
     "reward, tells what drift alone does. Worlds that died out are shown; the paper replaced them."
 )
 
-_AGAINST_ACTION = tuple(against_action(("normal",)))
+_AGAINST_ACTION = tuple(against_action(("w_normal",)))
 
 
 def _draw(

@@ -34,7 +34,7 @@ def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> 
     ]
     first = next(iter(worlds.values()))[0]
     colors = food_colors(first.food_kinds, [food.color for food in first.config.food.values()])
-    yield NamedFigure(name, question, draw_histories(rows, first.food_kinds, first.neutral_names, colors), caption)
+    yield NamedFigure(name, question, draw_histories(rows, first.reward_names, first.neutral_names, colors), caption)
 
 
 def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:

@@ -67,7 +67,7 @@ def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Ite
     agents = [world.agents.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
     standing = [rows for rows, found in zip(agents, fates, strict=True) if not found.is_lost]
     first = worlds[0]
-    look = (first.food_kinds, first.neutral_names)
+    look = (first.reward_names, first.neutral_names)
     drawn = draw_weights(pl.concat(agents), *look)
     yield NamedFigure("released_weights", "Which rewards evolved, in all worlds?", drawn, _WEIGHTS)
     if standing and len(standing) < len(agents):
