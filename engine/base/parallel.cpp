@@ -1,3 +1,5 @@
+#if !defined(__wasm__)  // see parallel_single.cpp
+
 #include "base/parallel.h"
 
 #include <sched.h>
@@ -89,3 +91,5 @@ void Pool::work(Shared& shared, int rank) {
 }
 
 }  // namespace hedon
+
+#endif

@@ -1,24 +1,20 @@
 #include "simulation/memory.h"
 
-#include <sys/mman.h>
-
 #include <cstdlib>
+
+#include "base/platform.h"
 
 namespace hedon {
 
 Memory::Memory(int64_t bytes) : size_(bytes) {
-  const size_t reserved = static_cast<size_t>(bytes + PAGE);
-  block_ = mmap(nullptr, reserved, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (block_ == MAP_FAILED) abort();
+  block_ = reserve_pages(static_cast<size_t>(bytes + PAGE));
+  if (block_ == nullptr) abort();
   const auto address = reinterpret_cast<uintptr_t>(block_);
   first_ = reinterpret_cast<char*>((address + PAGE - 1) / PAGE * PAGE);
-#if defined(MADV_HUGEPAGE)
-  madvise(first_, static_cast<size_t>(bytes), MADV_HUGEPAGE);  // a hint: without it, everything works, but slower
-#endif
 }
 
 Memory::~Memory() {
-  if (block_ != nullptr) munmap(block_, static_cast<size_t>(size_ + PAGE));
+  if (block_ != nullptr) release_pages(block_, static_cast<size_t>(size_ + PAGE));
 }
 
 PhysicsCapacity world_physics_capacity(const World& world) {

@@ -38,7 +38,11 @@ void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
 class Memory {
  public:
   static constexpr int64_t ALIGNMENT = 64;           ///< of each array: a cache line, and 16 floats
+#if defined(__wasm__)
+  static constexpr int64_t PAGE = ALIGNMENT;  ///< no pages to choose from, and all memory is committed
+#else
   static constexpr int64_t PAGE = int64_t{1} << 21;  ///< a large page
+#endif
 
   Memory() = default;
   explicit Memory(int64_t bytes);
