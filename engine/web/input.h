@@ -1,0 +1,27 @@
+/// What a world in a web page is made from, as text: one setting per line, `path=value`.
+///
+/// Paths are those of the structs, as in `food[0].energy`. Besides the config: `seed=1`, `outer_walls=20`, and one
+/// `wall=ax,ay,bx,by` for each wall. A missing, repeated or unknown path is an error, and so is a value that is no
+/// number or no known name.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "physics/body.h"
+#include "world/config.h"
+
+namespace hedon {
+
+struct WorldInput {
+  WorldConfig config;
+  std::vector<Segment> walls;
+  int64_t outer_walls;
+  uint64_t seed;
+};
+
+/// Reads `text` into `out`; returns "", or the first thing that is wrong. Does not check ranges: see `check_config`.
+std::string read_input(const std::string& text, WorldInput& out);
+
+}  // namespace hedon

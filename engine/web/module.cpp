@@ -1,0 +1,205 @@
+/// The engine's face to a web page: plain functions that WebAssembly exports. One world at a time.
+///
+/// Call them in this order: `hedon_text` gives room for the text of `WorldInput`; `hedon_read` reads and checks it;
+/// `hedon_bytes_needed` says what the world would take; `hedon_make` makes it. Then `hedon_run`, `hedon_learn` and the
+/// views, as often as you like. A function that can fail returns 0 for success; `hedon_message` says what was wrong.
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "learning/ppo.h"
+#include "simulation/config_check.h"
+#include "simulation/memory.h"
+#include "simulation/simulation.h"
+#include "simulation/window.h"
+#include "web/input.h"
+#include "web/portion.h"
+
+#define HEDON_EXPORT(name) extern "C" __attribute__((export_name(#name), used))
+
+namespace hedon {
+namespace {
+
+/// Where an array lies and what it holds; the page reads it as six 32-bit integers.
+struct View {
+  int32_t address;
+  int32_t count;   ///< numbers
+  int32_t stride;  ///< bytes from one to the next
+  int32_t bytes;   ///< of one number
+  int32_t real;    ///< 1 for floating-point numbers
+  int32_t sign;    ///< 1 for numbers that can be negative
+};
+
+/// What the chosen agent senses and how its network answers.
+struct Mind {
+  PackedObservation observation;
+  float output[16];  ///< mean of the two actions, then the value
+};
+
+std::string text, message, path;
+WorldInput input;
+std::unique_ptr<Simulation> simulation;
+std::vector<float> scratch;
+int32_t learned;  ///< learners of the present window that have learned, while the window is being learned
+bool learning;
+int32_t learners;
+View view;
+Mind mind;
+
+int fail(const std::string& what) {
+  message = what;
+  return 1;
+}
+
+World& world() { return simulation->world(0); }
+
+/// The scratch of the learner, aligned to whole cache lines.
+float* aligned_scratch() {
+  const auto address = reinterpret_cast<uintptr_t>(scratch.data());
+  return reinterpret_cast<float*>((address + 63) / 64 * 64);
+}
+
+int report_fault() {
+  const Fault& fault = world().fault();
+  if (fault.status == Status::ok) return 0;
+  const StatusText& known = STATUS_TEXT[static_cast<int>(fault.status)];
+  return fail(std::string(known.name) + ": " + known.sentence + " " + known.remedy);
+}
+
+template <class T>
+void show(const T* first, int64_t count, int64_t stride) {
+  view = {static_cast<int32_t>(reinterpret_cast<uintptr_t>(first)),
+          static_cast<int32_t>(count),
+          static_cast<int32_t>(stride),
+          static_cast<int32_t>(sizeof(T)),
+          std::is_floating_point_v<T> ? 1 : 0,
+          std::is_signed_v<T> ? 1 : 0};
+}
+
+/// Looks for the array `path` of the state, or the column `array.column` of an array of structs.
+bool find_view() {
+  bool found = false;
+  for_each_array(world().state, "", [&]<class T>(const std::string& name, Array<T>& array) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (name != path) return;
+      show(array.data, array.count, sizeof(T));
+      found = true;
+    } else if constexpr (requires { T::for_each_field([](auto...) {}); }) {
+      T::for_each_field([&](const char* column, auto member) {
+        using Field = std::remove_cvref_t<decltype(array.data->*member)>;
+        if constexpr (std::is_arithmetic_v<Field>) {
+          if (name + "." + column != path) return;
+          show(&(array.data->*member), array.count, sizeof(T));
+          found = true;
+        }
+      });
+    }
+  });
+  return found;
+}
+
+}  // namespace
+
+/// Room for `bytes` bytes of input.
+HEDON_EXPORT(hedon_text) char* hedon_text(int32_t bytes) {
+  text.assign(static_cast<size_t>(bytes), '\0');
+  return text.data();
+}
+
+/// The last message, which ends with a zero.
+HEDON_EXPORT(hedon_message) const char* hedon_message() { return message.c_str(); }
+
+/// Reads and checks the input.
+HEDON_EXPORT(hedon_read) int hedon_read() {
+  const std::string wrong = read_input(text, input);
+  if (!wrong.empty()) return fail(wrong);
+  const std::string setting = check_config(input.config);
+  if (!setting.empty()) return fail(setting);
+  const std::string company = check_company(input.config, input.walls, input.outer_walls, 1, 1, {});
+  return company.empty() ? 0 : fail(company);
+}
+
+/// Bytes that the world of the input needs; a page refuses what it cannot have before it is asked for.
+HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed() {
+  const MemoryNeed need = Simulation::bytes_needed(input.config, static_cast<int32_t>(input.walls.size()), 1, 1);
+  return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
+}
+
+/// Makes the world of the input; the world before is gone.
+HEDON_EXPORT(hedon_make) int hedon_make() {
+  simulation.reset();
+  learning = false;
+  simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
+                                            std::vector<uint64_t>{input.seed}, 1, find_kernel("portable"),
+                                            std::vector<int32_t>{});
+  scratch.assign(
+      static_cast<size_t>(learn_scratch_size(simulation->shape().network, simulation->config().learning)) + 32, 0.0f);
+  prepare_step(world());
+  return report_fault();
+}
+
+/// Advances by up to `steps` steps, but not past the end of a window that has not been learned. Returns the steps
+/// done; fewer if the world is over, has a fault, or must learn.
+HEDON_EXPORT(hedon_run) int32_t hedon_run(int32_t steps) {
+  TeamState one;
+  Team team(one, 0);
+  const int64_t window = simulation->shape().steps;
+  int32_t done = 0;
+  while (done < steps && !learning && !world().over()) {
+    step(team, world(), world().head().step % window, [](Part) {});
+    ++done;
+    if (world().head().step % window == 0 && !world().over()) {
+      learning = true;
+      learned = learners = 0;
+    }
+  }
+  return done;
+}
+
+/// Whether a window has ended whose learning is not done: 1 if `hedon_learn` must be called before the next step.
+HEDON_EXPORT(hedon_must_learn) int hedon_must_learn() { return learning ? 1 : 0; }
+
+/// Lets the next `count` learners learn; returns how many are left.
+HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
+  if (!learning) return 0;
+  Portion portion(learned, learned + count);
+  learn_window(portion, world(), aligned_scratch(), 0);
+  learned += count;
+  learners = portion.count();
+  if (!portion.done()) return learners - learned;
+  learning = false;
+  TeamState one;
+  Team team(one, 0);
+  audit(team, world());
+  return 0;
+}
+
+/// Status of the world: 0 while nothing is wrong.
+HEDON_EXPORT(hedon_fault) int hedon_fault() { return report_fault(); }
+
+/// The digest that `hedon run` gives for the same state. Not while a window is being learned.
+HEDON_EXPORT(hedon_digest) uint64_t hedon_digest() { return simulation->digest(0); }
+
+/// Room for the name of an array, of `bytes` bytes.
+HEDON_EXPORT(hedon_path) char* hedon_path(int32_t bytes) {
+  path.assign(static_cast<size_t>(bytes), '\0');
+  return path.data();
+}
+
+/// Where the array named by `hedon_path` lies; null if there is none. Valid until the next world is made.
+HEDON_EXPORT(hedon_view) const View* hedon_view() { return find_view() ? &view : nullptr; }
+
+/// Forgets the deaths that wait in the views `event.…`; call it when they are read.
+HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() { world().head().event_count = 0; }
+
+/// What the agent in `slot` senses now and how its network answers; changes nothing of the world's state.
+HEDON_EXPORT(hedon_mind) const Mind* hedon_mind(int32_t slot) {
+  note_start(world(), slot);
+  mind.observation = observe(world(), slot, 0);
+  world().kernel->forward(simulation->shape().network, world().network(slot), mind.observation, mind.output);
+  return &mind;
+}
+
+}  // namespace hedon

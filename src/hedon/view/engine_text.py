@@ -1,0 +1,37 @@
+"""A config as the text that the engine in a web page is made from; `engine/web/input.h` describes it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from hedon.config.arena import outer_count, walls
+from hedon.config.config import Config
+from hedon.config.native import engine_config
+
+
+def engine_text(config: Config, seed: int) -> str:
+    """One `path=value` per line: the seed, the walls, and every setting of the engine."""
+    lines = [f"seed={seed}", f"outer_walls={outer_count(config.arena)}"]
+    lines += ["wall=" + ",".join(repr(float(value)) for value in wall) for wall in walls(config.arena)]
+    lines += [f"{path}={engine_value(value)}" for path, value in engine_settings(config).items()]
+    return "\n".join(lines) + "\n"
+
+
+def engine_settings(config: Config) -> dict[str, Any]:
+    """Every setting of the engine by its path, as in `food[0].energy`."""
+    return dict(_flat(engine_config(config), ""))
+
+
+def engine_value(value: Any) -> str:
+    """A value as the text has it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _flat(inner, f"{path}.{name}" if path else name)
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from _flat(inner, f"{path}[{i}]")
+    else:
+        yield path, value

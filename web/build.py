@@ -1,0 +1,61 @@
+"""Builds what `hedon view` shows: the engine's two WebAssembly modules, then the page around them.
+
+`make viewer` calls it. It needs Node with npm for the page, and the dependency group `viewer` for the modules.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+STATIC = ROOT / "src" / "hedon" / "view" / "static"
+SOURCES = ("base/*.cpp", "kernel/kernel.cpp", "kernel/portable.cpp", "simulation/*.cpp", "web/*.cpp")
+FLAGS = (
+    "--target=wasm32-wasi",
+    "-std=c++20",
+    "-O3",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-msimd128",
+    "-mexec-model=reactor",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-Iengine",
+    "-Wl,--strip-all",
+    "-Wl,-z,stack-size=1048576",
+)
+MODULES = {"hedon.wasm": (), "hedon-relaxed.wasm": ("-mrelaxed-simd",)}
+"""Each module and the flags that it needs besides `FLAGS`: the second fuses multiply-adds where processors can."""
+
+
+def build_module(name: str, folder: Path) -> Path:
+    """Compiles one of `MODULES` into a folder; returns its path."""
+    sources = [str(path.relative_to(ROOT)) for glob in SOURCES for path in sorted((ROOT / "engine").glob(glob))]
+    out = folder / name
+    command = [sys.executable, "-m", "ziglang", "c++", *FLAGS, *MODULES[name], *sources, "-o", str(out)]
+    subprocess.run(command, cwd=ROOT, check=True)
+    out.chmod(0o644)
+    return out
+
+
+def build_page(folder: Path) -> None:
+    """Builds the page into a folder."""
+    web = ROOT / "web"
+    subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--silent"], cwd=web, check=True)
+    subprocess.run(["npm", "run", "--silent", "build", "--", "--outDir", str(folder)], cwd=web, check=True)
+
+
+def main() -> None:
+    """Builds everything into the package; with an argument, into that folder."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else STATIC
+    folder.mkdir(parents=True, exist_ok=True)
+    build_page(folder)
+    for name in MODULES:
+        build_module(name, folder)
+
+
+if __name__ == "__main__":
+    main()
