@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lanes/portable.h"
 #include "learning/ppo.h"
 #include "simulation/config_check.h"
 #include "simulation/memory.h"
@@ -190,6 +191,17 @@ HEDON_EXPORT(hedon_path) char* hedon_path(int32_t bytes) {
 
 /// Where the array named by `hedon_path` lies; null if there is none. Valid until the next world is made.
 HEDON_EXPORT(hedon_view) const View* hedon_view() { return find_view() ? &view : nullptr; }
+
+/// Index of the first food of a kind among the foods; for the number of kinds, the number of foods.
+HEDON_EXPORT(hedon_food_start) int32_t hedon_food_start(int32_t kind) { return simulation->shape().food_offset[kind]; }
+
+/// Whether this machine fuses multiply-adds: 1 for the bits of AVX2 and AVX-512. `near` must be 1 + 2^-12.
+HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
+  // The square has a last bit, 2^-24, which only a fused multiply-add keeps.
+  alignas(64) float rest[16];
+  store(rest, multiply_add(broadcast(near), broadcast(near), broadcast(-(2.0f * near - 1.0f))));
+  return rest[0] != 0.0f ? 1 : 0;
+}
 
 /// Forgets the deaths that wait in the views `event.…`; call it when they are read.
 HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() { world().head().event_count = 0; }

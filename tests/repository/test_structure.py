@@ -19,7 +19,7 @@ ALLOWED = {
     "world": {"base", "physics", "evolution", "learning", "kernel"},
     "simulation": {"base", "physics", "evolution", "learning", "kernel", "world"},
     "binding": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
-    "web": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
+    "web": {"base", "lanes", "physics", "evolution", "learning", "kernel", "world", "simulation"},
     "cuda": {"lanes", "kernel", "simulation"},
 }
 STEP_PATH = ("physics", "evolution", "learning", "world", "kernel")

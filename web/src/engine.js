@@ -3,8 +3,6 @@
 
 /** @typedef {Int8Array | Uint8Array | Int32Array | Uint32Array | Float32Array | Float64Array | BigInt64Array | BigUint64Array} Numbers */
 
-const PAGE = 65536;
-
 /** What the module asks of a system: a clock, and nothing else that is used. @param {() => WebAssembly.Memory} memory */
 function system(memory) {
   const refused = 52; // the system's number for "not there"
@@ -58,6 +56,11 @@ export class Engine {
     this.known.clear();
     this.#need(this.exports.hedon_make());
     return needed;
+  }
+
+  /** Whether multiply-adds are fused: then digests are those of AVX2 and AVX-512. */
+  get fuses() {
+    return this.exports.hedon_fuses(1 + 2 ** -12) === 1;
   }
 
   /** Steps until `steps` are done, a window must be learned, or the world is over. @param {number} steps */
@@ -119,6 +122,11 @@ export class Engine {
     return Number(new (numbers(place[3], place[4], place[5]))(this.memory.buffer, place[0], 1)[0]);
   }
 
+  /** Index of the first food of a kind among `physics.circles`. @param {number} kind */
+  foodStart(kind) {
+    return /** @type {number} */ (this.exports.hedon_food_start(kind));
+  }
+
   /** What the agent in a slot senses now, and its network's answer. @param {number} slot */
   mind(slot) {
     const at = this.exports.hedon_mind(slot);
@@ -129,10 +137,6 @@ export class Engine {
       dense: new Float32Array(buffer, at + 168, 6).slice(),
       output: new Float32Array(buffer, at + 192, 3).slice(),
     };
-  }
-
-  get bytes() {
-    return this.memory.buffer.byteLength / PAGE;
   }
 
   /** @param {string} name */
