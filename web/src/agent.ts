@@ -1,0 +1,158 @@
+// The panel of the chosen agent: its life, its kin to click, its genome, and what its network sees and says.
+import { by, element, show, table } from "./element";
+import { castRays } from "./rays";
+import type { Frame, Life, Source } from "./types";
+
+const SHOWN_CHILDREN = 12;
+
+export class AgentPanel {
+  private readonly host = by<HTMLDivElement>("agent");
+  private readonly sight = element("canvas", { class: "sight", title: "what each ray sees, from left to right" });
+  private readonly course = element("canvas", { class: "small", title: "energy since it was chosen" });
+  private energies: [number, number][] = [];
+  private last = "";
+
+  constructor(private readonly choose: (id: number) => void) {}
+
+  update(source: Source, frame: Frame | undefined, chosen: number): void {
+    if (this.host.hidden) return;
+    const key = `${chosen} ${frame?.step} ${source.lives.size} ${source.mind()?.id}`;
+    if (key === this.last) return;
+    this.last = key;
+    if (chosen < 0) return this.invite();
+    const life = source.lives.get(chosen);
+    const at = frame ? frame.id.indexOf(chosen) : -1;
+    const parts: Node[] = [element("h2", { text: `Agent ${chosen}` })];
+    if (at < 0) parts.push(element("p", { text: life ? whenGone(life, frame) : "There is no such agent in these records." }));
+    if (life) parts.push(this.lifeTable(source, life, frame, at), element("h3", { text: "genome" }), genome(source, life));
+    if (frame && at >= 0) {
+      this.note(frame.step, frame.energy[at]!);
+      parts.push(element("h3", { text: "energy while watched" }), this.course);
+      parts.push(element("h3", { text: "what its rays see, from left to right" }), this.sight);
+      parts.push(answer(source));
+    }
+    this.host.replaceChildren(...parts);
+    if (frame && at >= 0) {
+      drawSight(this.sight, source, frame, at);
+      this.drawCourse(source);
+    }
+  }
+
+  forget(): void {
+    this.energies = [];
+    this.last = "";
+  }
+
+  private invite(): void {
+    this.host.replaceChildren(
+      element("p", { text: "Click an agent to see its life, its genome and what it sees. The chosen agent is ringed, and so are its near kin." }),
+    );
+  }
+
+  private lifeTable(source: Source, life: Life, frame: Frame | undefined, at: number): HTMLElement {
+    const now = frame?.step ?? source.last;
+    const end = life.death >= 0 && life.death <= now ? life.death : now;
+    const rows: [string, Node | string][] = [
+      ["age", `${show(end - life.birth)} steps (born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""})`],
+      ["energy", show(at >= 0 ? frame!.energy[at] : life.energy)],
+      ["generation", show(life.generation)],
+      ["reward so far", show(life.reward)],
+      ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"],
+      ["children", this.children(source, life)],
+    ];
+    source.layout.foods.forEach((food, k) => rows.push([`${food.name} eaten`, show(life.eaten[k])]));
+    return table(rows);
+  }
+
+  private children(source: Source, life: Life): Node {
+    const known = source.lives.children(life.id);
+    const out = element("span", { text: `${show(life.children)} ` });
+    for (const id of known.slice(0, SHOWN_CHILDREN)) out.append(this.link(id), " ");
+    if (known.length > SHOWN_CHILDREN) out.append("…");
+    return out;
+  }
+
+  private link(id: number): HTMLElement {
+    const button = element("button", { text: String(id), class: "link" });
+    button.addEventListener("click", () => this.choose(id));
+    return button;
+  }
+
+  private note(step: number, energy: number): void {
+    const last = this.energies[this.energies.length - 1];
+    if (last && last[0] > step) this.energies = [];
+    if (!last || last[0] !== step) this.energies.push([step, energy]);
+    if (this.energies.length > 600) this.energies.shift();
+  }
+
+  private drawCourse(source: Source): void {
+    const pen = sized(this.course);
+    const [width, height] = [this.course.clientWidth, this.course.clientHeight];
+    const [first, last] = [this.energies[0]![0], this.energies[this.energies.length - 1]![0]];
+    const most = Math.max(1, ...this.energies.map(([, energy]) => energy));
+    pen.strokeStyle = "#e69f00";
+    pen.beginPath();
+    for (const [step, energy] of this.energies) {
+      pen.lineTo(((step - first) / Math.max(last - first, 1)) * width, height - (energy / most) * (height - 4) - 2);
+    }
+    pen.stroke();
+    pen.fillStyle = "#8a8f98";
+    pen.fillText(`up to ${show(most)} of ${show(source.layout.energy_capacity)}`, 3, 10);
+  }
+}
+
+function whenGone(life: Life, frame: Frame | undefined): string {
+  if (frame && life.birth > frame.step) return "Not yet born at this step.";
+  return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
+}
+
+/** Each gene as a bar from the middle; neutral ones are gray. */
+function genome(source: Source, life: Life): HTMLElement {
+  const limit = Math.max(0.1, ...life.genome.map(Math.abs));
+  const rows = source.layout.genes.map((gene, g): [string, Node] => {
+    const value = life.genome[g]!;
+    const bar = element("meter", { title: `${gene.name} = ${value}`, class: gene.role });
+    [bar.min, bar.max, bar.value] = [-limit, limit, value];
+    return [gene.name, element("span", {}, bar, ` ${show(value, 3)}`)];
+  });
+  const list = table(rows);
+  list.classList.add("genome");
+  return list;
+}
+
+function answer(source: Source): HTMLElement {
+  const mind = source.mind();
+  if (!mind) {
+    const why = source.live ? "…" : "Networks are not recorded. In a live world you see what they say.";
+    return element("p", { text: why, class: "quiet" });
+  }
+  const [left, right, value] = mind.output;
+  const share = (action: number) => `${(100 / (1 + Math.exp(-action))).toFixed(0)} %`;
+  return table([
+    ["left motor", share(left!)],
+    ["right motor", share(right!)],
+    ["value of now", show(value)],
+  ]);
+}
+
+function drawSight(canvas: HTMLCanvasElement, source: Source, frame: Frame, at: number): void {
+  const { layout } = source;
+  const pen = sized(canvas);
+  const rays = castRays(layout, frame, at).reverse();
+  const [width, height] = [canvas.clientWidth / rays.length, canvas.clientHeight];
+  const first = layout.types.length - 1 - layout.foods.length;
+  rays.forEach((ray, i) => {
+    if (ray.type < 0) return;
+    const tall = Math.max(3, (1 - ray.share) * height);
+    pen.fillStyle = layout.foods[ray.type - first]?.color ?? (ray.type < first ? "#0072b2" : "#8a8f98");
+    pen.fillRect(i * width + 0.5, height - tall, width - 1, tall);
+  });
+}
+
+function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
+  const ratio = window.devicePixelRatio || 1;
+  [canvas.width, canvas.height] = [Math.max(canvas.clientWidth, 1) * ratio, Math.max(canvas.clientHeight, 1) * ratio];
+  const pen = canvas.getContext("2d")!;
+  pen.scale(ratio, ratio);
+  return pen;
+}

@@ -1,0 +1,121 @@
+// Draws one moment of a world: walls, foods, agents, and what belongs to the chosen agent.
+import { type Coloring, foodColors, pack, paint, type Painted, parse } from "./color";
+import { styleColor } from "./element";
+import { castRays } from "./rays";
+import { Scene } from "./scene";
+import type { Frame, Source } from "./types";
+
+const TRAIL = 240; // places of the chosen agent that are kept
+
+export class Arena {
+  readonly scene: Scene;
+  showRays = true;
+  showTrail = true;
+  follow = false;
+  drawMilliseconds = 0; // of the last frame, on the page's side
+  private colors = new Uint32Array(256);
+  private trail: [number, number, number][] = []; // step, x, y
+  private fitted = false;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.scene = new Scene(canvas);
+  }
+
+  /** Shows the whole arena. */
+  fit(source: Source): void {
+    const { width, height } = source.layout.arena;
+    const { canvas } = this.scene;
+    [this.scene.centerX, this.scene.centerY] = [width / 2, height / 2];
+    this.scene.zoom = 0.96 * Math.min(canvas.width / width, canvas.height / height);
+    this.fitted = true;
+  }
+
+  draw(source: Source, frame: Frame | undefined, coloring: Coloring, chosen: number): Painted["legend"] | undefined {
+    const begun = performance.now();
+    if (this.scene.resize() || !this.fitted) this.fit(source);
+    const [background, ink] = [parse(styleColor("--ground")), pack(parse(styleColor("--wall")))];
+    this.scene.begin();
+    for (const [ax, ay, bx, by] of source.layout.arena.walls) this.scene.line(ax, ay, bx, by, ink);
+    const legend = frame ? this.drawFrame(source, frame, coloring, chosen) : undefined;
+    this.scene.end([background[0] / 255, background[1] / 255, background[2] / 255]);
+    this.drawMilliseconds = performance.now() - begun;
+    return legend;
+  }
+
+  /** The agent under a place in the world, or -1. */
+  pick(source: Source, frame: Frame, x: number, y: number): number {
+    const radius = source.layout.species[0]!.radius + 4 / this.scene.zoom;
+    let [best, found] = [radius * radius, -1];
+    for (let i = 0; i < frame.id.length; i++) {
+      const distance = (frame.x[i]! - x) ** 2 + (frame.y[i]! - y) ** 2;
+      if (distance < best) [best, found] = [distance, frame.id[i]!];
+    }
+    return found;
+  }
+
+  forgetTrail(): void {
+    this.trail = [];
+  }
+
+  private drawFrame(source: Source, frame: Frame, coloring: Coloring, chosen: number): Painted["legend"] {
+    const { layout } = source;
+    const { radius, mouth_degrees: mouth } = layout.species[0]!;
+    const mouthCosine = Math.cos((mouth * Math.PI) / 180);
+    if (this.colors.length < frame.id.length) this.colors = new Uint32Array(frame.id.length * 2);
+    const { colors, legend } = paint(coloring, source, frame, this.colors);
+    const at = frame.id.indexOf(chosen);
+    if (at >= 0) this.prepareChosen(source, frame, at);
+    const foods = foodColors(layout);
+    for (let f = 0; f < frame.foodX.length; f++) {
+      const kind = frame.foodKind[f]!;
+      this.scene.disc(frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius, foods[kind]!);
+    }
+    for (let i = 0; i < frame.id.length; i++) {
+      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouthCosine);
+    }
+    if (at >= 0) this.markKin(source, frame, at);
+    return legend;
+  }
+
+  private prepareChosen(source: Source, frame: Frame, at: number): void {
+    const [x, y] = [frame.x[at]!, frame.y[at]!];
+    if (this.follow) [this.scene.centerX, this.scene.centerY] = [x, y];
+    const last = this.trail[this.trail.length - 1];
+    if (last && last[0] > frame.step) this.trail = [];
+    if (!last || last[0] !== frame.step) this.trail.push([frame.step, x, y]);
+    if (this.trail.length > TRAIL) this.trail.shift();
+    if (this.showTrail) this.drawTrail();
+    if (this.showRays) this.drawRays(source, frame, at);
+  }
+
+  private drawTrail(): void {
+    const [r, g, b] = parse(styleColor("--mark"));
+    for (let i = 1; i < this.trail.length; i++) {
+      const [[, ax, ay], [, bx, by]] = [this.trail[i - 1]!, this.trail[i]!];
+      this.scene.line(ax, ay, bx, by, pack([r, g, b], Math.round((180 * i) / this.trail.length)));
+    }
+  }
+
+  private drawRays(source: Source, frame: Frame, at: number): void {
+    const { layout } = source;
+    const first = layout.types.length - 1 - layout.foods.length;
+    const [nothing, thing] = [pack(parse(styleColor("--quiet")), 110), pack(parse(styleColor("--mark")))];
+    for (const ray of castRays(layout, frame, at)) {
+      const food = layout.foods[ray.type - first];
+      const color = ray.type < 0 ? nothing : food ? pack(parse(food.color)) : thing;
+      this.scene.line(ray.x0, ray.y0, ray.x1, ray.y1, color);
+      if (ray.type >= 0) this.scene.disc(ray.x1, ray.y1, 1.4, color);
+    }
+  }
+
+  private markKin(source: Source, frame: Frame, at: number): void {
+    const { radius } = source.layout.species[0]!;
+    const [mark, kin] = [pack(parse(styleColor("--mark"))), pack(parse(styleColor("--kin")))];
+    const chosen = frame.id[at]!;
+    for (let i = 0; i < frame.id.length; i++) {
+      const related = i !== at && source.lives.kin(chosen, frame.id[i]!, 2);
+      if (related) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.35, kin, 0, 2, 0.14);
+    }
+    this.scene.disc(frame.x[at]!, frame.y[at]!, radius * 1.6, mark, 0, 2, 0.16);
+  }
+}

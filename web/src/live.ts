@@ -1,0 +1,153 @@
+// A world that the engine runs in this page, as a source of moments.
+import { Lives } from "./lives";
+import type { Moment, Order, Report } from "./live.worker";
+import { Series } from "./series";
+import type { Frame, LiveWorld, Mind, Source } from "./types";
+
+const SAMPLE_STEPS = 256; // between two points of the plots
+const KEPT_FRAMES = 2000; // that can be looked back at
+
+/** The engine's text of a world with some settings changed, and another seed. */
+export function textOf(world: LiveWorld, changes: Map<string, string>, seed: number): string {
+  const engine = new Map(world.settings.map((setting) => [setting.engine, changes.get(setting.path)]));
+  const line = (text: string) => {
+    const path = text.slice(0, text.indexOf("="));
+    if (path === "seed") return `seed=${seed}`;
+    const changed = engine.get(path);
+    return changed === undefined ? text : `${path}=${changed}`;
+  };
+  return world.text.trimEnd().split("\n").map(line).join("\n") + "\n";
+}
+
+export class Live implements Source {
+  readonly live = true;
+  readonly lives = new Lives();
+  readonly series = new Series();
+  readonly first = 0;
+  last = 0;
+  chosen = -1;
+  fused = false;
+  megabytes = 0;
+  stepsPerSecond = 0;
+  error = "";
+  over = false;
+  private ready = false;
+  private busy = false;
+  private learning = 0;
+  private known = "";
+  private seen: Mind | undefined;
+  private readonly frames: Frame[] = [];
+  private sampled = { step: 0, births: 0, deaths: 0 };
+  private measured = { time: performance.now(), steps: 0 };
+  private readonly worker = new Worker(new URL("./live.worker.ts", import.meta.url), { type: "module" });
+
+  constructor(
+    readonly world: LiveWorld,
+    readonly changes: Map<string, string>,
+    readonly seed: number,
+  ) {
+    this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
+    const text = textOf(world, changes, seed);
+    this.send({ type: "make", text, foods: world.layout.foods.length, genes: world.layout.genes.length });
+  }
+
+  get layout() {
+    return this.world.layout;
+  }
+
+  close(): void {
+    this.worker.terminate();
+  }
+
+  status(): string {
+    if (this.error) return this.error;
+    if (!this.ready) return "loading the engine …";
+    if (this.over) return `${this.world.name}, seed ${this.seed}: died out`;
+    const doing = this.learning > 0 ? `learning, ${this.learning} agents left` : `${this.stepsPerSecond.toFixed(0)} steps/s`;
+    return `${this.world.name}, seed ${this.seed}, live: ${doing}`;
+  }
+
+  digest(): string {
+    return this.known;
+  }
+
+  mind(): Mind | undefined {
+    return this.seen?.id === this.chosen ? this.seen : undefined;
+  }
+
+  /** Lets the world run by some steps, for at most this time; does nothing while it still does so. */
+  advance(steps: number, milliseconds: number): void {
+    if (!this.ready || this.busy || this.error || (this.over && steps > 0)) return;
+    this.busy = true;
+    // The digest reads the whole state: only a world that rests is asked for it.
+    this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0 });
+  }
+
+  /** Looks again without a step: for another chosen agent, or for the digest. */
+  look(): void {
+    if (this.known === "" || (this.chosen >= 0 && this.seen?.id !== this.chosen)) this.advance(0, 5);
+  }
+
+  around(step: number): { before?: Frame; after?: Frame } {
+    const at = this.frames.findLastIndex((frame) => frame.step <= step);
+    return { before: this.frames[Math.max(at, 0)], after: this.frames[at + 1] };
+  }
+
+  private send(order: Order): void {
+    this.worker.postMessage(order);
+  }
+
+  private take(report: Report): void {
+    this.busy = false;
+    if (report.type === "error") this.error = report.text;
+    else if (report.type === "made") {
+      this.ready = true;
+      this.fused = report.fused;
+      this.megabytes = report.bytes / 1e6;
+      this.advance(0, 1);
+    } else this.add(report.moment);
+  }
+
+  private add(moment: Moment): void {
+    const { frame } = moment;
+    this.learning = moment.learning;
+    this.known = moment.digest;
+    this.over = moment.over;
+    this.seen = moment.mind;
+    for (const life of moment.dead) this.lives.put(life);
+    for (const life of moment.lives) this.lives.put(life);
+    if (frame.step > this.last || this.frames.length === 0) {
+      this.frames.push(frame);
+      if (this.frames.length > KEPT_FRAMES) this.frames.shift();
+    }
+    this.last = frame.step;
+    this.measure(moment.done);
+    if (frame.step >= this.sampled.step + SAMPLE_STEPS || moment.over) this.sample(moment);
+  }
+
+  private measure(steps: number): void {
+    const now = performance.now();
+    this.measured.steps += steps;
+    const seconds = (now - this.measured.time) / 1000;
+    if (seconds < 1) return;
+    this.stepsPerSecond = this.measured.steps / seconds;
+    this.measured = { time: now, steps: 0 };
+  }
+
+  private sample(moment: Moment): void {
+    const { lives, frame, counts } = moment;
+    const mean = (of: (i: number) => number) => lives.reduce((sum, _, i) => sum + of(i), 0) / lives.length;
+    const row: Record<string, number> = { alive: lives.length, energy_mean: mean((i) => lives[i]!.energy) };
+    row.births = counts.births! - this.sampled.births;
+    row.deaths = counts.deaths! - this.sampled.deaths;
+    row.generation_max = lives.reduce((most, life) => Math.max(most, life.generation), 0);
+    this.layout.genes.forEach((gene, g) => {
+      row[`${gene.name}_mean`] = mean((i) => lives[i]!.genome[g]!);
+    });
+    this.layout.foods.forEach((food, k) => {
+      row[`food_${food.name}`] = frame.foodKind.reduce((count, kind) => count + (kind === k ? 1 : 0), 0);
+    });
+    this.series.add(frame.step, row);
+    this.sampled = { step: frame.step, births: counts.births!, deaths: counts.deaths! };
+  }
+}

@@ -1,0 +1,62 @@
+// The rays of one agent, from positions alone: what they hit in a moment that was recorded.
+import type { Frame, Layout } from "./types";
+
+export interface Ray {
+  x0: number;
+  y0: number;
+  x1: number;
+  y1: number;
+  type: number; // index into the layout's types; -1 for nothing
+  share: number; // of the ray's length before the hit
+}
+
+/** Distance along a ray from (ox, oy) in direction (dx, dy) to a disc, or Infinity. */
+function toDisc(ox: number, oy: number, dx: number, dy: number, x: number, y: number, radius: number): number {
+  const [px, py] = [x - ox, y - oy];
+  const along = px * dx + py * dy;
+  const rest = radius * radius - (px * px + py * py - along * along);
+  if (rest < 0) return Infinity;
+  const root = Math.sqrt(rest);
+  if (along + root < 0) return Infinity;
+  return Math.max(along - root, 0);
+}
+
+function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]: number[]): number {
+  const [ex, ey] = [bx! - ax!, by! - ay!];
+  const cross = dx * ey - dy * ex;
+  if (Math.abs(cross) < 1e-12) return Infinity;
+  const [px, py] = [ax! - ox, ay! - oy];
+  const along = (px * ey - py * ex) / cross;
+  const share = (px * dy - py * dx) / cross;
+  return along >= 0 && share >= 0 && share <= 1 ? along : Infinity;
+}
+
+/** The rays of agent `i` of a frame, from the right to the left. Heading 0 is up, positive is counter-clockwise. */
+export function castRays(layout: Layout, frame: Frame, i: number): Ray[] {
+  const { count, spread_degrees: spread, length } = layout.rays;
+  const body = layout.species[0]!.radius;
+  const [wall, [x, y]] = [layout.types.length - 1, [frame.x[i]!, frame.y[i]!]];
+  const foodType = layout.types.length - 1 - layout.foods.length;
+  const reach = body + length;
+  const rays: Ray[] = [];
+  for (let r = 0; r < count; r++) {
+    const turn = count === 1 ? 0 : -spread + (2 * spread * r) / (count - 1);
+    const angle = frame.angle[i]! + (turn * Math.PI) / 180;
+    const [dx, dy] = [-Math.sin(angle), Math.cos(angle)];
+    let [best, type] = [reach, -1];
+    const consider = (at: number, hit: number) => {
+      if (at < best && at >= 0) [best, type] = [Math.max(at, body), hit];
+    };
+    for (let j = 0; j < frame.id.length; j++) {
+      if (j === i || Math.abs(frame.x[j]! - x) > reach + body || Math.abs(frame.y[j]! - y) > reach + body) continue;
+      consider(toDisc(x, y, dx, dy, frame.x[j]!, frame.y[j]!, body), 0);
+    }
+    for (let f = 0; f < frame.foodX.length; f++) {
+      const kind = frame.foodKind[f]!;
+      consider(toDisc(x, y, dx, dy, frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius), foodType + kind);
+    }
+    for (const segment of layout.arena.walls) consider(toWall(x, y, dx, dy, segment), wall);
+    rays.push({ x0: x + body * dx, y0: y + body * dy, x1: x + best * dx, y1: y + best * dy, type, share: (best - body) / length });
+  }
+  return rays;
+}

@@ -1,0 +1,21 @@
+// Numbers of a world over time, column by column, in the order of steps.
+
+export class Series {
+  readonly step: number[] = [];
+  private readonly columns = new Map<string, number[]>();
+
+  /** Adds a row, unless its step is not after the last one. */
+  add(step: number, row: Record<string, number>): void {
+    if (this.step.length > 0 && step <= this.step[this.step.length - 1]!) return;
+    for (const [name, value] of Object.entries(row)) {
+      let column = this.columns.get(name);
+      if (!column) this.columns.set(name, (column = new Array<number>(this.step.length).fill(NaN)));
+      column.push(value);
+    }
+    this.step.push(step);
+  }
+
+  get(name: string): number[] {
+    return this.columns.get(name) ?? [];
+  }
+}

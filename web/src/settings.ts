@@ -1,0 +1,147 @@
+// The settings of a live world: each with its meaning, unit and range, refused in the same words as by the command.
+import { by, element, option } from "./element";
+import type { LiveWorld, Setting } from "./types";
+
+/** What is wrong with a value, as `hedon run --set` says it; "" if nothing is. */
+export function refusal(setting: Setting, text: string): string {
+  const shown = setting.choices.length > 0 ? JSON.stringify(text) : text;
+  const wrong = `${setting.path} = ${shown}: must be ${setting.allowed}`;
+  if (setting.choices.length > 0) return setting.choices.includes(text) ? "" : wrong;
+  if (typeof setting.value === "boolean") return text === "true" || text === "false" ? "" : wrong;
+  const value = Number(text);
+  if (text.trim() === "" || !Number.isFinite(value) || (setting.whole && !/^-?\d+$/.test(text.trim()))) return wrong;
+  const { ge, gt, le, lt } = setting;
+  const inside =
+    (ge === null || value >= ge) && (gt === null || value > gt) && (le === null || value <= le) && (lt === null || value < lt);
+  return inside ? "" : wrong;
+}
+
+/** The command that runs the same world, and gives the same digest. */
+export function command(world: LiveWorld, changes: Map<string, string>, seed: number, steps: number): string {
+  const words = ["hedon run", world.source];
+  if (world.fidelity !== "corrected") words.push(`--fidelity ${world.fidelity}`);
+  words.push(`--seeds ${seed}`, `--steps ${Math.max(steps, 1)}`);
+  for (const [path, value] of changes) words.push(`--set ${path}=${value}`);
+  return words.join(" ");
+}
+
+/** The same world as a config file. */
+export function configFile(world: LiveWorld, changes: Map<string, string>): string {
+  const lines = [`preset = "${world.source}"`, `fidelity = "${world.fidelity}"`];
+  const quoted = new Set(world.settings.filter((setting) => setting.choices.length > 0).map((setting) => setting.path));
+  for (const [path, value] of changes) lines.push(`${path} = ${quoted.has(path) ? JSON.stringify(value) : value}`);
+  return lines.join("\n") + "\n";
+}
+
+export class Settings {
+  readonly changes = new Map<string, string>();
+  private readonly host = by<HTMLDivElement>("settings");
+  private readonly problem = element("p", { class: "problem" });
+  private readonly wrong = new Map<string, string>();
+  private readonly seed = Object.assign(element("input"), { type: "number", min: "0", step: "1", value: "1" });
+
+  constructor(
+    world: LiveWorld,
+    seed: number,
+    start: (changes: Map<string, string>, seed: number) => void,
+    changes = new Map<string, string>(),
+  ) {
+    this.seed.value = String(seed);
+    this.problem.setAttribute("role", "alert");
+    const begin = element("button", { text: "Start again with these", class: "main" });
+    begin.id = "restart";
+    begin.addEventListener("click", () => {
+      if (this.wrong.size === 0) start(new Map(this.changes), Math.trunc(Number(this.seed.value)) || 0);
+    });
+    const search = Object.assign(element("input"), { type: "search", placeholder: "find a setting" });
+    search.setAttribute("aria-label", "Find a setting");
+    const list = element("div", { class: "list" });
+    const seedRow = element("label", { class: "setting" }, element("span", { text: "seed" }), this.seed);
+    this.host.replaceChildren(element("p", { text: world.description, class: "quiet" }), seedRow, begin, this.problem, search, list);
+    for (const [name, settings] of grouped(world.settings)) list.append(this.section(name, settings, changes));
+    search.addEventListener("input", () => filter(list, search.value));
+  }
+
+  private section(name: string, settings: Setting[], changes: Map<string, string>): HTMLElement {
+    const box = element("details", {}, element("summary", { text: name }));
+    box.open = settings.some((setting) => changes.has(setting.path));
+    for (const setting of settings) box.append(this.row(setting, changes.get(setting.path)));
+    return box;
+  }
+
+  private row(setting: Setting, changed: string | undefined): HTMLElement {
+    const own = String(setting.value);
+    const input = setting.choices.length > 0 ? element("select") : element("input");
+    for (const choice of setting.choices) input.append(option(choice, choice));
+    input.value = changed ?? own;
+    input.dataset.path = setting.path;
+    const name = setting.path.slice(setting.path.indexOf(".") + 1);
+    const row = element("label", { class: "setting" }, element("span", { text: name }), input);
+    const slider = range(setting);
+    const take = (text: string) => {
+      input.value = text;
+      this.take(setting, text, own, row);
+    };
+    input.addEventListener("input", () => {
+      if (slider) slider.value = String(toSlider(setting, Number(input.value)));
+      take(input.value);
+    });
+    if (slider) {
+      slider.value = String(toSlider(setting, Number(input.value)));
+      slider.setAttribute("aria-label", setting.path);
+      slider.addEventListener("input", () => take(fromSlider(setting, Number(slider.value))));
+      row.append(slider);
+    }
+    row.append(element("small", { text: `${setting.meaning}; ${setting.allowed}` }));
+    if (changed !== undefined) this.take(setting, changed, own, row);
+    return row;
+  }
+
+  private take(setting: Setting, text: string, own: string, row: HTMLElement): void {
+    const wrong = refusal(setting, text);
+    if (wrong) this.wrong.set(setting.path, wrong);
+    else this.wrong.delete(setting.path);
+    if (text === own) this.changes.delete(setting.path);
+    else this.changes.set(setting.path, text);
+    row.classList.toggle("changed", text !== own);
+    row.classList.toggle("wrong", wrong !== "");
+    this.problem.textContent = [...this.wrong.values()].join("\n");
+    by<HTMLButtonElement>("restart").disabled = this.wrong.size > 0;
+  }
+}
+
+function grouped(settings: Setting[]): Map<string, Setting[]> {
+  const groups = new Map<string, Setting[]>();
+  for (const setting of settings) {
+    const name = setting.path.slice(0, setting.path.indexOf("."));
+    groups.set(name, [...(groups.get(name) ?? []), setting]);
+  }
+  return groups;
+}
+
+function filter(list: HTMLElement, text: string): void {
+  for (const box of list.querySelectorAll("details")) {
+    let any = false;
+    for (const row of box.querySelectorAll<HTMLElement>(".setting")) {
+      row.hidden = !(box.firstChild!.textContent + " " + row.textContent).toLowerCase().includes(text.toLowerCase());
+      any ||= !row.hidden;
+    }
+    box.hidden = !any;
+    if (text) box.open = any;
+  }
+}
+
+/** A slider around the value that the world has, from a tenth to ten times of it, within the allowed range. */
+function range(setting: Setting): HTMLInputElement | undefined {
+  if (typeof setting.value !== "number" || setting.value <= 0) return undefined;
+  return Object.assign(element("input", { class: "slider" }), { type: "range", min: "-1", max: "1", step: "0.02" });
+}
+
+const toSlider = (setting: Setting, value: number): number => Math.log10(Math.max(value, 1e-9) / (setting.value as number));
+
+function fromSlider(setting: Setting, at: number): string {
+  let value = (setting.value as number) * 10 ** at;
+  if (Math.abs(at) < 0.01) return String(setting.value);
+  value = Math.min(Math.max(value, setting.ge ?? -Infinity), setting.le ?? Infinity);
+  return setting.whole ? String(Math.round(value)) : String(Number(value.toPrecision(3)));
+}

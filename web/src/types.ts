@@ -1,0 +1,121 @@
+// What a world consists of and what a moment of it is, as the page knows them. No word here is about one kind of world.
+
+export interface Gene {
+  name: string;
+  role: "reward" | "neutral";
+  input: string;
+}
+
+export interface Layout {
+  species: { name: string; capacity: number; radius: number; mouth_degrees: number }[];
+  types: string[];
+  foods: { name: string; radius: number; energy: number; color: string }[];
+  genes: Gene[];
+  rays: { count: number; spread_degrees: number; length: number };
+  arena: { width: number; height: number; walls: [number, number, number, number][] };
+  window: number;
+  energy_capacity: number;
+}
+
+/** Everything that has a place at one moment. Agents are in the order of their ids. */
+export interface Frame {
+  step: number;
+  id: Int32Array;
+  x: Float32Array;
+  y: Float32Array;
+  angle: Float32Array;
+  energy: Float32Array;
+  foodX: Float32Array;
+  foodY: Float32Array;
+  foodKind: Uint8Array;
+}
+
+/** One life, as far as it is known. */
+export interface Life {
+  id: number;
+  parent: number; // -1 for founders
+  generation: number;
+  birth: number;
+  death: number; // -1 while alive
+  energy: number;
+  children: number;
+  reward: number;
+  eaten: number[]; // by food
+  genome: number[];
+}
+
+/** What an agent senses now and how its network answers; only a live world knows it. */
+export interface Mind {
+  id: number;
+  reading: Float32Array; // distance + 1, 0 for nothing
+  type: Uint8Array;
+  output: Float32Array; // two actions, then the value
+}
+
+/** Something that happened, for the time line. */
+export interface Event {
+  step: number;
+  text: string;
+}
+
+/** Where moments come from: records, or a world that runs. */
+export interface Source {
+  readonly layout: Layout;
+  readonly live: boolean;
+  readonly first: number;
+  readonly last: number;
+  readonly lives: import("./lives").Lives;
+  readonly series: import("./series").Series;
+  /** The moments at or before `step` and after it, where they are known; asks for what is not. */
+  around(step: number): { before?: Frame; after?: Frame };
+  mind(): Mind | undefined;
+  status(): string;
+  /** The world's digest, or "" where it is not known. */
+  digest(): string;
+}
+
+export interface Setting {
+  path: string;
+  engine: string;
+  value: number | string | boolean;
+  choices: string[];
+  whole: boolean;
+  ge: number | null;
+  gt: number | null;
+  le: number | null;
+  lt: number | null;
+  unit: string;
+  meaning: string;
+  allowed: string;
+}
+
+export interface LiveWorld {
+  name: string;
+  description: string;
+  source: string;
+  fidelity: string;
+  layout: Layout;
+  text: string;
+  settings: Setting[];
+}
+
+export interface Part {
+  file: string;
+  bytes: number;
+  first?: number;
+  last?: number;
+}
+
+export interface RunIndex {
+  name: string;
+  folder: string;
+  status: string;
+  seeds: number[];
+  steps: number[];
+  asked: number;
+  extinct: (number | null)[];
+  frames: number;
+  digests: string[];
+  layout: Layout;
+  files: { agents: Part[]; population: Part[]; frames: Part[] };
+}
