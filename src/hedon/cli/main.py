@@ -19,6 +19,7 @@ from hedon.cli.report import report
 from hedon.cli.reproduce import reproduce
 from hedon.cli.resume import resume
 from hedon.cli.run import run
+from hedon.cli.view import view
 from hedon.error import HedonError
 from hedon.text import printable
 
@@ -41,6 +42,7 @@ app = typer.Typer(
 app.command()(run)
 app.command()(resume)
 app.command()(branch)
+app.command()(view)
 app.command()(report)
 app.command()(reproduce)
 app.command()(analyze)
@@ -77,6 +79,7 @@ def _hedon(
       hedon run baseline
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
       hedon resume runs/poison --steps 2048000
+      hedon view --live
       hedon report runs/poison
       hedon analyze runs/poison --only selection,drift
       hedon reproduce list

@@ -1,0 +1,77 @@
+"""`hedon view`: opens a run, or a live world, in the browser."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hedon.config.load import DEFAULT_PRESET
+from hedon.error import HedonError
+from hedon.text import printable
+
+if TYPE_CHECKING:
+    from hedon.view.server import Server
+
+
+class ViewArgumentError(HedonError):
+    """Arguments of `hedon view` that do not go together."""
+
+
+def view(
+    run: Annotated[
+        str | None, typer.Argument(metavar="RUN", help="Folder of a run; with --live a preset or a file.")
+    ] = None,
+    live: Annotated[bool, typer.Option("--live", help="Simulate in the browser: a preset, or a file (.toml).")] = False,
+    export: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write a site for any web server instead of opening the page.")
+    ] = None,
+    port: Annotated[int, typer.Option(help="Port of the local server; 0 for any free one.", min=0, max=65535)] = 0,
+    open_browser: Annotated[bool, typer.Option("--open/--no-open", help="Open the browser.")] = True,
+) -> None:
+    """Watch a run in the browser, or a world that the browser simulates itself.
+
+    Shows positions if the run was made with --frames, and its plots in any case. A run that goes on is followed. Ctrl-C
+    ends the server. It can be reached from this machine only, by the link that it prints.
+
+    \b
+    Examples:
+      hedon run baseline --frames 64 --out runs/seen
+      hedon view runs/seen
+      hedon view --live
+      hedon view --live poison
+      hedon view runs/seen --export site
+    """
+    from hedon.view.export import export as write_site
+    from hedon.view.index import RunIndex
+    from hedon.view.live import live_worlds
+    from hedon.view.server import Server
+
+    if run is None and not live:
+        raise ViewArgumentError("give the folder of a run, or --live for a world in the browser")
+    index = None if live or run is None else RunIndex(Path(run))
+    page = {"run": index is not None, "worlds": live_worlds((run or DEFAULT_PRESET) if live else "")}
+    data: dict[str, Any] = {"page": lambda: page}
+    if index is not None:
+        data["run"] = index.describe
+    if export is not None:
+        told = {name: tell() for name, tell in data.items()}
+        size = write_site(export, told, index.files() if index else {})
+        typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open its index.html through any web server")
+        return
+    _serve(Server(data, index.files if index else dict, port), open_browser)
+
+
+def _serve(server: "Server", open_browser: bool) -> None:
+    """Serves until Ctrl-C."""
+    import webbrowser
+
+    typer.echo(f"hedon: {server.link}")
+    typer.echo("Open this link in a browser on this machine. Ctrl-C ends.")
+    if open_browser:
+        webbrowser.open(server.link)
+    try:
+        server.serve_forever()
+    except KeyboardInterrupt:
+        typer.echo("ended")
+    finally:
+        server.server_close()

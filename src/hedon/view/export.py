@@ -1,0 +1,36 @@
+"""Writes the page as a static site, with the records that it needs, for any web server."""
+
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hedon.view.page import ViewError, page_files, to_json
+
+
+def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -> int:
+    """Writes a site.
+
+    Args:
+        folder: A new or empty folder.
+        data: What the page is told, by name.
+        records: The records that it reads, by name.
+
+    Returns:
+        The bytes written.
+
+    Raises:
+        ViewError: The folder holds something else already.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ViewError(f"{folder} is not empty: choose a new folder, or remove what is in it first")
+    pairs = [*page_files().items(), *((f"data/run/{name}", path) for name, path in records.items())]
+    for name, path in pairs:
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, target, follow_symlinks=False)
+    for name, told in data.items():
+        target = folder / "data" / f"{name}.json"
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(to_json(told))
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())

@@ -1,0 +1,107 @@
+"""The local server of `hedon view`: this machine only, reading only, and only what the page needs.
+
+Every link begins with a random token, so that other programs and pages that know the port get nothing. The server knows
+a list of names, and gives the file or data behind a name; it never makes a path out of what is asked for.
+"""
+
+import secrets
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path, PurePosixPath
+from typing import Any, cast
+from urllib.parse import urlsplit
+
+from hedon.error import HedonError
+from hedon.view.page import CONTENT_TYPES, page_files, to_json
+
+LOOPBACK = "127.0.0.1"
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; "
+        "style-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Embedder-Policy": "require-corp",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+
+Data = Mapping[str, Callable[[], Any]]
+"""What the page is told, by name: called at each request, since a run may go on."""
+Files = Callable[[], Mapping[str, Path]]
+"""The records that the page may read, by name."""
+
+
+class Server(ThreadingHTTPServer):
+    """Serves the page on a free port of this machine.
+
+    Args:
+        data: What the page is told, as `data/<name>.json`.
+        records: The records that it may read, as `data/run/<name>`.
+        port: 0 for any free one.
+    """
+
+    daemon_threads = True
+
+    def __init__(self, data: Data, records: Files, port: int = 0) -> None:
+        self.data = data
+        self.records = records
+        self.page = page_files()
+        self.token = secrets.token_urlsafe(24)
+        super().__init__((LOOPBACK, port), _Handler)
+        self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
+
+    @property
+    def link(self) -> str:
+        """Where the page is."""
+        return f"http://{LOOPBACK}:{self.server_port}/{self.token}/"
+
+    def find(self, path: str) -> tuple[str, bytes] | None:
+        """The type and content behind the path of a link, or None: a wrong token and a wrong name look the same."""
+        token, slash, name = path.removeprefix("/").partition("/")
+        if not slash or not secrets.compare_digest(token.encode(), self.token.encode()):
+            return None
+        name = name or "index.html"
+        if name.startswith("data/run/"):
+            return _content(name, self.records().get(name.removeprefix("data/run/")))
+        if name.startswith("data/") and name.endswith(".json"):
+            tell = self.data.get(name.removeprefix("data/").removesuffix(".json"))
+            return None if tell is None else (CONTENT_TYPES[".json"], to_json(tell()))
+        return _content(name, self.page.get(name))
+
+
+def _content(name: str, path: Path | None) -> tuple[str, bytes] | None:
+    if path is None or path.is_symlink():
+        return None
+    return CONTENT_TYPES.get(PurePosixPath(name).suffix, "application/octet-stream"), path.read_bytes()
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server_version = "hedon"
+    sys_version = ""
+
+    def do_GET(self) -> None:
+        # A page elsewhere could let a name of its own lead to this machine; then the host is that name.
+        server = cast(Server, self.server)
+        if self.headers.get("Host") not in server.hosts:
+            return self._answer(HTTPStatus.FORBIDDEN, "text/plain", b"wrong host\n")
+        try:
+            found = server.find(urlsplit(self.path).path)
+        except (HedonError, OSError) as error:
+            return self._answer(HTTPStatus.CONFLICT, "text/plain; charset=utf-8", f"{error}\n".encode())
+        if found is None:
+            return self._answer(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")
+        return self._answer(HTTPStatus.OK, *found)
+
+    def _answer(self, status: HTTPStatus, content_type: str, content: bytes) -> None:
+        self.send_response(status)
+        for name, value in {**HEADERS, "Content-Type": content_type, "Content-Length": str(len(content))}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(content)
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Prints nothing: a terminal is for people."""
