@@ -106,14 +106,17 @@ function whenGone(life: Life, frame: Frame | undefined): string {
   return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
 }
 
-/** Each gene as a bar from the middle; neutral ones are gray. */
+/** Each gene as a bar from the middle, where it is 0; neutral ones are gray. */
 function genome(source: Source, life: Life): HTMLElement {
   const limit = Math.max(0.1, ...life.genome.map(Math.abs));
   const rows = source.layout.genes.map((gene, g): [string, Node] => {
     const value = life.genome[g]!;
-    const bar = element("meter", { title: `${gene.name} = ${value}`, class: gene.role });
-    [bar.min, bar.max, bar.value] = [-limit, limit, value];
-    return [gene.name, element("span", {}, bar, ` ${show(value, 3)}`)];
+    const fill = element("i");
+    const share = (50 * Math.abs(value)) / limit;
+    fill.style.width = `${share}%`;
+    fill.style.left = `${value < 0 ? 50 - share : 50}%`;
+    const bar = element("div", { title: `${gene.name} = ${value}`, class: `gene ${gene.role} ${value < 0 ? "low" : "high"}` }, fill);
+    return [gene.name, element("div", {}, bar, show(value, 3))];
   });
   const list = table(rows);
   list.classList.add("genome");

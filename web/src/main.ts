@@ -91,7 +91,7 @@ export class App {
 
   play(on: boolean): void {
     this.playing = on;
-    by("play").textContent = on ? "⏸" : "▶";
+    by("play").textContent = on ? "Pause" : "Play";
     if (!on && this.source instanceof Live) this.source.look();
   }
 
@@ -224,6 +224,7 @@ export class App {
     by("theme").onclick = () => {
       const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
       document.documentElement.dataset.theme = dark ? "light" : "dark";
+      by("theme").textContent = dark ? "Dark" : "Light";
     };
     by("help-button").onclick = () => this.help();
   }

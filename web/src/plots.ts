@@ -73,10 +73,9 @@ export class Plots {
     if (withBand) for (const label of ["neutral, high", "neutral, low"]) lines.push({ label, stroke: "#8884", points: { show: false } });
     const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: 1 }, ticks: { show: false }, size: 44 };
     const options: uPlot.Options = {
-      title,
       width: 300,
       height: HEIGHT,
-      legend: { show: names.length > 1 },
+      legend: { show: false },
       cursor: { sync: { key: "time" }, y: false },
       scales: { x: { time: false } },
       series: [{ label: "step" }, ...lines],
@@ -84,6 +83,15 @@ export class Plots {
       axes: [{ ...axis, size: 26 }, axis],
       hooks: { draw: [(chart) => this.markNow(chart)] },
     };
+    const heading = element("p", { text: title, class: "plot-title" });
+    if (names.length > 1) {
+      labels.forEach((label, i) => {
+        const dot = element("b", { text: "●" });
+        dot.style.color = colors[i % colors.length]!;
+        heading.append(element("span", {}, dot, ` ${label}`));
+      });
+    }
+    host.append(heading);
     const chart = new uPlot(options, data(), host);
     chart.over.addEventListener("click", () => {
       const step = chart.posToVal(chart.cursor.left ?? -1, "x");

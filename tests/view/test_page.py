@@ -1,0 +1,240 @@
+"""The page in a real browser: what it shows is what the records and the engine say."""
+
+import http.server
+import io
+import json
+import shutil
+from functools import partial
+
+import numpy as np
+import polars as pl
+import pytest
+from matplotlib.image import imread
+from view_page import CHROMIUM, FLAGS, SIZE, Watched, live_server, record, run_server, serving
+
+from hedon import ConfigError, Simulation, _engine, load_config
+from hedon.record.manifest import load_manifest
+from hedon.record.reader import open_run
+from hedon.view.export import export
+from hedon.view.index import RunIndex
+
+playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group viewer")
+pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=f"needs {CHROMIUM}: apt-get install chromium")
+
+STEP = 640
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as tool:
+        opened = tool.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("view") / "run", 2048)
+
+
+@pytest.fixture
+def watch(browser):
+    """Opens links; at the end no page may have complained or asked another host for anything."""
+    opened = []
+
+    def open_link(link: str) -> Watched:
+        context = browser.new_context(viewport=SIZE)
+        opened.append((context, Watched(context.new_page(), link)))
+        return opened[-1][1]
+
+    yield open_link
+    for context, watched in opened:
+        context.close()
+        assert watched.faults == []
+
+
+def agents_at(folder, step):
+    rows = open_run(folder).frames().filter((pl.col("step") == step) & (pl.col("kind") == "agent")).collect()
+    return rows.sort("id")
+
+
+def pixels_of(watched):
+    return imread(io.BytesIO(watched.page.locator("#scene").screenshot()))[:, :, :3]
+
+
+def on_canvas(watched, x, y):
+    """Pixels of the canvas of places in the arena: the whole arena, as large as fits, with a rim of 2 % all around."""
+    arena = load_config("poison").arena
+    box = watched.page.locator("#scene").bounding_box()
+    zoom = 0.96 * min(box["width"] / arena.width, box["height"] / arena.height)
+    left = box["width"] / 2 + (x - arena.width / 2) * zoom
+    top = box["height"] / 2 - (y - arena.height / 2) * zoom
+    return left, top, zoom
+
+
+def test_agents_and_foods_are_drawn_where_the_records_have_them(run_folder, watch):
+    with serving(run_server(run_folder)) as server:
+        watched = watch(server.link)
+        watched.rest_at(STEP)
+        image = pixels_of(watched)
+        ground = image[image.shape[0] // 2, 2]
+        rows = open_run(run_folder).frames().filter(pl.col("step") == STEP).collect()
+        left, top, zoom = on_canvas(watched, rows["x"].to_numpy(), rows["y"].to_numpy())
+        bodies = load_config("poison").body
+        radius = np.where(rows["kind"] == "agent", bodies.radius, bodies.food_radius) * zoom
+        rows_of, columns = np.mgrid[0 : image.shape[0], 0 : image.shape[1]]
+        distance = np.min(
+            [np.hypot(columns + 0.5 - x, rows_of + 0.5 - y) - r for x, y, r in zip(left, top, radius, strict=True)],
+            axis=0,
+        )
+        painted = np.abs(image - ground).max(axis=2) > 0.02
+        # The white rim of a mouth may be as pale as the ground, so the inner part of each body is compared.
+        assert painted[distance < -0.25 * radius.max()].mean() > 0.999
+        inside = (columns > left.min()) & (columns < left.max()) & (rows_of > top.min()) & (rows_of < top.max())
+        assert painted[(distance > 3) & inside].mean() < 0.001
+
+
+def test_a_click_chooses_the_agent_under_it(run_folder, watch):
+    with serving(run_server(run_folder)) as server:
+        watched = watch(server.link)
+        watched.rest_at(STEP)
+        for row in agents_at(run_folder, STEP).to_dicts()[::11]:
+            left, top, _ = on_canvas(watched, row["x"], row["y"])
+            watched.page.locator("#scene").click(position={"x": left, "y": top})
+            watched.until(f"document.querySelector('#agent h2')?.textContent === 'Agent {row['id']}'")
+            shown = watched.page.locator("#agent table").first.inner_text()
+            assert f"{row['energy']:.2f}".rstrip("0").rstrip(".") in shown
+
+
+def test_the_keyboard_moves_through_time_and_agents(run_folder, watch):
+    with serving(run_server(run_folder)) as server:
+        watched = watch(server.link)
+        watched.rest_at(STEP)
+        watched.page.keyboard.press("ArrowRight")
+        watched.until(f"hedon.frame.step === {STEP + 64}")
+        watched.page.keyboard.press("ArrowLeft")
+        watched.until(f"hedon.frame.step === {STEP}")
+        watched.page.keyboard.press("n")
+        watched.until("hedon.chosen >= 0")
+        watched.page.keyboard.press("End")
+        watched.until("hedon.now === hedon.source.last && hedon.source.last === 2048")
+        watched.page.keyboard.press("Escape")
+        assert watched.get("hedon.chosen") == -1
+
+
+def test_a_link_leads_to_its_moment(run_folder, watch):
+    with serving(run_server(run_folder)) as server:
+        chosen = agents_at(run_folder, STEP)["id"][7]
+        watched = watch(f"{server.link}#world=0&step={STEP}&agent={chosen}")
+        watched.until(f"hedon.frame && hedon.frame.step === {STEP}")
+        watched.until(f"document.querySelector('#agent h2')?.textContent === 'Agent {chosen}'")
+
+
+def test_the_page_shows_the_digest_of_the_run(run_folder, watch):
+    with serving(run_server(run_folder)) as server:
+        watched = watch(server.link)
+        digest = load_manifest(run_folder).world_digests[0]
+        watched.until(f"document.querySelector('#digest')?.textContent.includes('{digest}')")
+
+
+@pytest.mark.parametrize("steps", [1030, pytest.param(20 * 1024, marks=pytest.mark.long)])
+def test_a_live_world_has_the_digest_of_the_native_one(steps, watch):
+    with serving(live_server("poison")) as server:
+        watched = watch(server.link)
+        watched.get("hedon.play(false)")
+        watched.until("!hedon.source.busy")
+        fused = watched.get("hedon.source.fused")
+        while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
+            watched.get(f"hedon.source.advance({steps - done}, 5000)")
+            watched.until("!hedon.source.busy")
+        watched.until("hedon.source.digest() !== ''")
+        kernel = next((k for k in _engine.kernel.kernel_names() if k != "portable"), "") if fused else "portable"
+        simulation = Simulation(load_config("poison"), seeds=[1], kernel=kernel)
+        simulation.run(steps)
+        assert watched.get("[hedon.source.last, hedon.source.digest()]") == [steps, simulation.worlds[0].digest()]
+
+
+def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
+    with serving(live_server("small")) as server:
+        watched = watch(server.link)
+        watched.get("hedon.choose(hedon.frame.id[2])")
+        watched.until("document.querySelector('#agent').textContent.includes('value of now')")
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [("food.normal.energy", "1000000"), ("population.capacity", "1.5"), ("energy.initial", "many")],
+)
+def test_a_setting_is_refused_in_the_words_of_the_command(path, value, watch):
+    given = value if value != "many" else f'"{value}"'
+    with pytest.raises(ConfigError) as refused:
+        load_config("poison", overrides=[f"{path}={given}"])
+    message = refused.value.problems[0].message
+    with serving(live_server("poison")) as server:
+        watched = watch(server.link)
+        watched.get("hedon.tab('settings')")
+        watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
+        watched.page.locator(f"[data-path='{path}']").fill(value)
+        watched.until("document.querySelector('.problem').textContent !== ''")
+        assert watched.page.locator(".problem").inner_text() == f"{path} = {value}: {message}"
+        assert watched.page.locator("#restart").is_disabled()
+
+
+def test_a_changed_setting_makes_the_world_that_the_command_makes(watch):
+    with serving(live_server("small")) as server:
+        watched = watch(server.link)
+        watched.get("hedon.tab('settings')")
+        watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
+        watched.page.locator("[data-path='food.normal.initial_count']").fill("37")
+        watched.page.locator("#restart").click()
+        watched.until("hedon.source.changes.size === 1 && hedon.frame")
+        watched.get("hedon.play(false)")
+        watched.until("!hedon.source.busy && hedon.source.digest() !== ''")
+        steps = watched.get("hedon.source.last")
+        kernel = "" if watched.get("hedon.source.fused") else "portable"
+        simulation = Simulation(load_config("small", overrides=["food.normal.initial_count=37"]), [1], kernel=kernel)
+        simulation.run(steps)
+        assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
+
+
+def test_a_run_that_goes_on_is_followed(run_folder, tmp_path, watch):
+    folder = record(tmp_path / "growing", 1024)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps(manifest | {"status": "running"}))
+    with serving(run_server(folder)) as server:
+        watched = watch(server.link)
+        watched.until("hedon.source.last === 1024")
+        for table in ("agents", "population", "frames"):
+            shutil.copytree(run_folder / table, folder / table, dirs_exist_ok=True)
+        watched.until("hedon.source.last === 2048")
+        watched.rest_at(2048)
+        assert watched.get("hedon.frame.id.length") == len(agents_at(run_folder, 2048))
+
+
+def test_names_of_a_hostile_run_stay_text(run_folder, tmp_path, watch):
+    evil = "<img src=x onerror=document.title='taken'>"
+    folder = tmp_path / evil.replace("/", "")
+    shutil.copytree(run_folder, folder)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps(manifest | {"name": evil}))
+    with serving(run_server(folder)) as server:
+        watched = watch(server.link)
+        watched.until("document.querySelector('#status').textContent.includes('<img')")
+        assert watched.page.locator("img").count() == 0
+        assert watched.page.title() == "hedon"
+
+
+def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
+    index = RunIndex(run_folder)
+    site = tmp_path / "site"
+    export(site, {"page": {"run": True, "worlds": []}, "run": index.describe()}, index.files())
+
+    class Quiet(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *args):
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=site))
+    with serving(server):
+        watched = watch(f"http://127.0.0.1:{server.server_port}/index.html")
+        watched.rest_at(STEP)
+        assert watched.get("Array.from(hedon.frame.id)") == agents_at(run_folder, STEP)["id"].to_list()

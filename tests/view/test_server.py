@@ -1,0 +1,112 @@
+"""The local server gives the page and the run's tables to who has the link, and nothing else to anyone."""
+
+import http.client
+
+import pytest
+from typer.testing import CliRunner
+from view_page import record, run_server, serving
+
+from hedon.cli.main import app
+from hedon.record.error import RecordError
+from hedon.view.export import export
+from hedon.view.index import RunIndex
+from hedon.view.page import ViewError
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("served") / "run", 128)
+
+
+@pytest.fixture
+def server(folder):
+    with serving(run_server(folder)) as running:
+        yield running
+
+
+def ask(server, path, method="GET", host=None):
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10)
+    connection.request(method, path, headers={"Host": host or f"127.0.0.1:{server.server_port}"})
+    answer = connection.getresponse()
+    body = answer.read()
+    connection.close()
+    return answer, body
+
+
+def test_the_link_gives_page_data_and_records(server, folder):
+    for name, start in (("", b"<!doctype html>"), ("data/run.json", b"{"), ("hedon.wasm", b"\0asm")):
+        answer, body = ask(server, f"/{server.token}/{name}")
+        assert (answer.status, body[: len(start)]) == (200, start)
+    answer, body = ask(server, f"/{server.token}/data/run/frames/part-000000.parquet")
+    assert body == (folder / "frames" / "part-000000.parquet").read_bytes()
+
+
+def test_without_the_token_there_is_nothing(server):
+    for path in ("/", "/index.html", "/data/run.json", f"/{server.token[:-1]}/", f"/{server.token}", "//"):
+        assert ask(server, path)[0].status == 404
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "data/run/manifest.json",
+        "data/run/config.toml",
+        "data/run/../manifest.json",
+        "data/run/frames/../config.toml",
+        "data/run/%2e%2e/manifest.json",
+        "data/run//etc/passwd",
+        "../../../../etc/passwd",
+        "data/run/frames/part-999999.parquet",
+        "data/other.json",
+    ],
+)
+def test_only_the_tables_of_the_run_are_served(server, name):
+    assert ask(server, f"/{server.token}/{name}")[0].status == 404
+
+
+def test_another_host_name_is_refused(server):
+    assert ask(server, f"/{server.token}/", host="evil.example")[0].status == 403
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS"])
+def test_nothing_can_be_written(server, method):
+    assert ask(server, f"/{server.token}/data/run.json", method=method)[0].status == 501
+
+
+def test_it_listens_on_this_machine_alone_and_forbids_what_a_page_does_not_need(server):
+    assert server.server_address[0] == "127.0.0.1"
+    policy = ask(server, f"/{server.token}/")[0].headers["Content-Security-Policy"]
+    assert "default-src 'none'" in policy
+    assert "script-src 'self' 'wasm-unsafe-eval';" in policy
+    assert "unsafe-inline" not in policy
+
+
+def test_a_run_with_a_link_inside_is_refused(server, folder, tmp_path):
+    trap = folder / "frames" / "part-000009.parquet"
+    (tmp_path / "secret").write_text("secret")
+    trap.symlink_to(tmp_path / "secret")
+    try:
+        answer, body = ask(server, f"/{server.token}/data/run/frames/part-000009.parquet")
+        assert answer.status == 409
+        assert b"symbolic link" in body
+        with pytest.raises(RecordError, match="symbolic link"):
+            RunIndex(folder)
+    finally:
+        trap.unlink()
+
+
+def test_a_site_is_not_written_over_something_else(tmp_path):
+    (tmp_path / "mine").write_text("mine")
+    with pytest.raises(ViewError, match="is not empty"):
+        export(tmp_path, {}, {})
+
+
+def test_the_command_exports_a_live_page(tmp_path):
+    done = CliRunner().invoke(app, ["view", "--live", "small", "--export", str(tmp_path / "site")])
+    assert done.exit_code == 0
+    assert (tmp_path / "site" / "hedon.wasm").is_file()
+    assert (tmp_path / "site" / "data" / "page.json").is_file()
+
+
+def test_the_command_wants_a_run_or_a_live_world():
+    assert "--live" in str(CliRunner().invoke(app, ["view"]).exception)

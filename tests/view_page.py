@@ -1,0 +1,87 @@
+"""A recorded run, servers and a browser for the tests of the viewer."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from hedon import load_config
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
+from hedon.view.index import RunIndex
+from hedon.view.live import live_worlds
+from hedon.view.server import Server
+
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
+SIZE = {"width": 1280, "height": 720}
+
+
+def record(folder: Path, steps: int) -> Path:
+    """Records a run with two kinds of food and a frame each 64 steps."""
+    run(RunPlan(load_config("poison"), (1,), steps, folder, 1, 64))
+    return folder
+
+
+@contextmanager
+def serving(server: Any) -> Iterator[Any]:
+    """A server in a thread of its own."""
+    thread = threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True)
+    thread.start()
+    try:
+        yield server
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()
+
+
+def run_server(folder: Path) -> Server:
+    """What `hedon view RUN` serves."""
+    index = RunIndex(folder)
+    page = {"run": True, "worlds": live_worlds("poison")[:1]}
+    return Server({"page": lambda: page, "run": index.describe}, index.files)
+
+
+def live_server(source: str) -> Server:
+    """What `hedon view --live SOURCE` serves."""
+    page = {"run": False, "worlds": live_worlds(source)}
+    return Server({"page": lambda: page}, dict)
+
+
+class Watched:
+    """A page of the browser, with everything that it complained about or asked of others."""
+
+    def __init__(self, page: Any, link: str) -> None:
+        self.page = page
+        self.faults: list[str] = []
+        page.on("console", lambda message: message.type == "error" and self.faults.append(message.text))
+        page.on("pageerror", lambda error: self.faults.append(str(error)))
+        page.on("request", lambda request: self._check(request.url, link))
+        page.goto(link)
+        self.until("window.hedon && hedon.pictures > 0")
+
+    def _check(self, url: str, link: str) -> None:
+        origin = "/".join(link.split("/")[:3]) + "/"
+        if not url.startswith((origin, "data:", f"blob:{origin}")):
+            self.faults.append(f"asked {url}")
+
+    def until(self, condition: str, seconds: float = 40.0) -> None:
+        """Waits; by asking again and again, since the page's policy allows no code from strings."""
+        end = time.monotonic() + seconds
+        while not self.page.evaluate(f"!!({condition})"):
+            assert time.monotonic() < end, f"never: {condition}; {self.faults}"
+            time.sleep(0.05)
+
+    def get(self, code: str) -> Any:
+        """The value of an expression in the page."""
+        return self.page.evaluate(code)
+
+    def rest_at(self, step: int) -> None:
+        """Stops at a step of the records and waits until it is drawn."""
+        self.get(f"(hedon.play(false), hedon.seek({step}))")
+        self.until(f"hedon.frame && hedon.frame.step === {step}")
+        drawn = self.get("hedon.pictures")
+        self.until(f"hedon.pictures > {drawn} + 2")
