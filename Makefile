@@ -5,11 +5,11 @@ RUN := $(UV) run --no-progress
 # Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
 
-.PHONY: run test test-long static sanitized sync stubs clean
+.PHONY: run test test-long static sanitized sync stubs viewer clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
-	$(RUN) hedon run baseline
+	$(RUN) hedon run baseline --frames 64
 
 test: sync
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
@@ -61,5 +61,9 @@ stubs: sync
 	rm -rf src/hedon/_engine
 	$(RUN) python -m nanobind.stubgen -q -r -m hedon._engine -O src/hedon
 
+# The page and the WebAssembly of `hedon view`, after a change in web/ or engine/. Needs Node 20 or newer with npm.
+viewer: sync
+	$(RUN) --group viewer python web/build.py
+
 clean:
-	rm -rf build .venv .uv .pytest_cache .ruff_cache
+	rm -rf build web/node_modules .venv .uv .pytest_cache .ruff_cache

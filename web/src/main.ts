@@ -8,6 +8,7 @@ import { by, element, option, show } from "./element";
 import { bindKeys, bindMouse, HELP } from "./control";
 import { Live } from "./live";
 import { Plots } from "./plots";
+import { castRays, type Ray } from "./rays";
 import { Replay } from "./replay";
 import { command, configFile, Settings } from "./settings";
 import { events, Timeline } from "./timeline";
@@ -224,9 +225,13 @@ export class App {
     by("theme").onclick = () => {
       const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
       document.documentElement.dataset.theme = dark ? "light" : "dark";
-      by("theme").textContent = dark ? "Dark" : "Light";
     };
     by("help-button").onclick = () => this.help();
+  }
+
+  /** The rays of an agent of the moment that is shown. */
+  rays(i: number): Ray[] {
+    return this.frame ? castRays(this.source.layout, this.frame, i) : [];
   }
 
   help(): void {

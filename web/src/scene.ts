@@ -27,7 +27,7 @@ void main() {
   if (shape.x < 1.5) {
     float front = dot(at, ahead) / max(r, 1e-6);
     float mouth = smoothstep(0.80, 0.86, r) * step(shape.x, front);
-    base = mix(base, vec3(1.0), 0.9 * mouth);
+    base = mix(base, vec3(0.93, 0.2, 0.2), mouth);
     float eye = length(at - 0.5 * ahead);
     base = mix(base, vec3(0.05), 1.0 - smoothstep(0.14, 0.14 + pixel * 2.0, eye));
     base *= 1.0 - 0.35 * smoothstep(0.90, 1.0, r) * (1.0 - mouth);

@@ -106,6 +106,8 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
     show_report(plan.out, console)
     console.print(f"Write the report again with: hedon report {folder}", soft_wrap=True)
+    unseen = "" if plan.frames else " (plots only: a run with --frames 64 also shows its agents)"
+    console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

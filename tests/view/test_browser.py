@@ -13,6 +13,7 @@ from matplotlib.image import imread
 from view_page import CHROMIUM, FLAGS, SIZE, Watched, live_server, record, run_server, serving
 
 from hedon import ConfigError, Simulation, _engine, load_config
+from hedon.experiment.resume import resume
 from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 from hedon.view.export import export
@@ -161,6 +162,32 @@ def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
         watched.until("document.querySelector('#agent').textContent.includes('value of now')")
 
 
+def test_rays_are_drawn_as_the_engine_casts_them(watch):
+    with serving(live_server("poison")) as server:
+        watched = watch(server.link)
+        watched.get("hedon.play(false)")
+        watched.until("!hedon.source.busy")
+        watched.get("hedon.source.advance(200, 20000)")
+        watched.until("hedon.source.last >= 200 && !hedon.source.busy")
+        watched.get("hedon.seek(hedon.source.last)")
+        watched.until("hedon.frame.step === hedon.source.last")
+        seen = 0
+        for i in range(0, watched.get("hedon.frame.id.length"), 7):
+            watched.get(f"hedon.choose(hedon.frame.id[{i}])")
+            watched.until(f"hedon.source.mind()?.id === hedon.frame.id[{i}]")
+            drawn = watched.get(f"hedon.rays({i})")
+            reading = watched.get("Array.from(hedon.source.mind().reading)")
+            types = watched.get("Array.from(hedon.source.mind().type)")
+            for r, ray in enumerate(drawn):
+                assert (ray["type"] >= 0) == (reading[r] > 0)
+                if ray["type"] >= 0:
+                    # A reading is 2 minus the share of the ray's length; float32 in the engine, double in the page.
+                    assert ray["share"] == pytest.approx(2 - reading[r], abs=2e-4)
+                    assert ray["type"] == types[r]
+                    seen += 1
+        assert seen > 50
+
+
 @pytest.mark.parametrize(
     ("path", "value"),
     [("food.normal.energy", "1000000"), ("population.capacity", "1.5"), ("energy.initial", "many")],
@@ -204,8 +231,7 @@ def test_a_run_that_goes_on_is_followed(run_folder, tmp_path, watch):
     with serving(run_server(folder)) as server:
         watched = watch(server.link)
         watched.until("hedon.source.last === 1024")
-        for table in ("agents", "population", "frames"):
-            shutil.copytree(run_folder / table, folder / table, dirs_exist_ok=True)
+        resume(folder, 2048, threads=1)
         watched.until("hedon.source.last === 2048")
         watched.rest_at(2048)
         assert watched.get("hedon.frame.id.length") == len(agents_at(run_folder, 2048))
