@@ -37,7 +37,7 @@ void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
 /// whole block of a world, and with small pages it would spend more time on address translation than on reading.
 class Memory {
  public:
-  static constexpr int64_t ALIGNMENT = 64;           ///< of each array: a cache line, and 16 floats
+  static constexpr int64_t ALIGNMENT = 64;  ///< of each array: a cache line, and 16 floats
 #if defined(__wasm__)
   static constexpr int64_t PAGE = ALIGNMENT;  ///< no pages to choose from, and all memory is committed
 #else

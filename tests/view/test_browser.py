@@ -256,7 +256,7 @@ def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
     export(site, {"page": {"run": True, "worlds": []}, "run": index.describe()}, index.files())
 
     class Quiet(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, *args):
+        def log_message(self, format, *args):  # noqa: A002
             pass
 
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=site))

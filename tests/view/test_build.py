@@ -1,0 +1,51 @@
+"""The built page and modules in the package are what their sources give, and the demo site has the same ones."""
+
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from project_files import ROOT
+
+from hedon.view.page import STATIC, page_files
+
+WEB = ROOT / "web"
+MODULES = ("hedon.wasm", "hedon-relaxed.wasm")
+
+
+def test_the_demo_site_has_the_page_of_the_package():
+    site = ROOT / "docs" / "live"
+    for name, path in page_files().items():
+        assert (site / name).read_bytes() == path.read_bytes(), f"{name} is older: write docs/live again"
+
+
+def test_the_page_is_small():
+    """Compressed, without records; a server or a code host compresses like this."""
+    import gzip
+
+    assert sum(len(gzip.compress(path.read_bytes())) for path in page_files().values()) < 400_000
+
+
+@pytest.mark.skipif(
+    shutil.which("npx") is None or not (WEB / "node_modules").is_dir(),
+    reason="needs Node and the page's packages: npm ci --prefix web",
+)
+def test_the_page_is_what_its_sources_give(tmp_path):
+    command = ["npm", "run", "--silent", "build", "--", "--outDir", str(tmp_path)]
+    subprocess.run(command, cwd=WEB, check=True, capture_output=True)
+    built = {path.relative_to(tmp_path).as_posix(): path for path in tmp_path.rglob("*") if path.is_file()}
+    assert set(built) == set(page_files()) - set(MODULES)
+    for name, path in built.items():
+        assert path.read_bytes() == (STATIC / name).read_bytes(), f"{name}: call `make viewer`"
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("ziglang") is None, reason="needs the compiler: uv sync --group viewer")
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_is_what_its_sources_give(module, tmp_path):
+    program = "import sys; sys.path.insert(0, 'web'); import build; from pathlib import Path; "
+    program += f"build.build_module({module!r}, Path({str(tmp_path)!r}))"
+    subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True)
+    assert (Path(tmp_path) / module).read_bytes() == (STATIC / module).read_bytes(), "call `make viewer`"
