@@ -2,6 +2,8 @@
 PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
+# The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
+BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
 
@@ -13,7 +15,7 @@ run: sync
 
 test: sync
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
-	$(RUN) pytest --numprocesses auto --dist loadfile
+	$(RUN) $(BROWSER) pytest --numprocesses auto --dist loadfile
 
 # Side by side, since each keeps one processor busy.
 static: sync

@@ -19,7 +19,7 @@ from hedon.record.reader import open_run
 from hedon.view.export import export
 from hedon.view.index import RunIndex
 
-playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group viewer")
+playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group browser")
 pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=f"needs {CHROMIUM}: apt-get install chromium")
 
 STEP = 640
