@@ -1,0 +1,53 @@
+"""What the page is told about a world: its layout, its settings, and the text that the engine reads."""
+
+import json
+
+import pytest
+
+from hedon.config import PRESETS, engine_config, load_config
+from hedon.config.field import leaves
+from hedon.record.schema import weight_names
+from hedon.view.engine_text import engine_settings, engine_text
+from hedon.view.layout import describe
+from hedon.view.live import live_world
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_layout_names_everything_that_records_and_senses_have(preset):
+    config = load_config(preset)
+    layout = describe(config)
+    assert [gene["name"] for gene in layout["genes"]] == list(weight_names(tuple(config.food), 16))
+    assert [gene["role"] for gene in layout["genes"]].count("neutral") == config.genome.neutral_count
+    assert layout["types"] == ["agent", *config.food, "wall"]
+    assert [food["energy"] for food in layout["foods"]] == [food.energy for food in config.food.values()]
+    assert layout["arena"]["width"] == config.arena.width
+    assert len(layout["arena"]["walls"]) >= 4
+    json.dumps(layout, allow_nan=False)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
+    config = load_config(preset)
+    engine, world = engine_settings(config), live_world(config, preset)
+    values = {path: value for path, _, value in leaves(config)}
+    assert len(world["settings"]) > 70
+    for setting in world["settings"]:
+        assert engine[setting["engine"]] == setting["value"] == values[setting["path"]]
+
+
+def test_a_changed_setting_changes_only_its_line_of_the_text():
+    """What the page does to the text by itself is what the command's config gives."""
+    for setting in live_world(load_config("poison"), "poison")["settings"]:
+        if setting["path"] not in ("food.poison.energy", "food.poison.gene.initial_sd", "energy.initial"):
+            continue
+        before = engine_text(load_config("poison"), 1).splitlines()
+        after = engine_text(load_config("poison", overrides=[f"{setting['path']}=0.5"]), 1).splitlines()
+        changed = [(old, new) for old, new in zip(before, after, strict=True) if old != new]
+        assert changed == [(f"{setting['engine']}={setting['value']}", f"{setting['engine']}=0.5")]
+
+
+def test_the_text_has_every_setting_of_the_engine():
+    text = engine_text(load_config("baseline"), 7)
+    assert text.startswith("seed=7\nouter_walls=")
+    for section in engine_config(load_config("baseline")):
+        assert f"\n{section}" in text
