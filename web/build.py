@@ -44,7 +44,7 @@ def build_module(name: str, folder: Path) -> Path:
 def build_page(folder: Path) -> None:
     """Builds the page into a folder."""
     web = ROOT / "web"
-    subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--silent"], cwd=web, check=True)
+    subprocess.run(["npm", "install", "--no-save", "--no-audit", "--no-fund", "--silent"], cwd=web, check=True)
     subprocess.run(["npm", "run", "--silent", "build", "--", "--outDir", str(folder)], cwd=web, check=True)
 
 

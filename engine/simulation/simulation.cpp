@@ -39,15 +39,14 @@ int64_t lay_out_world(World& world, char* at) {
   return bytes;
 }
 
-/// Floats of scratch for each thread that learns, in whole cache lines.
+}  // namespace
+
 int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
   int64_t most = 0;
   for (int32_t s = 0; s < shape.species; ++s)
     most = std::max(most, learn_scratch_size(shape.of[s].network, config.species[s].learning));
   return (most + 15) / 16 * 16;
 }
-
-}  // namespace
 
 Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
                        const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,

@@ -37,6 +37,9 @@ struct MemoryNeed {
   HEDON_FIELDS(MemoryNeed, networks, rollouts, physics, rest)
 };
 
+/// Floats of scratch for each thread that learns, in whole cache lines.
+int64_t learn_stride(const WorldShape& shape, const WorldConfig& config);
+
 /// Each call sets the floating-point mode that it needs and restores the caller's.
 class Simulation {
  public:

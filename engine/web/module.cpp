@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "lanes/portable.h"
-#include "learning/ppo.h"
 #include "simulation/config_check.h"
 #include "simulation/memory.h"
 #include "simulation/simulation.h"
@@ -36,7 +35,8 @@ struct View {
 /// What the chosen agent senses and how its network answers.
 struct Mind {
   PackedObservation observation;
-  float output[16];  ///< mean of the two actions, then the value
+  ObservationExtra extra;  ///< of a wide observation
+  float output[16];        ///< mean of the two actions, then the value
 };
 
 std::string text, message, path;
@@ -135,8 +135,7 @@ HEDON_EXPORT(hedon_make) int hedon_make() {
   simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
                                             std::vector<uint64_t>{input.seed}, 1, find_kernel("portable"),
                                             std::vector<int32_t>{});
-  scratch.assign(
-      static_cast<size_t>(learn_scratch_size(simulation->shape().network, simulation->config().learning)) + 32, 0.0f);
+  scratch.assign(static_cast<size_t>(learn_stride(simulation->shape(), simulation->config())) + 16, 0.0f);
   prepare_step(world());
   return report_fault();
 }
@@ -209,8 +208,8 @@ HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() { world().head().event_
 /// What the agent in `slot` senses now and how its network answers; changes nothing of the world's state.
 HEDON_EXPORT(hedon_mind) const Mind* hedon_mind(int32_t slot) {
   note_start(world(), slot);
-  mind.observation = observe(world(), slot, 0);
-  world().kernel->forward(simulation->shape().network, world().network(slot), mind.observation, mind.output);
+  observe(world(), slot, 0, mind.observation);
+  world().kernel->forward(world().species(slot).network, world().network(slot), mind.observation, mind.output);
   return &mind;
 }
 

@@ -30,7 +30,7 @@ def test_the_page_is_small():
 
 @pytest.mark.skipif(
     shutil.which("npx") is None or not (WEB / "node_modules").is_dir(),
-    reason="needs Node and the page's packages: npm ci --prefix web",
+    reason="needs Node and the page's packages: npm install --prefix web",
 )
 def test_the_page_is_what_its_sources_give(tmp_path):
     command = ["npm", "run", "--silent", "build", "--", "--outDir", str(tmp_path)]

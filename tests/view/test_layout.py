@@ -6,7 +6,8 @@ import pytest
 
 from hedon.config import PRESETS, engine_config, load_config
 from hedon.config.field import leaves
-from hedon.record.schema import weight_names
+from hedon.config.layout import layouts
+from hedon.record.schema import columns_of
 from hedon.view.engine_text import engine_settings, engine_text
 from hedon.view.layout import describe
 from hedon.view.live import live_world
@@ -16,9 +17,12 @@ from hedon.view.live import live_world
 def test_the_layout_names_everything_that_records_and_senses_have(preset):
     config = load_config(preset)
     layout = describe(config)
-    assert [gene["name"] for gene in layout["genes"]] == list(weight_names(tuple(config.food), 16))
+    assert [gene["name"] for gene in layout["genes"]] == list(columns_of(config).gene_names)
     assert [gene["role"] for gene in layout["genes"]].count("neutral") == config.genome.neutral_count
-    assert layout["types"] == ["agent", *config.food, "wall"]
+    assert layout["types"] == [*config.agents, *config.food, "wall"]
+    for species, own in zip(layout["species"], layouts(config).values(), strict=True):
+        assert [layout["genes"][gene]["name"] for gene in species["genes"]] == list(own.gene_names)
+        assert [layout["types"][seen] for seen in species["sees"]] == list(own.sees)
     assert [food["energy"] for food in layout["foods"]] == [food.energy for food in config.food.values()]
     assert layout["arena"]["width"] == config.arena.width
     assert len(layout["arena"]["walls"]) >= 4
@@ -32,7 +36,8 @@ def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
     values = {path: value for path, _, value in leaves(config)}
     assert len(world["settings"]) > 70
     for setting in world["settings"]:
-        assert engine[setting["engine"]] == setting["value"] == values[setting["path"]]
+        assert setting["value"] == values[setting["path"]]
+        assert {engine[name] for name in setting["engine"]} == {setting["value"]}
 
 
 def test_a_changed_setting_changes_only_its_line_of_the_text():
@@ -43,7 +48,7 @@ def test_a_changed_setting_changes_only_its_line_of_the_text():
         before = engine_text(load_config("poison"), 1).splitlines()
         after = engine_text(load_config("poison", overrides=[f"{setting['path']}=0.5"]), 1).splitlines()
         changed = [(old, new) for old, new in zip(before, after, strict=True) if old != new]
-        assert changed == [(f"{setting['engine']}={setting['value']}", f"{setting['engine']}=0.5")]
+        assert changed == [(f"{name}={setting['value']}", f"{name}=0.5") for name in setting["engine"]]
 
 
 def test_the_text_has_every_setting_of_the_engine():

@@ -46,10 +46,11 @@ def native_digest(preset: str, kernel: str, steps: int) -> str:
 
 
 @needs_node
+@pytest.mark.parametrize("preset", ["poison", "predator"])
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
-def test_a_window_has_the_bits_of_the_native_engine(module, kernel, tmp_path):
-    found = run_in_node(module, engine_text(load_config("poison"), 1), tmp_path, STEPS)
-    assert found["digest"] == native_digest("poison", kernel, STEPS)
+def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, tmp_path):
+    found = run_in_node(module, engine_text(load_config(preset), 1), tmp_path, STEPS)
+    assert found["digest"] == native_digest(preset, kernel, STEPS)
     assert found["step"] == STEPS
 
 
@@ -75,7 +76,7 @@ def test_the_size_of_the_portions_of_learning_changes_no_bit(tmp_path):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("energy.initial=10.0", "energy.initial: is there twice"),
+        ("species[0].energy.initial=10.0", r"energy\.initial: is there twice"),
         ("no.such=1", "no.such: is unknown"),
         ("wall=1,2,3", "'1,2,3' is not four numbers"),
     ],

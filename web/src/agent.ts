@@ -60,7 +60,7 @@ export class AgentPanel {
       ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"],
       ["children", this.children(source, life)],
     ];
-    source.layout.foods.forEach((food, k) => rows.push([`${food.name} eaten`, show(life.eaten[k])]));
+    source.layout.meals.forEach((meal, k) => rows.push([`${meal} eaten`, show(life.eaten[k])]));
     return table(rows);
   }
 
@@ -143,7 +143,7 @@ function drawSight(canvas: HTMLCanvasElement, source: Source, frame: Frame, at: 
   const pen = sized(canvas);
   const rays = castRays(layout, frame, at).reverse();
   const [width, height] = [canvas.clientWidth / rays.length, canvas.clientHeight];
-  const first = layout.types.length - 1 - layout.foods.length;
+  const first = layout.species.length;
   rays.forEach((ray, i) => {
     if (ray.type < 0) return;
     const tall = Math.max(3, (1 - ray.share) * height);

@@ -1,5 +1,5 @@
 // Draws one moment of a world: walls, foods, agents, and what belongs to the chosen agent.
-import { type Coloring, foodColors, pack, paint, type Painted, parse } from "./color";
+import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesColor } from "./color";
 import { styleColor } from "./element";
 import { castRays } from "./rays";
 import { Scene } from "./scene";
@@ -44,11 +44,11 @@ export class Arena {
 
   /** The agent under a place in the world, or -1. */
   pick(source: Source, frame: Frame, x: number, y: number): number {
-    const radius = source.layout.species[0]!.radius + 4 / this.scene.zoom;
-    let [best, found] = [radius * radius, -1];
+    let [best, found] = [Infinity, -1];
     for (let i = 0; i < frame.id.length; i++) {
+      const radius = source.layout.species[frame.species[i]!]!.radius + 4 / this.scene.zoom;
       const distance = (frame.x[i]! - x) ** 2 + (frame.y[i]! - y) ** 2;
-      if (distance < best) [best, found] = [distance, frame.id[i]!];
+      if (distance < Math.min(best, radius * radius)) [best, found] = [distance, frame.id[i]!];
     }
     return found;
   }
@@ -59,8 +59,7 @@ export class Arena {
 
   private drawFrame(source: Source, frame: Frame, coloring: Coloring, chosen: number): Painted["legend"] {
     const { layout } = source;
-    const { radius, mouth_degrees: mouth } = layout.species[0]!;
-    const mouthCosine = Math.cos((mouth * Math.PI) / 180);
+    const mouths = layout.species.map((species) => Math.cos((species.mouth_degrees * Math.PI) / 180));
     if (this.colors.length < frame.id.length) this.colors = new Uint32Array(frame.id.length * 2);
     const { colors, legend } = paint(coloring, source, frame, this.colors);
     const at = frame.id.indexOf(chosen);
@@ -71,7 +70,10 @@ export class Arena {
       this.scene.disc(frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius, foods[kind]!);
     }
     for (let i = 0; i < frame.id.length; i++) {
-      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouthCosine);
+      const species = frame.species[i]!;
+      const { radius } = layout.species[species]!;
+      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouths[species]!);
+      if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(species), 0, 2, 0.16);
     }
     if (at >= 0) this.markKin(source, frame, at);
     return legend;
@@ -98,7 +100,7 @@ export class Arena {
 
   private drawRays(source: Source, frame: Frame, at: number): void {
     const { layout } = source;
-    const first = layout.types.length - 1 - layout.foods.length;
+    const first = layout.species.length;
     const [nothing, thing] = [pack(parse(styleColor("--quiet")), 110), pack(parse(styleColor("--mark")))];
     for (const ray of castRays(layout, frame, at)) {
       const food = layout.foods[ray.type - first];
@@ -109,13 +111,13 @@ export class Arena {
   }
 
   private markKin(source: Source, frame: Frame, at: number): void {
-    const { radius } = source.layout.species[0]!;
+    const radius = (i: number) => source.layout.species[frame.species[i]!]!.radius;
     const [mark, kin] = [pack(parse(styleColor("--mark"))), pack(parse(styleColor("--kin")))];
     const chosen = frame.id[at]!;
     for (let i = 0; i < frame.id.length; i++) {
       const related = i !== at && source.lives.kin(chosen, frame.id[i]!, 2);
-      if (related) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.35, kin, 0, 2, 0.14);
+      if (related) this.scene.disc(frame.x[i]!, frame.y[i]!, radius(i) * 1.35, kin, 0, 2, 0.14);
     }
-    this.scene.disc(frame.x[at]!, frame.y[at]!, radius * 1.6, mark, 0, 2, 0.16);
+    this.scene.disc(frame.x[at]!, frame.y[at]!, radius(at) * 1.6, mark, 0, 2, 0.16);
   }
 }

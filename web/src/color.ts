@@ -41,6 +41,7 @@ export function colorings(source: Source): Coloring[] {
     const most = life ? Math.max(...life.eaten) : 0;
     return life && most > 0 ? life.eaten.indexOf(most) : NaN;
   };
+  const species: Coloring = { name: "species", label: "species", scale: "distinct", value: (_, frame, i) => frame.species[i]! };
   return [
     { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! },
     { name: "age", label: "age [steps]", scale: "ramp", low: 0, value: (life, frame) => (life ? frame.step - life.birth : NaN) },
@@ -48,6 +49,7 @@ export function colorings(source: Source): Coloring[] {
     { name: "children", label: "children", scale: "ramp", low: 0, value: (life) => life?.children ?? NaN },
     { name: "reward", label: "reward so far", scale: "diverging", value: (life) => life?.reward ?? NaN },
     { name: "family", label: "family (founder)", scale: "distinct", value: (life) => (life ? lives.founder(life.id) : NaN) },
+    ...(layout.species.length > 1 ? [species] : []),
     { name: "eats", label: "eats most", scale: "food", value: mostEaten },
     ...layout.genes.map((gene, g): Coloring => ({
       name: gene.name,
@@ -90,6 +92,9 @@ export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uin
   }
   return { colors: out, legend: { low, high, stops: stops.map(css) } };
 }
+
+/** The color of the rim of a species; the first one has none. */
+export const speciesColor = (index: number): number => pack(DISTINCT[index % DISTINCT.length]!);
 
 export function foodColors(layout: Layout): number[] {
   return layout.foods.map((food) => pack(parse(food.color)));

@@ -122,6 +122,15 @@ export class Engine {
     return Number(new (numbers(place[3], place[4], place[5]))(this.memory.buffer, place[0], 1)[0]);
   }
 
+  /** The sum of an array, as a plain number. @param {string} name */
+  sum(name) {
+    const values = this.view(name);
+    if (!values) throw new EngineError(`no array '${name}'`);
+    let sum = 0;
+    for (const value of values) sum += Number(value);
+    return sum;
+  }
+
   /** Index of the first food of a kind among `physics.circles`. @param {number} kind */
   foodStart(kind) {
     return /** @type {number} */ (this.exports.hedon_food_start(kind));
@@ -135,7 +144,7 @@ export class Engine {
       reading: new Float32Array(buffer, at, 32).slice(),
       type: new Uint8Array(buffer, at + 128, 32).slice(),
       dense: new Float32Array(buffer, at + 168, 6).slice(),
-      output: new Float32Array(buffer, at + 192, 3).slice(),
+      output: new Float32Array(buffer, at + 256, 3).slice(),
     };
   }
 

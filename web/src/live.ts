@@ -9,7 +9,7 @@ const KEPT_FRAMES = 2000; // that can be looked back at
 
 /** The engine's text of a world with some settings changed, and another seed. */
 export function textOf(world: LiveWorld, changes: Map<string, string>, seed: number): string {
-  const engine = new Map(world.settings.map((setting) => [setting.engine, changes.get(setting.path)]));
+  const engine = new Map(world.settings.flatMap(({ engine, path }) => engine.map((name) => [name, changes.get(path)] as const)));
   const line = (text: string) => {
     const path = text.slice(0, text.indexOf("="));
     if (path === "seed") return `seed=${seed}`;
@@ -48,7 +48,7 @@ export class Live implements Source {
   ) {
     this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
     const text = textOf(world, changes, seed);
-    this.send({ type: "make", text, foods: world.layout.foods.length, genes: world.layout.genes.length });
+    this.send({ type: "make", text, layout: world.layout });
   }
 
   get layout() {
@@ -136,7 +136,10 @@ export class Live implements Source {
 
   private sample(moment: Moment): void {
     const { lives, frame, counts } = moment;
-    const mean = (of: (i: number) => number) => lives.reduce((sum, _, i) => sum + of(i), 0) / lives.length;
+    const mean = (of: (i: number) => number) => {
+      const known = lives.map((_, i) => of(i)).filter((value) => !Number.isNaN(value));
+      return known.reduce((sum, value) => sum + value, 0) / known.length;
+    };
     const row: Record<string, number> = { alive: lives.length, energy_mean: mean((i) => lives[i]!.energy) };
     row.births = counts.births! - this.sampled.births;
     row.deaths = counts.deaths! - this.sampled.deaths;

@@ -1,9 +1,9 @@
 // Runs a world away from the page's thread, a little at a time, and answers with what is to be drawn.
 import { Engine } from "./engine.js";
-import type { Frame, Life, Mind } from "./types";
+import type { Frame, Layout, Life, Mind } from "./types";
 
 export type Order =
-  | { type: "make"; text: string; foods: number; genes: number }
+  | { type: "make"; text: string; layout: Layout }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean };
 
 export interface Moment {
@@ -21,7 +21,7 @@ export type Report = { type: "made"; fused: boolean; bytes: number } | { type: "
 
 const PIECE = 4; // learners between two looks at the clock
 let engine: Engine | undefined;
-let kind = { foods: 0, genes: 0 };
+let layout: Layout | undefined;
 
 async function module(name: string): Promise<WebAssembly.Module | undefined> {
   const bytes = await (await fetch(new URL(`../${name}`, self.location.href))).arrayBuffer();
@@ -45,8 +45,22 @@ async function make(order: Order & { type: "make" }): Promise<Report> {
   const fresh = await load();
   const bytes = fresh.make(order.text);
   engine = fresh;
-  kind = { foods: order.foods, genes: order.genes };
+  layout = order.layout;
   return { type: "made", fused: fresh.fuses, bytes };
+}
+
+/** The species of a slot: each owns as many slots as it has capacity, one after the other. */
+function speciesOf(slot: number): number {
+  let [species, end] = [0, layout!.species[0]!.capacity];
+  while (slot >= end) end += layout!.species[++species]!.capacity;
+  return species;
+}
+
+/** A genome by the layout's genes, from a row of the engine, which has those of the species. */
+function genome(row: Float32Array, species: number): number[] {
+  const out = new Array<number>(layout!.genes.length).fill(NaN);
+  layout!.species[species]!.genes.forEach((gene, g) => (out[gene] = row[g]!));
+  return out;
 }
 
 function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
@@ -55,7 +69,9 @@ function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
   const [birth, death, energy] = [column("birth_step"), column("death_step"), column("energy")];
   const [children, reward] = [column("children"), column("reward")];
   const eaten = world.view(prefix === "life" ? "eaten" : "event_eaten") as Int32Array;
-  const genome = world.view(prefix === "life" ? "genome" : "event_genome") as Float32Array;
+  const genomes = world.view(prefix === "life" ? "genome" : "event_genome") as Float32Array;
+  const species = prefix === "life" ? undefined : world.view("event_species")!;
+  const [meals, genes] = [layout!.meals.length, Math.max(...layout!.species.map((each) => each.genes.length))];
   return Array.from(rows, (row) => ({
     id: Number(id[row]),
     parent: Number(parent[row]),
@@ -65,8 +81,8 @@ function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
     energy: Number(energy[row]),
     children: Number(children[row]),
     reward: Number(reward[row]),
-    eaten: Array.from(eaten.subarray(row * kind.foods, (row + 1) * kind.foods)),
-    genome: Array.from(genome.subarray(row * kind.genes, (row + 1) * kind.genes)),
+    eaten: Array.from(eaten.subarray(row * meals, (row + 1) * meals)),
+    genome: genome(genomes.subarray(row * genes, (row + 1) * genes), species ? Number(species[row]) : speciesOf(row)),
   }));
 }
 
@@ -78,7 +94,7 @@ function frame(world: Engine, living: Int32Array): Frame {
   const [fx, fy] = [world.view("physics.circles.x")!, world.view("physics.circles.y")!];
   const foods: number[] = [];
   const kinds: number[] = [];
-  for (let k = 0; k < kind.foods; k++) {
+  for (let k = 0; k < layout!.foods.length; k++) {
     for (let i = world.foodStart(k); i < world.foodStart(k + 1); i++) {
       if (present[i]) {
         foods.push(i);
@@ -93,6 +109,7 @@ function frame(world: Engine, living: Int32Array): Frame {
     y: Float32Array.from(living, (slot) => y[slot]!),
     angle: Float32Array.from(living, (slot) => angle[slot]!),
     energy: Float32Array.from(living, (slot) => Number(energy[slot])),
+    species: Uint8Array.from(living, speciesOf),
     foodX: Float32Array.from(foods, (i) => Number(fx[i])),
     foodY: Float32Array.from(foods, (i) => Number(fy[i])),
     foodKind: Uint8Array.from(kinds),
@@ -122,7 +139,7 @@ function moment(world: Engine, done: number, { chosen, digest }: Order & { type:
   world.takeDeaths();
   const here = frame(world, living);
   const at = here.id.indexOf(chosen);
-  const counts = Object.fromEntries(["births", "deaths"].map((name) => [name, world.number(`counters.${name}`)]));
+  const counts = Object.fromEntries(["births", "deaths"].map((name) => [name, world.sum(`counters.${name}`)]));
   const learning = world.mustLearn ? world.learn(0) : 0;
   return {
     frame: here,

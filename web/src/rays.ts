@@ -33,10 +33,11 @@ function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]
 
 /** The rays of agent `i` of a frame, from the right to the left. Heading 0 is up, positive is counter-clockwise. */
 export function castRays(layout: Layout, frame: Frame, i: number): Ray[] {
-  const { count, spread_degrees: spread, length } = layout.rays;
-  const body = layout.species[0]!.radius;
+  const own = layout.species[frame.species[i]!]!;
+  const { count, spread_degrees: spread, length } = own.rays;
+  const body = own.radius;
   const [wall, [x, y]] = [layout.types.length - 1, [frame.x[i]!, frame.y[i]!]];
-  const foodType = layout.types.length - 1 - layout.foods.length;
+  const foodType = layout.species.length;
   const reach = body + length;
   const rays: Ray[] = [];
   for (let r = 0; r < count; r++) {
@@ -48,11 +49,15 @@ export function castRays(layout: Layout, frame: Frame, i: number): Ray[] {
       if (at < best && at >= 0) [best, type] = [Math.max(at, body), hit];
     };
     for (let j = 0; j < frame.id.length; j++) {
-      if (j === i || Math.abs(frame.x[j]! - x) > reach + body || Math.abs(frame.y[j]! - y) > reach + body) continue;
-      consider(toDisc(x, y, dx, dy, frame.x[j]!, frame.y[j]!, body), 0);
+      const other = frame.species[j]!;
+      const { radius } = layout.species[other]!;
+      if (j === i || !own.sees.includes(other)) continue;
+      if (Math.abs(frame.x[j]! - x) > reach + radius || Math.abs(frame.y[j]! - y) > reach + radius) continue;
+      consider(toDisc(x, y, dx, dy, frame.x[j]!, frame.y[j]!, radius), other);
     }
     for (let f = 0; f < frame.foodX.length; f++) {
       const kind = frame.foodKind[f]!;
+      if (!own.sees.includes(foodType + kind)) continue;
       consider(toDisc(x, y, dx, dy, frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius), foodType + kind);
     }
     for (const segment of layout.arena.walls) consider(toWall(x, y, dx, dy, segment), wall);

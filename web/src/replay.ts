@@ -11,6 +11,19 @@ type Columns = Record<string, Column>;
 
 const numbers = (columns: Columns, name: string): Float64Array => (columns[name] as Float64Array) ?? new Float64Array();
 
+/** One row of all species: counts are summed, means are weighted by the living, what is of the whole world stays. */
+function together(rows: Record<string, number>[]): Record<string, number> {
+  const out: Record<string, number> = { ...rows[0]! };
+  for (const name of Object.keys(out)) {
+    const known = rows.filter((row) => !Number.isNaN(row[name]!));
+    const sum = (of: (row: Record<string, number>) => number) => known.reduce((total, row) => total + of(row), 0);
+    if (name.endsWith("_mean")) out[name] = sum((row) => row[name]! * row.alive!) / sum((row) => row.alive!);
+    else if (/^(alive|births|deaths|learners|agent_steps|eaten_|energy_)/.test(name)) out[name] = sum((row) => row[name]!);
+    else if (/_(max|min)$/.test(name)) out[name] = Math[name.endsWith("_max") ? "max" : "min"](...known.map((row) => row[name]!));
+  }
+  return out;
+}
+
 export class Replay implements Source {
   readonly live = false;
   readonly lives = new Lives();
@@ -121,7 +134,7 @@ export class Replay implements Source {
     const kind = columns.kind as string[];
     const [id, x, y] = [numbers(columns, "id"), numbers(columns, "x"), numbers(columns, "y")];
     const [angle, energy] = [numbers(columns, "angle"), numbers(columns, "energy")];
-    const species = new Set(this.layout.species.map((each) => each.name));
+    const species = new Map(this.layout.species.map((each, i) => [each.name, i]));
     const foods = new Map(this.layout.foods.map((food, i) => [food.name, i]));
     const rows = new Map<number, { agents: number[]; foods: number[] }>();
     for (let row = 0; row < step.length; row++) {
@@ -138,6 +151,7 @@ export class Replay implements Source {
       y: pick(y, agents),
       angle: pick(angle, agents),
       energy: pick(energy, agents),
+      species: Uint8Array.from(agents, (row) => species.get(kind[row]!) ?? 0),
       foodX: pick(x, eaten),
       foodY: pick(y, eaten),
       foodKind: Uint8Array.from(eaten, (row) => foods.get(kind[row]!) ?? 0),
@@ -161,15 +175,19 @@ export class Replay implements Source {
     const step = numbers(columns, "step");
     const world = numbers(columns, "world");
     const names = Object.keys(columns).filter((name) => columns[name] instanceof Float64Array);
+    const rows = new Map<number, Record<string, number>[]>(); // of each species at a step
     for (let row = 0; row < step.length; row++) {
       if (world[row] !== this.world) continue;
-      this.series.add(step[row]!, Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
+      const known = rows.get(step[row]!) ?? [];
+      known.push(Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
+      rows.set(step[row]!, known);
     }
+    for (const [at, each] of rows) this.series.add(at, each.length === 1 ? each[0]! : together(each));
   }
 
   private addLives(columns: Columns): void {
     const of = (name: string) => numbers(columns, name);
-    const eaten = this.layout.foods.map((food) => of(`eaten_${food.name}`));
+    const eaten = this.layout.meals.map((meal) => of(`eaten_${meal}`));
     const genes = this.layout.genes.map((gene) => of(gene.name));
     const world = of("world");
     const orNone = (value: number | undefined) => (value === undefined || Number.isNaN(value) ? -1 : value);
@@ -187,7 +205,7 @@ export class Replay implements Source {
         energy: of("energy")[row]!,
         children: of("children")[row]!,
         reward: of("reward_sum")[row]!,
-        eaten: eaten.map((column) => column[row]!),
+        eaten: eaten.map((column) => column[row] ?? 0),
         genome: genes.map((column) => column[row]!),
       });
     }

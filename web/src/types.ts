@@ -6,12 +6,22 @@ export interface Gene {
   input: string;
 }
 
+export interface Species {
+  name: string;
+  capacity: number;
+  radius: number;
+  mouth_degrees: number;
+  rays: { count: number; spread_degrees: number; length: number };
+  sees: number[]; // types, by channel
+  genes: number[]; // of the layout's genes, in the order of the genome
+}
+
 export interface Layout {
-  species: { name: string; capacity: number; radius: number; mouth_degrees: number }[];
+  species: Species[];
   types: string[];
   foods: { name: string; radius: number; energy: number; color: string }[];
   genes: Gene[];
-  rays: { count: number; spread_degrees: number; length: number };
+  meals: string[];
   arena: { width: number; height: number; walls: [number, number, number, number][] };
   window: number;
   energy_capacity: number;
@@ -25,6 +35,7 @@ export interface Frame {
   y: Float32Array;
   angle: Float32Array;
   energy: Float32Array;
+  species: Uint8Array;
   foodX: Float32Array;
   foodY: Float32Array;
   foodKind: Uint8Array;
@@ -40,8 +51,8 @@ export interface Life {
   energy: number;
   children: number;
   reward: number;
-  eaten: number[]; // by food
-  genome: number[];
+  eaten: number[]; // by meal
+  genome: number[]; // by the layout's genes; NaN for one that its species lacks
 }
 
 /** What an agent senses now and how its network answers; only a live world knows it. */
@@ -76,7 +87,7 @@ export interface Source {
 
 export interface Setting {
   path: string;
-  engine: string;
+  engine: string[];
   value: number | string | boolean;
   choices: string[];
   whole: boolean;

@@ -8,60 +8,70 @@ from typing import Any
 
 from hedon.config.arena import walls
 from hedon.config.config import Config
-from hedon.record.schema import neutral_names, weight_names
+from hedon.config.layout import Gene, SpeciesLayout, gene_columns, layouts, types
+from hedon.config.species import SpeciesConfig
 
 
 def describe(config: Config) -> dict[str, Any]:
     """The layout of a world.
 
     Returns:
-        `species`: name, capacity, radius [u] and mouth_degrees (on each side of the heading) of each;
-        `types`: names that senses tell apart, in the order of the engine's channels;
+        `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of the heading), rays (count,
+        spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel) and genes
+        (indices into `genes`, in genome order);
+        `types`: names that senses tell apart: the species, the foods, walls;
         `foods`: name, radius [u], energy and color of each;
-        `genes`: name, role ("reward" or "neutral") and input (what it rewards, "" for none) of each, in genome order;
-        `rays`: count, spread_degrees (on each side of the heading) and length [u];
+        `genes`: of all species, each once: name, role ("reward" or "neutral") and input (what it rewards, "" for none);
+        `meals`: what an agent may eat, in the order in which the engine counts it;
         `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;
         `energy_capacity`: most energy of an agent.
     """
+    made = layouts(config)
     foods = [
         {"name": name, "radius": config.body.food_radius, "energy": food.energy, "color": food.color}
         for name, food in config.food.items()
     ]
+    hunting = any(name in config.species for each in config.agents.values() for name, _ in each.diet.eats)
     return {
-        "species": [
-            {
-                "name": "agent",
-                "capacity": config.population.capacity,
-                "radius": config.body.radius,
-                "mouth_degrees": config.sensor.mouth_spread,
-            }
-        ],
-        "types": ["agent", *config.food, "wall"],
+        "species": [_species(config, name, each, made[name]) for name, each in config.agents.items()],
+        "types": list(types(config)),
         "foods": foods,
-        "genes": _genes(config),
-        "rays": {
-            "count": config.sensor.ray_count,
-            "spread_degrees": config.sensor.ray_spread,
-            "length": config.sensor.ray_length,
-        },
+        "genes": _genes(config, made),
+        "meals": [*config.food, *(config.agents if hunting else ())],
         "arena": {
             "width": config.arena.width,
             "height": config.arena.height,
             "walls": [[float(value) for value in wall] for wall in walls(config.arena)],
         },
         "window": config.learning.rollout_steps,
-        "energy_capacity": config.energy.capacity,
+        "energy_capacity": max(each.energy.capacity for each in config.agents.values()),
     }
 
 
-def _genes(config: Config) -> list[dict[str, str]]:
-    names = weight_names(tuple(config.food), config.genome.neutral_count)
-    neutral = neutral_names(config.genome.neutral_count)
+def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
+    every, columns = types(config), gene_columns(config)
+    return {
+        "name": name,
+        "capacity": species.population.capacity,
+        "radius": species.body.radius,
+        "mouth_degrees": species.sensor.mouth_spread,
+        "rays": {
+            "count": species.sensor.ray_count,
+            "spread_degrees": species.sensor.ray_spread,
+            "length": species.sensor.ray_length,
+        },
+        "sees": [every.index(seen) for seen in layout.sees],
+        "genes": [columns.index(gene) for gene in layout.gene_names],
+    }
+
+
+def _genes(config: Config, made: dict[str, SpeciesLayout]) -> list[dict[str, str]]:
+    known: dict[str, Gene] = {gene.name: gene for layout in made.values() for gene in layout.genes}
     return [
         {
             "name": name,
-            "role": "neutral" if name in neutral else "reward",
-            "input": "" if name in neutral else name.removeprefix("w_"),
+            "role": known[name].role,
+            "input": "" if known[name].role == "neutral" else name.removeprefix("w_"),
         }
-        for name in names
+        for name in gene_columns(config)
     ]

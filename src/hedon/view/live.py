@@ -1,7 +1,7 @@
 """What the page needs for a live world: the engine's text, the layout, and every setting that can be changed."""
 
-import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -53,27 +53,38 @@ def _origin(config: Config) -> str:
 
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
     """The settings that the engine gets as they are, with their schema."""
-    known = engine_settings(config)
-    kinds = list(config.food)
+    before = engine_settings(config)
     for path, setting, value in leaves(config):
         if path in PROVENANCE or path.startswith(PLACE):
             continue
-        engine = _engine_path(path, kinds)
-        if engine in known:
-            yield _setting(path, engine, setting, value)
+        reached = _reached(config, path, setting, value, before)
+        if reached:
+            yield _setting(path, reached, setting, value)
 
 
-def _engine_path(path: str, kinds: list[str]) -> str:
-    """`food.normal.energy` → `food[0].energy`; `food.normal.gene.initial_sd` → `genome.food[0].initial_sd`."""
-    found = re.fullmatch(r"food\.(\w+)\.(gene\.)?(.+)", path)
-    if found is None:
-        return path
-    kind, gene, rest = found.groups()
-    return f"{'genome.' if gene else ''}food[{kinds.index(kind)}].{rest}"
+def _reached(config: Config, path: str, setting: Setting, value: Any, before: dict[str, Any]) -> list[str]:
+    """The engine's settings that have just this setting's value; none if it reaches the engine in another form."""
+    if isinstance(value, tuple | bool) or (isinstance(value, str) and not setting.choices):
+        return []
+    other = next(choice for choice in setting.choices if choice != value) if setting.choices else value + 1
+    after = engine_settings(changed(config, path, other))
+    if after.keys() != before.keys():
+        return []
+    found = [name for name, old in before.items() if after[name] != old]
+    direct = all(before[name] == value and after[name] == other for name in found)
+    return found if direct else []
 
 
-def _setting(path: str, engine: str, setting: Setting, value: Any) -> dict[str, Any]:
-    """One setting: its path here and in the engine, its value, and what `docs/config.md` says of it."""
+def changed(config: Any, path: str, value: Any) -> Any:
+    """A config, or a part of one, with one setting replaced, unchecked."""
+    name, _, rest = path.partition(".")
+    if isinstance(config, dict):
+        return {**config, name: changed(config[name], rest, value)}
+    return replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
+
+
+def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict[str, Any]:
+    """One setting: its path here and those in the engine, its value, and what `docs/config.md` says of it."""
     limits = setting.doc.range
     return {
         "path": path,
