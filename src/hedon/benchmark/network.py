@@ -10,6 +10,7 @@ from hedon.benchmark.measure import Row, Table, interleave, median, spread
 from hedon.benchmark.plan import Plan
 from hedon.benchmark.scene import peopled
 from hedon.config.config import Config
+from hedon.config.layout import layouts
 from hedon.config.native import engine_config
 
 FORWARD_ROWS = 10_240
@@ -18,9 +19,9 @@ FORWARD_ROWS = 10_240
 
 def shape(config: Config) -> tuple[int, int, int, int]:
     """Rays, types, touch bits and dense entries of an observation."""
-    types = len(config.food) + 2
+    layout = next(iter(layouts(config).values()))
     dense = 5 if config.sensor.scaling == "raw" else 6
-    return config.sensor.ray_count, types, types * config.sensor.touch_sectors, dense
+    return config.sensor.ray_count, len(layout.sees), len(layout.touches) * config.sensor.touch_sectors, dense
 
 
 def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
@@ -52,7 +53,7 @@ def measure_update(plan: Plan, _: Calibration) -> list[Row]:
     config, world = plan.config(), peopled(plan)
     steps = config.learning.rollout_steps
     slot = world.living[0]
-    settings = engine_config(config)["learning"]
+    settings = engine_config(config)["species"][0]["learning"]
     names = ("params", "first_moment", "second_moment", "log_prob", "value", "reward")
     arrays = {name: world.view(name)[slot] for name in names}
     arrays["observation"] = world.view("observation")[slot, :steps]

@@ -11,7 +11,6 @@ from hedon.cli.console import make_console
 from hedon.cli.run import Checkpoint, Threads, parse_seeds
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.record.schema import columns_of
 from hedon.text import printable
 
 if TYPE_CHECKING:
@@ -124,6 +123,7 @@ def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Con
 def _shower(console: "Console") -> "Show":
     def show(plan: "RunPlan", go: "Callable[[Display], Manifest]") -> "Manifest":
         from hedon.cli.display.run import make_display
+        from hedon.record.schema import columns_of
 
         config = plan.config
         console.print(

@@ -24,15 +24,16 @@ Overrides = Annotated[
 def presets() -> None:
     """List the presets, and the fidelities that can be combined with them."""
     from hedon.cli.display.table import PrintedTable
-    from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
+    from hedon.config.load import FIDELITIES, PAPER_PRESETS, SEQUEL_PRESETS, describe_fidelity, describe_preset
 
-    rows = []
-    for name in PRESETS:
-        config = load_config(name)
-        size = f"{config.arena.width:g} x {config.arena.height:g}"
-        rows.append((name, describe_preset(name), size, "\n".join(_food_lines(config))))
     console = make_console()
-    console.print(PrintedTable(("preset", "what it is", "arena [u]", "food"), rows, text=range(4)))
+    for names in (PAPER_PRESETS, SEQUEL_PRESETS):
+        rows = []
+        for name in names:
+            config = load_config(name)
+            size = f"{config.arena.width:g} x {config.arena.height:g}"
+            rows.append((name, describe_preset(name), size, "\n".join(_food_lines(config))))
+        console.print(PrintedTable(("preset", "what it is", "arena [u]", "food"), rows, text=range(4)))
     fidelities = [(name, describe_fidelity(name)) for name in FIDELITIES]
     console.print(PrintedTable(("fidelity", "what it is"), fidelities, text=range(2)))
 

@@ -12,7 +12,6 @@ from hedon.cli.report import show_report
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, different, seed_list
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
-from hedon.record.schema import columns_of
 from hedon.text import brief, printable
 
 if TYPE_CHECKING:
@@ -86,6 +85,7 @@ def run(
 def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
     """Prints what will be run, shows progress while `go` runs it, and reports; `begun` says where the run continues."""
     from hedon.cli.display.run import duration, make_display
+    from hedon.record.schema import columns_of
 
     config, console = plan.config, make_console()
     worlds, out = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}", printable(str(plan.out))

@@ -66,7 +66,8 @@ def _reached(config: Config, path: str, setting: Setting, value: Any, before: di
     """The engine's settings that have just this setting's value; none if it reaches the engine in another form."""
     if isinstance(value, tuple | bool) or (isinstance(value, str) and not setting.choices):
         return []
-    other = next(choice for choice in setting.choices if choice != value) if setting.choices else value + 1
+    number: Any = value
+    other = next(choice for choice in setting.choices if choice != value) if setting.choices else number + 1
     after = engine_settings(changed(config, path, other))
     if after.keys() != before.keys():
         return []
