@@ -12,7 +12,7 @@ enum class MutationNoise : int32_t { independent, frozen };
 inline constexpr const char* MUTATION_NOISE_NAMES[] = {"independent", "frozen"};
 
 inline constexpr int MAX_GENES = 64;
-inline constexpr int MAX_REWARD_TERMS = 24;
+inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together
 
 enum class MutationLaw : int32_t { cauchy, student_t, normal, uniform };
 inline constexpr const char* MUTATION_LAW_NAMES[] = {"cauchy", "student_t", "normal", "uniform"};

@@ -12,15 +12,21 @@
 
 namespace hedon {
 
+/// Makes the optimizer of a slot that of an agent that has learned nothing.
+HEDON_FN void forget_updates(World& world, int32_t slot) {
+  const WorldState& state = world.state;
+  const int32_t size = world.species(slot).network.size();
+  const int64_t first = int64_t{slot} * world.shape->params;
+  for (int32_t p = 0; p < size; ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
+  state.updates[slot] = 0;
+}
+
 /// Gives the agent in `slot` a new network and the optimizer that belongs to it.
 HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& random) {
-  const WorldState& state = world.state;
   const NetworkShape& network = world.species(slot).network;
   init_network(network, random, world.params(slot));
   world.kernel->pack_weights(network, world.network(slot));
-  const int64_t first = int64_t{slot} * world.shape->params;
-  for (int32_t p = 0; p < network.size(); ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;
-  state.updates[slot] = 0;
+  forget_updates(world, slot);
 }
 
 /// The network of an agent that has learned nothing.

@@ -99,6 +99,7 @@ HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
   child.generation = parent_life.generation + 1;
   if (inherits_late(world)) {
     note_newborn(world, parent, child.agent_id);
+    forget_updates(world, slot);  // it never learns with them, and a checkpoint does not hold those of free slots
   } else {
     give_own_network(world, slot);
     inherit(species.config->genome, world.seed, id,

@@ -44,7 +44,6 @@ struct Species {
   float sector_cosine[65];
 
   HEDON_FN int32_t capacity() const { return last_slot - first_slot; }
-  HEDON_FN bool learns() const { return true; }
 };
 
 /// The directions of the rays and of the edges of touch sectors.
