@@ -119,9 +119,10 @@ def _crowd(config: Config) -> Iterator[Problem]:
         if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
             return  # that is said already
         each = math.pi * species.body.radius**2
-        most = math.floor((room - area) / each)
+        free = room - area
         area += species.population.initial_count * each
         if area > room:
+            most = math.floor(free / each)
             path = f"species.{name}.population.initial_count" if config.species else "population.initial_count"
             rule = f"too many to place: the arena has room for {most}"
             yield Problem(path, rule, format_value(species.population.initial_count))

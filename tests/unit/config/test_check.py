@@ -133,3 +133,8 @@ def test_contradictions_are_told_together_with_what_is_wrong_by_itself():
         "population.initial_count",
         "arena.widht",
     }
+
+
+def test_a_body_with_no_area_is_refused_by_name():
+    with pytest.raises(ConfigError, match=r"body.radius = 5e-324: is 0 in the engine"):
+        load_config("baseline", overrides=["body.radius=5e-324"])
