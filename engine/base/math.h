@@ -16,6 +16,7 @@ namespace hedon {
 inline constexpr double PI = 3.14159265358979323846;
 inline constexpr float PI_F = 3.14159265358979323846f;
 inline constexpr float TWO_PI_F = 6.28318530717958647692f;
+inline constexpr double LOG_10 = 2.30258509299404568402;
 
 HEDON_FN double bits_to_double(uint64_t bits) {
   double value;

@@ -15,6 +15,7 @@
 #include "binding/parts.h"
 #include "binding/python_simulation.h"
 #include "binding/state_view.h"
+#include "world/expression.h"
 
 namespace nb = nanobind;
 
@@ -136,10 +137,10 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
   }
 }
 
-/// Gives the living of a world other genomes, in their order. Nothing else of an agent depends on its genome.
+/// Gives the living of a world other genomes, in their order, and their networks what these genes set in a new one.
 void set_genomes(PythonSimulation& self, int index,
                  nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> genomes) {
-  const World& from = self.slotted(index);
+  World& from = self.slotted(index);
   const size_t width = static_cast<size_t>(from.shape->genes);
   if (genomes.shape(0) != static_cast<size_t>(from.head().living_count) || genomes.shape(1) != width)
     throw nb::value_error("there must be one genome for each living agent, with all genes");
@@ -155,6 +156,7 @@ void set_genomes(PythonSimulation& self, int index,
     if (!(std::fabs(value) <= limit)) throw nb::value_error("genes must be within ± weight_limit");
   });
   each([](float value, float, float& gene) { gene = value; });
+  for (int32_t i = 0; i < from.head().living_count; ++i) express_genes(from, from.state.living[i]);
 }
 
 /// `FloatMode` as a context manager.

@@ -31,12 +31,32 @@ struct GeneConfig {
                limit)
 };
 
-/// The layout of a genome: its genes in order. What a gene does is said where it is read: `RewardTerm::gene`.
+/// What of learning a gene may set.
+enum class LearningParameter : int32_t {
+  learning_rate,  ///< 10^g times the configured one
+  gamma,          ///< 10^g times its odds, gamma / (1 - gamma)
+  entropy_coef,   ///< 10^g times the configured one
+  action_sd,      ///< 10^g times the standard deviation with which a new network acts
+};
+inline constexpr const char* LEARNING_PARAMETER_NAMES[] = {"learning_rate", "gamma", "entropy_coef", "action_sd"};
+inline constexpr int LEARNING_PARAMETERS = 4;
+
+/// A gene that sets a parameter of learning.
+struct LearningGene {
+  LearningParameter sets;
+  int32_t gene;
+
+  HEDON_FIELDS(LearningGene, sets, gene)
+};
+
+/// The layout of a genome: its genes in order. What a gene does is said where it is read: here for those that set
+/// learning, and in `RewardTerm::gene`.
 struct GenomeConfig {
   MutationNoise mutation_noise;
   FixedList<GeneConfig, MAX_GENES> genes;
+  FixedList<LearningGene, LEARNING_PARAMETERS> learning;
 
-  HEDON_FIELDS(GenomeConfig, mutation_noise, genes)
+  HEDON_FIELDS(GenomeConfig, mutation_noise, genes, learning)
 };
 
 enum class ActionNorm : int32_t { max_force, none };
@@ -48,25 +68,42 @@ enum class RewardInput : int32_t {
   action,    ///< norm of the two forces, divided as `ActionNorm` says
   see_mean,  ///< mean over the rays of the reading of sight channel `index`
   see_max,   ///< the largest of them
+  relief,    ///< by how much energy came closer to the set point that `gene` is, in shares of the capacity
 };
-inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max"};
+inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "relief"};
 
-/// One term of the reward: coef · (gene's value) · input.
+/// How a weight follows from its genes. x is the distance of energy or age from `threshold`, in units of
+/// `threshold_width`.
+enum class RewardFamily : int32_t {
+  linear,  ///< w
+  sinh,    ///< sinh(2.5 w)
+  scaled,  ///< 10^s w, s the second gene
+  fed,     ///< w σ(x) of energy
+  hungry,  ///< w σ(-x) of energy
+  by_age,  ///< w + (w' - w) σ(x) of age, w' the second gene
+};
+inline constexpr const char* REWARD_FAMILY_NAMES[] = {"linear", "sinh", "scaled", "fed", "hungry", "by_age"};
+
+/// One term of the reward: coef · weight · input.
 struct RewardTerm {
   RewardInput input;
-  int32_t index;  ///< of the food kind or sight channel
-  int32_t gene;   ///< index of the gene that weighs it
+  int32_t index;        ///< of the food kind or sight channel
+  int32_t gene;         ///< index of the gene that weighs it
+  int32_t second_gene;  ///< of the other gene, for the families that have two; otherwise as `gene`
   float coef;
 
-  HEDON_FIELDS(RewardTerm, input, index, gene, coef)
+  HEDON_FIELDS(RewardTerm, input, index, gene, second_gene, coef)
 };
 
 /// The layout of a reward: its terms in order.
 struct RewardConfig {
   ActionNorm action_norm;
+  RewardFamily family;
+  float threshold;        ///< of energy [energy] or age [step], for the families that depend on them
+  float threshold_width;  ///< in the same unit
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
 
-  HEDON_FIELDS(RewardConfig, action_norm, terms)
+  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, terms)
 };
 
 }  // namespace hedon

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/device.h"
+#include "base/math.h"
 #include "evolution/config.h"
 
 namespace hedon {
@@ -16,6 +17,10 @@ struct RewardInputs {
   const float* ray;         ///< what it acted on: reading + 1 of each ray, 0 where it met nothing (rays)
   const uint8_t* ray_type;  ///< the channel that each ray met (rays)
   int32_t rays;
+  double energy_before;  ///< before this step's meals and costs
+  double energy;         ///< after them
+  double capacity;       ///< of energy
+  double age;            ///< steps lived, this one included
 };
 
 /// Mean or largest reading, in [0, 1], of the rays that met a type; 0 for the others.
@@ -30,6 +35,35 @@ HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) 
   return mean ? sum / static_cast<float>(inputs.rays) : largest;
 }
 
+/// |H - E| / capacity before the step less the same after it; H is `set_point` times the capacity.
+HEDON_FN float relief(float set_point, const RewardInputs& inputs) {
+  const auto need = [&](double energy) { return fabs(static_cast<double>(set_point) - energy / inputs.capacity); };
+  return static_cast<float>(need(inputs.energy_before) - need(inputs.energy));
+}
+
+HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
+
+/// The weight of a term, from its genes.
+HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, const float* genome,
+                         const RewardInputs& inputs) {
+  const float w = genome[term.gene], second = genome[term.second_gene];
+  switch (config.family) {
+    case RewardFamily::linear:
+      return w;
+    case RewardFamily::sinh:
+      return static_cast<float>(0.5 * (exp_double(2.5 * w) - exp_double(-2.5 * w)));
+    case RewardFamily::scaled:
+      return static_cast<float>(exp_double(second * LOG_10) * w);
+    case RewardFamily::fed:
+      return static_cast<float>(w * logistic((inputs.energy - config.threshold) / config.threshold_width));
+    case RewardFamily::hungry:
+      return static_cast<float>(w * logistic((config.threshold - inputs.energy) / config.threshold_width));
+    case RewardFamily::by_age:
+      return static_cast<float>(w + (second - w) * logistic((inputs.age - config.threshold) / config.threshold_width));
+  }
+  return w;
+}
+
 HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, const RewardInputs& inputs) {
   switch (term.input) {
     case RewardInput::food:
@@ -37,18 +71,22 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
     case RewardInput::see_mean:
     case RewardInput::see_max:
       return sight_of(inputs, term.index, term.input == RewardInput::see_mean);
+    case RewardInput::relief:
+      break;  // it has no weight
     case RewardInput::action:
       return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
   }
   return 0.0f;
 }
 
-/// r = Σ coef · w · x over the terms.
+/// r = Σ coef · weight · input over the terms; relief has no weight: its gene is the set point.
 HEDON_FN float reward(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
   float sum = 0.0f;
   for (int32_t i = 0; i < config.terms.count; ++i) {
     const RewardTerm& term = config.terms[i];
-    sum += term.coef * genome[term.gene] * reward_input(config, term, inputs);
+    sum += term.input == RewardInput::relief
+               ? term.coef * relief(genome[term.gene], inputs)
+               : term.coef * weight_of(config, term, genome, inputs) * reward_input(config, term, inputs);
   }
   return sum;
 }

@@ -38,6 +38,8 @@ constexpr Limit INTEGERS[] = {
     {"species.sensor.collides", 0, MAX_TYPES - 1},
     {"species.reward.terms.index", 0, MAX_TYPES - 1},
     {"species.reward.terms.gene", 0, MAX_GENES - 1},
+    {"species.reward.terms.second_gene", 0, MAX_GENES - 1},
+    {"species.genome.learning.gene", 0, MAX_GENES - 1},
     {"species.learning.rollout_steps", 1, 65'536},
     {"species.learning.minibatch_size", 1, 65'536},
     {"species.learning.update_epochs", 0, 1000},
@@ -59,6 +61,7 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "species.energy.capacity",
                                     "species.genome.genes.limit",
                                     "species.genome.genes.mutation_df",
+                                    "species.reward.threshold_width",
                                     "species.learning.adam_epsilon",
                                     "species.learning.clip_coef"};
 
@@ -153,10 +156,19 @@ void check_reward(Complaint& complaint, const std::string& path, const WorldConf
   for (int32_t i = 0; i < species.reward.terms.count; ++i) {
     const RewardTerm& term = species.reward.terms[i];
     complaint.need(term.gene < species.genome.genes.count, path + ".gene", term.gene, "the index of a gene");
-    const bool food = term.input == RewardInput::food, sight = term.input >= RewardInput::see_mean;
+    complaint.need(term.second_gene < species.genome.genes.count, path + ".second_gene", term.second_gene,
+                   "the index of a gene");
+    const bool food = term.input == RewardInput::food;
+    const bool sight = term.input == RewardInput::see_mean || term.input == RewardInput::see_max;
     if (food) complaint.need(term.index < meals_of(config), path + ".index", term.index, "the index of a meal");
     if (sight) complaint.need(term.index < species.sensor.sees.count, path + ".index", term.index, "a sight channel");
   }
+}
+
+void check_genome(Complaint& complaint, const std::string& path, const GenomeConfig& genome) {
+  for (int32_t i = 0; i < genome.learning.count; ++i)
+    complaint.need(genome.learning[i].gene < genome.genes.count, path + ".gene", genome.learning[i].gene,
+                   "the index of a gene");
 }
 
 void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
@@ -168,6 +180,7 @@ void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
   check_types(complaint, path + "sensor.sees", own.sensor.sees, types);
   check_types(complaint, path + "sensor.collides", own.sensor.collides, types);
   check_reward(complaint, path + "reward.terms", config, own);
+  check_genome(complaint, path + "genome.learning", own.genome);
   complaint.need(own.diet.food.count == config.food.count, path + "diet.food", own.diet.food.count,
                  "one factor for each kind of food");
   complaint.need(own.diet.prey.count == config.species.count, path + "diet.prey", own.diet.prey.count,

@@ -5,6 +5,7 @@
 
 #include "learning/ppo.h"
 #include "world/audit.h"
+#include "world/expression.h"
 #include "world/step.h"
 
 namespace hedon {
@@ -45,7 +46,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
                           &state.updates[slot]};
     const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
                               static_cast<uint32_t>(head.step)};
-    learn(*world.kernel, species.network, species.config->learning, rollout, random, scratch + group.rank() * stride,
+    learn(*world.kernel, species.network, own_learning(world, slot), rollout, random, scratch + group.rank() * stride,
           learner);
     world.kernel->pack_weights(species.network, world.network(slot));
   });

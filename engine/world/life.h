@@ -60,6 +60,7 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   const double action = static_cast<double>(config.energy.action_cost) * applied_force(world, slot);
   const double wanted = life.energy + eaten - action - basic;
   const double capacity = config.energy.capacity;
+  scratch.energy_before[slot] = life.energy;
   scratch.energy_eaten[slot] = eaten;
   scratch.energy_basic[slot] = basic;
   scratch.energy_action[slot] = action;
@@ -81,8 +82,17 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
   const PackedObservation& seen = world.observation(slot, t);
-  const RewardInputs inputs{world.meal(slot), applied_force(world, slot),      species.max_force, seen.ray,
-                            seen.ray_type,    species.config->sensor.ray_count};
+  const Life& life = world.state.life[slot];
+  const RewardInputs inputs{.eaten = world.meal(slot),
+                            .force = applied_force(world, slot),
+                            .max_force = species.max_force,
+                            .ray = seen.ray,
+                            .ray_type = seen.ray_type,
+                            .rays = species.config->sensor.ray_count,
+                            .energy_before = world.scratch.energy_before[slot],
+                            .energy = life.energy,
+                            .capacity = species.config->energy.capacity,
+                            .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
   const float r = reward(species.config->reward, world.genome(slot), inputs);
   world.state.reward[slot * int64_t{world.shape->steps} + t] = r;
   world.state.life[slot].reward += r;

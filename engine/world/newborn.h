@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "evolution/genome.h"
 #include "learning/init.h"
+#include "world/expression.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -49,6 +50,7 @@ HEDON_FN void fill_vacancies(World& world) {
       give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
       init_genome(species.config->genome, RandomStream{world.seed, Purpose::vacant_genome, number, 0},
                   world.genome(slot));
+      express_genes(world, slot);
     }
   }
 }
@@ -91,6 +93,7 @@ HEDON_FN void settle_newborns(World& world) {
     if (state.life[slot].agent_id != state.newborn[i].agent_id) continue;  // it has died
     for (int32_t g = 0; g < world.shape->genes; ++g) world.genome(slot)[g] = newborn_genome(world, i)[g];
     give_own_network(world, slot);
+    express_genes(world, slot);
     --at;
   }
 }

@@ -70,6 +70,7 @@ HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, flo
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   init_genome(world.shape->of[species].config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
               world.genome(slot));
+  express_genes(world, slot);
   world.counters(slot).energy_initial += energy;
   return slot;
 }
@@ -105,6 +106,7 @@ HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
     inherit(species.config->genome, world.seed, id,
             {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)},
             world.genome(parent), world.genome(slot));
+    express_genes(world, slot);
   }
   head.births_in_window += 1;
   world.counters(parent).births += 1;

@@ -44,7 +44,7 @@ struct StepScratch {
   Array<float> start_angle, start_x, start_y;
   Array<int32_t> meal;       ///< foods, and agents of each species, eaten in this step
   Array<double> death_draw;  ///< uniform in [0, 1)
-  Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
+  Array<double> energy_before, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;    ///< 1 where it does
   Array<Finding> finding;                  ///< of the audit at the end of a window
   Array<int32_t> eater;                    ///< slot of the agent that gets the food, -1 for none
@@ -61,15 +61,15 @@ struct StepScratch {
                (torque, slots, one, scratch), (heading_sine, slots, one, scratch),
                (heading_cosine, slots, one, scratch), (start_angle, slots, one, scratch),
                (start_x, slots, one, scratch), (start_y, slots, one, scratch), (meal, slots, meals, scratch),
-               (death_draw, slots, one, scratch), (energy_eaten, slots, one, scratch),
-               (energy_basic, slots, one, scratch), (energy_action, slots, one, scratch),
-               (energy_forgiven, slots, one, scratch), (energy_capped, slots, one, scratch),
-               (starved, slots, one, scratch), (breeds, slots, one, scratch), (dies, slots, one, scratch),
-               (finding, slots, one, scratch), (eater, foods, one, scratch), (eater_distance, foods, one, scratch),
-               (eaten, hunted_slots, one, scratch), (claim_eater, hunted_slots, one, scratch),
-               (claim_prey, hunted_slots, one, scratch), (claim_of, hunted_slots, one, scratch),
-               (claim_distance, hunted_slots, one, scratch), (parent, slots, one, scratch),
-               (parent_key, slots, one, scratch))
+               (death_draw, slots, one, scratch), (energy_before, slots, one, scratch),
+               (energy_eaten, slots, one, scratch), (energy_basic, slots, one, scratch),
+               (energy_action, slots, one, scratch), (energy_forgiven, slots, one, scratch),
+               (energy_capped, slots, one, scratch), (starved, slots, one, scratch), (breeds, slots, one, scratch),
+               (dies, slots, one, scratch), (finding, slots, one, scratch), (eater, foods, one, scratch),
+               (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
+               (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
+               (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
+               (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };
 
 struct World {

@@ -12,6 +12,7 @@ from hedon.assay.outcome import MEASURES, founder_outcomes
 from hedon.assay.resample import Floats, relative
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
+from hedon.config.gene import limit_of
 from hedon.config.layout import gene_columns, layouts, with_genome
 from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
@@ -95,7 +96,7 @@ class Landscape:
 
 def assay_config(config: Config) -> Config:
     """The condition without mutation, and with the assay's neutral markers."""
-    return with_genome(config, mutation_scale=0.0, neutral_count=NEUTRAL, founders="")
+    return with_genome(config, mutation_scale=0.0, mutation={}, neutral_count=NEUTRAL, founders="")
 
 
 def spread_founders(config: Config, spread: Spread, species: str | None = None, rows: int = ROWS) -> Founders:
@@ -105,11 +106,12 @@ def spread_founders(config: Config, spread: Spread, species: str | None = None, 
     """
     names = gene_columns(config) if species is None else layouts(config)[species].gene_names
     rng = np.random.default_rng(_SEED)
-    limit = config.genome.weight_limit
+    limits = np.array([limit_of(config, name) for name in names])
     if spread.sd is None:
         values = rng.uniform(spread.low, spread.high, (rows, len(names)))
     else:
-        values = np.clip(rng.normal(0.0, spread.sd, (rows, len(names))), -limit, limit)
+        values = rng.normal(0.0, spread.sd, (rows, len(names)))
+    values = np.clip(values, -limits, limits)
     prefix = "" if species is None else f"{species}."
     return make_founders([prefix + name for name in names], values, ["spread"] * rows)
 

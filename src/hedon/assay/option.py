@@ -123,7 +123,7 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
 
 def still(config: Config) -> Config:
     """A config without mutation, whose founders are not those of another run."""
-    return with_genome(config, mutation_scale=0.0, founders="")
+    return with_genome(config, mutation_scale=0.0, mutation={}, founders="")
 
 
 def start_config(config: Config, point: Mapping[str, float]) -> Config:

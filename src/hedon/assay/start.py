@@ -10,7 +10,7 @@ from scipy import stats
 from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.world.record import generator, read_worlds
 from hedon.assay.resample import Floats
-from hedon.config.gene import gene_config
+from hedon.config.gene import gene_of
 from hedon.record.reader import Run
 from hedon.statistic.drift import rank_score
 from hedon.statistic.interval import Interval, mean_interval
@@ -83,10 +83,10 @@ def measure_start(run: Run) -> Start:
     courses = [course for course in found if course is not None]
     names, config = worlds[0].weight_names, worlds[0].config
     step = np.arange(TIMES + 1) * steps / TIMES
-    weights = {name: _weight(name, gene_config(config, name).initial_mean, step, courses) for name in names}
+    weights = {name: _weight(name, gene_of(config, name).law.initial_mean, step, courses) for name in names}
     return Start(
         name=run.path.name,
-        point={name: gene_config(config, name).initial_mean for name in worlds[0].reward_names},
+        point={name: gene_of(config, name).law.initial_mean for name in worlds[0].reward_names},
         worlds=len(worlds),
         extinct=sum(world.extinct_step is not None for world in worlds),
         generations=float(np.mean([course.generations for course in courses])) if courses else 0.0,

@@ -5,12 +5,14 @@ import re
 from collections.abc import Iterator, Sequence
 
 from hedon.config.config import Config
-from hedon.config.layout import WALL, chosen
+from hedon.config.layout import LEARNING_GENES, WALL, chosen, layouts
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
 
 MAX_TOUCH_BITS = 128
 """Most types times touch sectors that the engine has room for."""
+MAX_GENES = 64
+"""Most genes that the engine has room for."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -25,6 +27,7 @@ def species_problems(config: Config) -> Iterator[Problem]:
         yield from _life(config, species, path)
         yield from _lists(config, species, path)
         yield from _sight(config, species, path)
+        yield from _genes(config, name, path)
     yield from _nobody(config)
     yield from _crowd(config)
     yield from _collisions(config)
@@ -97,6 +100,33 @@ def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
         if name not in seen:
             rule = "it does not see this: it sees " + ", ".join(seen)
             yield Problem(f"{path}reward.see.{name}", rule, nearest=nearest(name, seen))
+
+
+def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
+    species = config.agents[name]
+    genome, learning = species.genome, species.learning
+    for gene in genome.learning:
+        if gene not in LEARNING_GENES:
+            rule = "no gene can set this: there are " + ", ".join(LEARNING_GENES)
+            yield Problem(f"{path}genome.learning.{gene}", rule, nearest=nearest(gene, tuple(LEARNING_GENES)))
+            return
+    if "gamma" in genome.learning and not 0 < learning.gamma < 1:
+        rule = "must lie between 0 and 1 where a gene sets it"
+        yield Problem(f"{path}learning.gamma", rule, format_value(learning.gamma))
+    for value in ("learning_rate", "entropy_coef"):
+        if value in genome.learning and getattr(learning, value) == 0:
+            yield Problem(f"{path}learning.{value}", "a gene multiplies it, so it must not be 0", "0.0")
+    if any(each not in chosen(config, species.sensor.sees) for each in species.reward.see):
+        return  # that is said already
+    names = layouts(config)[name].gene_names
+    if len(names) > MAX_GENES:
+        yield Problem(f"{path}genome", f"there must be at most {MAX_GENES} genes, not {len(names)}")
+    for gene in {each for each in names if names.count(each) > 1}:
+        yield Problem(f"{path}genome", f"two genes would have the name {gene}: rename a food or a species")
+    for gene in genome.mutation:
+        if gene not in names:
+            rule = "there is no such gene: there are " + ", ".join(names)
+            yield Problem(f"{path}genome.mutation.{gene}", rule, nearest=nearest(gene, names))
 
 
 def _known(path: str, names: Sequence[str], known: Sequence[str]) -> Iterator[Problem]:

@@ -35,6 +35,15 @@ EARLIER = {
     "genome.mutation_probability": 1.0,
     "genome.prey.initial_mean": 0.0,
     "genome.prey.initial_sd": 0.1,
+    "genome.second.initial_mean": 0.0,
+    "genome.second.initial_sd": 0.1,
+    "genome.set_point.initial_mean": 0.5,
+    "genome.set_point.initial_sd": 0.1,
+    "reward.family": "linear",
+    "reward.threshold": 50.0,
+    "reward.threshold_width": 10.0,
+    "reward.meal_coef": 1.0,
+    "reward.relief_coef": 0.0,
 }
 """Settings that older versions did not have, with what those versions did. A complete file without such a setting is
 older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""

@@ -21,11 +21,41 @@ class GeneConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class MutationConfig:
+    """How one gene mutates, by the gene's name; what is not said here is as `[genome]` says for all genes."""
+
+    law: Annotated[
+        Literal["cauchy", "student_t", "normal", "uniform"],
+        Doc("law of the noise added at birth", "", OURS),
+    ] = "cauchy"
+    scale: Annotated[
+        float,
+        Doc("scale of the noise, or the largest noise if it is uniform", "", OURS, Range(ge=0, le=1e3)),
+    ] = 0.02
+    df: Annotated[
+        float,
+        Doc("degrees of freedom of student_t", "", OURS, Range(gt=0, le=1e3)),
+    ] = 2.0
+    probability: Annotated[
+        float,
+        Doc("probability that the gene mutates at a birth", "", OURS, Range(ge=0, le=1)),
+    ] = 1.0
+    limit: Annotated[
+        float,
+        Doc("the gene is clipped to ± this", "", OURS, Range(gt=0, le=1e3)),
+    ] = 10.0
+
+
+@dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """One weight per food kind, one for action, then neutral markers that have no effect on rewards.
+    """The weights of the reward, genes that set learning, then neutral markers that have no effect.
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
-    that of each species that is eaten, and `[genome.neutral]` each neutral marker.
+    that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
+    reward has one, `[genome.set_point]` the set point of energy, and `[genome.neutral]` each neutral marker.
+    `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
+    learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
+    actions, by 10^g. `[genome.mutation.GENE]` gives one gene a mutation of its own.
     """
 
     neutral_count: Annotated[
@@ -83,6 +113,10 @@ class GenomeConfig:
     action: GeneConfig = field(default_factory=GeneConfig)
     prey: GeneConfig = field(default_factory=GeneConfig)
     neutral: GeneConfig = field(default_factory=GeneConfig)
+    second: GeneConfig = field(default_factory=GeneConfig)
+    set_point: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
+    learning: dict[str, GeneConfig] = field(default_factory=dict)
+    mutation: dict[str, MutationConfig] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +136,39 @@ class SeeConfig:
 
 @dataclass(frozen=True, slots=True)
 class RewardConfig:
-    """Reward in a step: Σ weight·eaten over meals + action_coef·weight·|force|/norm + Σ coef·weight·seen."""
+    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·seen + relief.
+
+    How a weight follows from its genes is the family. With x = (energy or age - threshold) / threshold_width and
+    σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `fed` w·σ(x) and `hungry`
+    w·σ(-x) of energy; `by_age` w + (w' - w)·σ(x) of age with a second gene w'.
+    """
+
+    family: Annotated[
+        Literal["linear", "sinh", "scaled", "fed", "hungry", "by_age"],
+        Doc("how a weight follows from its genes", "", PAPER + "; the others are ours"),
+    ] = "linear"
+    threshold: Annotated[
+        float,
+        Doc("energy, or age in steps, around which weights change", "energy or step", OURS, Range(ge=0, le=1e6)),
+    ] = 50.0
+    threshold_width: Annotated[
+        float,
+        Doc("how wide the change around the threshold is", "energy or step", OURS, Range(gt=0, le=1e6)),
+    ] = 10.0
+    meal_coef: Annotated[
+        float,
+        Doc("factor of the terms for what is eaten; 0: their weights do nothing", "", PAPER, Range(ge=-1e3, le=1e3)),
+    ] = 1.0
+    relief_coef: Annotated[
+        float,
+        Doc(
+            "factor of relief: by how much a step's meals and costs bring energy closer to a set point, which is a "
+            "gene, both in shares of the capacity; 0: there is neither term nor gene",
+            "",
+            OURS,
+            Range(ge=-1e3, le=1e3),
+        ),
+    ] = 0.0
 
     action_coef: Annotated[
         float,

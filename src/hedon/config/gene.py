@@ -1,10 +1,17 @@
-"""How founders draw a gene, by the name of its column in the records."""
+"""A gene by the name of its column in the records."""
 
 from hedon.config.config import Config
-from hedon.config.evolution import GeneConfig
-from hedon.config.layout import layouts
+from hedon.config.layout import Gene, layouts
 
 
-def gene_config(config: Config, column: str) -> GeneConfig:
-    """How founders draw the gene of a column; of the first species that has it."""
-    return next(gene.law for layout in layouts(config).values() for gene in layout.genes if gene.name == column)
+def gene_of(config: Config, column: str) -> Gene:
+    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species."""
+    species, _, name = column.rpartition(".")
+    made = layouts(config)
+    wanted = [made[species]] if species else made.values()
+    return next(gene for layout in wanted for gene in layout.genes if gene.name == name)
+
+
+def limit_of(config: Config, column: str) -> float:
+    """What a gene is clipped to, on both sides."""
+    return gene_of(config, column).mutation.limit

@@ -6,6 +6,14 @@ from typing import Any
 from hedon.config.problem import Problem, format_value, nearest
 
 Table = dict[str, Any]
+_MUTATION = {
+    "law": "mutation_law",
+    "scale": "mutation_scale",
+    "df": "mutation_df",
+    "probability": "mutation_probability",
+    "limit": "weight_limit",
+}
+"""What a gene's mutation says, and the setting of `genome` that says it for all."""
 EVERY = "*"
 """In a layer, the kind of food that stands for every kind: `[food."*"]`."""
 
@@ -59,6 +67,21 @@ def settle_species(tables: Table, sections: Iterable[str]) -> Iterator[Problem]:
         else:
             shared = {section: tables[section] for section in sections if section in tables}
             species[name] = _lay(shared, own)
+
+
+def settle_mutation(tables: Table) -> None:
+    """Completes `genome.mutation` of a config and of its species, in place: what a gene does not say, `genome` says."""
+    species = tables.get("species")
+    owners = [tables, *(species.values() if isinstance(species, dict) else [])]
+    for genome in (owner.get("genome") for owner in owners if isinstance(owner, dict)):
+        if not isinstance(genome, dict) or not isinstance(genome.get("mutation"), dict):
+            continue
+        common = {name: genome[whole] for name, whole in _MUTATION.items() if whole in genome}
+        genome["mutation"] = {
+            gene: _lay(common, own) if isinstance(own, dict) else own
+            for gene, own in genome["mutation"].items()
+            if own is not False
+        }
 
 
 def _lay(base: Table, over: Table) -> Table:

@@ -3,12 +3,13 @@
 The engine gets these layouts as data, the records carry them, and columns, labels and figures are named by them.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from hedon.config.config import Config
-from hedon.config.evolution import GeneConfig
+from hedon.config.evolution import GeneConfig, GenomeConfig, MutationConfig
 from hedon.config.problem import nearest
 from hedon.config.species import EVERYTHING, PER_SPECIES, SpeciesConfig
 from hedon.error import ArgumentError
@@ -16,6 +17,19 @@ from hedon.text import brief
 
 WALL = "wall"
 """What senses call a wall."""
+SCALE, OLD = "_scale", "_old"
+SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
+"""Families of rewards whose weights have a second gene: the end of its name, and what it is."""
+SET_POINT = "set_point"
+LEARNING_GENES = {
+    "learning_rate": "power of ten by which the learning rate differs",
+    "gamma": "power of ten by which the odds of the discount differ",
+    "entropy_coef": "power of ten by which the weight of the entropy differs",
+    "action_sd": "power of ten of the standard deviation of a newborn's actions",
+}
+"""What of learning a gene may set, with what the gene is."""
+MAX_EXPONENT = 2.0
+"""Limit of genes that are exponents."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +38,17 @@ class Gene:
 
     Attributes:
         name: Its column in the records.
-        role: "reward" or "neutral".
+        role: "reward", "learning" or "neutral".
         meaning: What it does, as a phrase.
         law: How founders draw it.
+        mutation: How it mutates, and its limit.
     """
 
     name: str
     role: str
     meaning: str
     law: GeneConfig
+    mutation: MutationConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +59,14 @@ class RewardTerm:
         input: The engine's name of the input.
         index: Which food kind, for inputs that there are several of.
         gene: Name of the gene that weighs it.
+        second_gene: Name of the weight's other gene, where the family of the reward has one.
         coef: Factor of the term.
     """
 
     input: str
     index: int
     gene: str
+    second_gene: str
     coef: float
 
 
@@ -139,32 +157,69 @@ def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name == WALL)
 
 
+class _Layout:
+    """Collects the genes and reward terms of one species, in order."""
+
+    def __init__(self, species: SpeciesConfig) -> None:
+        self.genome, self.reward = species.genome, species.reward
+        self.genes: list[Gene] = []
+        self.terms: list[RewardTerm] = []
+
+    def add_gene(self, name: str, role: str, meaning: str, law: GeneConfig) -> None:
+        mutation = _mutation(self.genome, name)
+        most = _most(self.reward.family, role, name)
+        limited = replace(mutation, limit=min(mutation.limit, most))
+        self.genes.append(Gene(name, role, meaning, law, limited))
+
+    def add_term(self, kind: str, index: int, of: str, meaning: str, law: GeneConfig, coef: float) -> None:
+        """Adds a term, the gene that weighs its input, and the weight's second gene if it has one."""
+        weight = second = f"w_{of}"
+        self.add_gene(weight, "reward", f"reward weight for {meaning}", law)
+        if self.reward.family in SECOND_GENES:
+            ending, what = SECOND_GENES[self.reward.family]
+            second = weight + ending
+            self.add_gene(second, "reward", f"{what} for {meaning}", self.genome.second)
+        self.terms.append(RewardTerm(kind, index, weight, second, coef))
+
+
+def _mutation(genome: GenomeConfig, name: str) -> MutationConfig:
+    return genome.mutation.get(
+        name,
+        MutationConfig(
+            law=genome.mutation_law,
+            scale=genome.mutation_scale,
+            df=genome.mutation_df,
+            probability=genome.mutation_probability,
+            limit=genome.weight_limit,
+        ),
+    )
+
+
+def _most(family: str, role: str, name: str) -> float:
+    """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
+    exponent = family == "sinh" and role == "reward" and name != SET_POINT
+    exponent |= name.endswith(SCALE) or role == "learning"
+    return MAX_EXPONENT if exponent else math.inf
+
+
 def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
-    genes: list[Gene] = []
-    terms: list[RewardTerm] = []
-    eaten = diet(config, species)
+    made, genome, reward = _Layout(species), species.genome, species.reward
+    eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
     for index, (kind, food) in enumerate(config.food.items()):
         if kind in eaten:
-            genes.append(Gene(f"w_{kind}", "reward", f"reward weight for a food of kind {kind}", food.gene))
-            terms.append(RewardTerm("food", index, f"w_{kind}", 1.0))
-    for index, name in enumerate(config.agents):
+            made.add_term("food", index, kind, f"a food of kind {kind}", food.gene, reward.meal_coef)
+    for index, name in enumerate(config.agents, len(config.food)):
         if name in eaten:
-            genes.append(Gene(f"w_{name}", "reward", f"reward weight for eating a {name}", species.genome.prey))
-            terms.append(RewardTerm("food", len(config.food) + index, f"w_{name}", 1.0))
-    genes.append(Gene("w_action", "reward", "reward weight for motor action", species.genome.action))
-    terms.append(RewardTerm("action", 0, "w_action", species.reward.action_coef))
-    sees = chosen(config, species.sensor.sees)
-    for name, see in species.reward.see.items():
-        genes.append(Gene(f"w_see_{name}", "reward", f"reward weight for seeing {name}", see.gene))
-        terms.append(RewardTerm(f"see_{see.over_rays}", sees.index(name), f"w_see_{name}", see.coef))
-    meaning = "neutral marker: inherited and mutated, no effect on the reward"
-    genes += [
-        Gene(f"neutral_{i + 1}", "neutral", meaning, species.genome.neutral)
-        for i in range(species.genome.neutral_count)
-    ]
-    return SpeciesLayout(
-        genes=tuple(genes),
-        terms=tuple(terms),
-        sees=sees,
-        touches=chosen(config, species.body.collides),
-    )
+            made.add_term("food", index, name, f"eating a {name}", genome.prey, reward.meal_coef)
+    made.add_term("action", 0, "action", "motor action", genome.action, reward.action_coef)
+    for name, see in reward.see.items():
+        made.add_term(f"see_{see.over_rays}", sees.index(name), f"see_{name}", f"seeing {name}", see.gene, see.coef)
+    if reward.relief_coef:
+        made.add_gene(SET_POINT, "reward", "energy that it seeks, as a share of the capacity", genome.set_point)
+        made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))
+    for name, law in genome.learning.items():
+        made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], law)
+    for i in range(genome.neutral_count):
+        made.add_gene(f"neutral_{i + 1}", "neutral", "neutral marker: inherited and mutated, no effect", genome.neutral)
+    touches = chosen(config, species.body.collides)
+    return SpeciesLayout(genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches)

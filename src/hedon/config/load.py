@@ -10,7 +10,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.dump import EARLIER, digest
 from hedon.config.earlier import with_genes
-from hedon.config.layer import Table, settle_food, settle_species, stack
+from hedon.config.layer import Table, settle_food, settle_mutation, settle_species, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
 from hedon.config.species import PER_SPECIES
@@ -151,6 +151,7 @@ def _settled(layers: list[Table], origin: str) -> Table:
     merged = stack(layers)
     merged.pop("complete", None)
     problems = [*settle_food(merged), *settle_species(merged, PER_SPECIES)]
+    settle_mutation(merged)
     if problems:
         raise ConfigError(origin, problems)
     return merged

@@ -80,30 +80,44 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
 
 
 def _genome(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
-    genome = species.genome
     return {
-        "mutation_noise": genome.mutation_noise,
+        "mutation_noise": species.genome.mutation_noise,
         "genes": [
             {
                 "initial_mean": gene.law.initial_mean,
                 "initial_sd": gene.law.initial_sd,
-                "mutation_law": genome.mutation_law,
-                "mutation_scale": genome.mutation_scale,
-                "mutation_df": genome.mutation_df,
-                "mutation_probability": genome.mutation_probability,
-                "limit": genome.weight_limit,
+                "mutation_law": gene.mutation.law,
+                "mutation_scale": gene.mutation.scale,
+                "mutation_df": gene.mutation.df,
+                "mutation_probability": gene.mutation.probability,
+                "limit": gene.mutation.limit,
             }
             for gene in layout.genes
         ],
+        "learning": [{"sets": name, "gene": layout.gene_names.index(f"g_{name}")} for name in species.genome.learning],
     }
 
 
 def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
+    place = {name: i for i, name in enumerate(layout.gene_names)}
     terms = [
-        {"input": term.input, "index": term.index, "gene": layout.gene_names.index(term.gene), "coef": term.coef}
+        {
+            "input": term.input,
+            "index": term.index,
+            "gene": place[term.gene],
+            "second_gene": place[term.second_gene],
+            "coef": term.coef,
+        }
         for term in layout.terms
     ]
-    return {"action_norm": species.reward.action_norm, "terms": terms}
+    reward = species.reward
+    return {
+        "action_norm": reward.action_norm,
+        "family": reward.family,
+        "threshold": reward.threshold,
+        "threshold_width": reward.threshold_width,
+        "terms": terms,
+    }
 
 
 def _without(table: dict[str, Any], *names: str) -> dict[str, Any]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.config.gene import limit_of
 from hedon.config.layout import gene_columns, layouts, of_species
 from hedon.config.problem import nearest
 from hedon.error import HedonError
@@ -121,13 +122,13 @@ class Founders:
         for gene in self.genes:
             if column_of(config, gene) != gene:
                 raise FounderError(f"{brief(origin)}: {unknown_gene(config, gene)}")
-        limit = np.float32(config.genome.weight_limit)
-        wrong = np.argwhere(np.abs(self.values) > limit)
+        limits = np.array([limit_of(config, gene) for gene in self.genes], np.float32)
+        wrong = np.argwhere(np.abs(self.values) > limits)
         if len(wrong):
             row, column = wrong[0]
             raise FounderError(
                 f"{brief(origin)}: row {row + 1}, {self.genes[column]} = {self.values[row, column]:g}: must be within "
-                f"± genome.weight_limit = {limit:g}"
+                f"± {limits[column]:g}, the gene's limit"
             )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import polars as pl
 
 from hedon.config.config import Config
+from hedon.config.gene import limit_of
 from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, unknown_gene
 from hedon.record.founder_table import read_table
 from hedon.record.reader import open_run
@@ -102,12 +103,12 @@ def parse_point(text: str, config: Config) -> dict[str, float]:
         FounderError: A gene is unknown or given twice, or a value is not allowed.
     """
     point: dict[str, float] = {}
-    limit = config.genome.weight_limit
     for item in text.split(","):
         name, _, number = (part.strip() for part in item.partition("="))
         column = column_of(config, name)
         if column is None:
             raise FounderError(f"{brief(text)}: {unknown_gene(config, name)}")
+        limit = limit_of(config, column)
         try:
             value = float(number)
         except ValueError:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hedon.config.config import Config
+from hedon.config.gene import limit_of
 from hedon.record.founder import FOUNDERS, GROUP, SHARE, FounderError, Founders, column_of, make_founders, unknown_gene
 from hedon.text import brief
 
@@ -57,8 +58,10 @@ def read_table(path: Path, config: Config) -> Founders:
             if not share > 0 or shares.setdefault(group, share) != share:
                 rule = "must be above 0, and the same in all rows of a group"
                 raise FounderError(f"{place}, {SHARE} = {brief(cells[SHARE])}: {rule}")
-        limit = config.genome.weight_limit
-        values.append([_number(cells[name], f"{place}, {name}", -limit, limit, empty=True) for name in genes])
+        limits = {name: limit_of(config, gene) for name, gene in genes.items()}
+        values.append(
+            [_number(cells[name], f"{place}, {name}", -limit, limit, empty=True) for name, limit in limits.items()]
+        )
         groups.append(group)
     return make_founders(tuple(genes.values()), np.array(values, np.float32), groups, shares or None)
 

@@ -11,10 +11,16 @@ from hedon.analysis.descent.walk import MutationLaw, mutation_law, neutral_means
 from hedon.analysis.gene.drift import WorldDrift, drift_tests, world_drift
 from hedon.analysis.world.record import read_worlds
 from hedon.config import load_config
+from hedon.config.gene import gene_of
 from hedon.record.reader import open_run
 from hedon.statistic.correction import holm
 
 LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10, late=False)
+
+
+def law_of(fidelity: str) -> MutationLaw:
+    config = load_config("baseline", fidelity)
+    return mutation_law(config, gene_of(config, "neutral_1"))
 
 
 def chain(parent: list[int], birth: list[int] | None = None) -> Genealogy:
@@ -64,8 +70,8 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     for second_birth, equal in ((15, 1.0), (6, 0.5)):
         values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
         assert np.mean(np.abs(values) > 0.5) == pytest.approx(equal, abs=0.03)
-    assert mutation_law(load_config("baseline", "released")).frozen
-    assert mutation_law(load_config("baseline")) == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024, False)
+    assert law_of("released").frozen
+    assert law_of("corrected") == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024, False)
 
 
 def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:

@@ -13,7 +13,16 @@ from hedon.config.field import Setting, leaves
 from hedon.config.native import PYTHON_ONLY, distance_sd
 
 ENGINE = Path(__file__).parents[3] / "engine"
-CONFIG = load_config("poison", overrides=["reward.see.poison.coef=0.1"])
+CONFIG = load_config(
+    "poison",
+    overrides=[
+        "reward.see.poison.coef=0.1",
+        "reward.family=by_age",
+        "reward.relief_coef=1.0",
+        "genome.learning.gamma.initial_sd=0.1",
+        "genome.mutation.w_action.scale=0.1",
+    ],
+)
 LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
 OTHER: dict[str, Any] = {
     "body.collides": ("normal",),
@@ -70,13 +79,14 @@ def test_names_are_those_of_the_engines_structs() -> None:
     for name, section in species.items():
         assert set(section) == set(structs[f"{name.capitalize()}Config"]), name
     assert list(species["genome"]["genes"][0]) == structs["GeneConfig"]
+    assert list(species["genome"]["learning"][0]) == structs["LearningGene"]
     assert list(species["reward"]["terms"][0]) == structs["RewardTerm"]
 
 
 @pytest.mark.parametrize("path", LEAVES)
 def test_every_setting_arrives_or_is_listed(path: str) -> None:
     other = engine_config(changed(CONFIG, path, other_value(path, LEAVES[path])))
-    plain = re.sub(r"^(food|reward\.see)\.\w+\.", r"\1.", path)
+    plain = re.sub(r"^(food|reward\.see|genome\.learning|genome\.mutation)\.\w+\.", r"\1.", path)
     # These act only where a species eats another one.
     quiet = {"genome.prey.initial_mean", "genome.prey.initial_sd"}
     assert (other != engine_config(CONFIG)) == (plain not in {*PYTHON_ONLY, *quiet} - {"birth.distance_unit"}), path

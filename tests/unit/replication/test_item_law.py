@@ -10,6 +10,7 @@ from scipy.integrate import trapezoid
 
 from hedon.analysis.descent.walk import MutationLaw, lineages, mutation_law
 from hedon.config import load_config
+from hedon.config.gene import gene_of
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import svg_bytes
 from hedon.figure.walk import LENGTHS, draw_walks, unlimited_share
@@ -17,7 +18,7 @@ from hedon.replication.item.item import Material
 from hedon.replication.item.law import LAWS, window_births
 
 CONFIG = load_config("baseline")
-LAW = mutation_law(CONFIG)
+LAW = mutation_law(CONFIG, gene_of(CONFIG, "neutral_1"))
 
 
 def make(name: str, fidelity: str = "corrected") -> NamedFigure:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import Genealogy, ancestry, depth
 from hedon.config import Config
-from hedon.config.evolution import GeneConfig
+from hedon.config.layout import Gene
 
 WALKS = 2000
 """Per world; the smallest chance that they can show is 1 in 2000."""
@@ -62,21 +62,19 @@ class MutationLaw:
         return noise if self.probability >= 1.0 else noise * (rng.random(shape) < self.probability)
 
 
-def mutation_law(config: Config, gene: GeneConfig | None = None) -> MutationLaw:
-    """The law of one gene of a run; by default that of a neutral marker."""
-    genome = config.genome
-    gene = gene or genome.neutral
+def mutation_law(config: Config, gene: Gene) -> MutationLaw:
+    """The law of one gene of a run."""
     return MutationLaw(
-        mean=gene.initial_mean,
-        sd=gene.initial_sd,
-        scale=genome.mutation_scale,
-        limit=genome.weight_limit,
-        frozen=genome.mutation_noise == "frozen",
+        mean=gene.law.initial_mean,
+        sd=gene.law.initial_sd,
+        scale=gene.mutation.scale,
+        limit=gene.mutation.limit,
+        frozen=config.genome.mutation_noise == "frozen",
         window=config.learning.rollout_steps,
         late=config.birth.inheritance == "at_window_end",
-        noise=genome.mutation_law,
-        df=genome.mutation_df,
-        probability=genome.mutation_probability,
+        noise=gene.mutation.law,
+        df=gene.mutation.df,
+        probability=gene.mutation.probability,
     )
 
 

@@ -18,11 +18,10 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.gene.drift import start_of
 from hedon.analysis.gene.noise import Mutations, NoiseTable, mutations, noise_table
 from hedon.analysis.gene.weight import last_agents
 from hedon.analysis.world.record import WorldRecord
-from hedon.config.gene import gene_config
+from hedon.config.gene import gene_of
 from hedon.statistic.interval import LEVEL
 from hedon.statistic.prediction import Prediction, prediction
 
@@ -90,11 +89,12 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
     table = noise_table(found)
     newest = last_agents(world.agents)
     generations = float(newest["generation"].to_numpy().mean())
-    start, genome = start_of(world, weight), world.config.genome
-    lines = rng.normal(start, gene_config(world.config, weight).initial_sd, _LINES)
+    gene = gene_of(world.config, weight)
+    start, limit = gene.law.initial_mean, gene.mutation.limit
+    lines = rng.normal(start, gene.law.initial_sd, _LINES)
     pool = _pool(found, table)
     for _ in range(round(generations)):
-        lines = np.clip(lines + rng.choice(pool, _LINES), -genome.weight_limit, genome.weight_limit)
+        lines = np.clip(lines + rng.choice(pool, _LINES), -limit, limit)
     low, high = np.quantile(lines, (0.5 - LEVEL / 2, 0.5 + LEVEL / 2))
     first, second = _half_biases(world, found, table)
     slope, displacement = _observed(world.population, weight, start)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hedon.analysis.descent.genealogy import depth, genealogy, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
 from hedon.analysis.world.record import WorldRecord
-from hedon.config.gene import gene_config
+from hedon.config.gene import gene_of
 
 WALKS = 500
 """Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
@@ -63,9 +63,8 @@ def world_course(
     if len(living) < 2:
         return None
     generation = depth(tree)
-    genes = {name: gene_config(world.config, name) for name in world.weight_names}
-    laws = {gene: mutation_law(world.config, gene) for gene in genes.values()}
-    null = {gene: neutral_courses(tree, living, law, rng, walks) for gene, law in laws.items()}
+    laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}
+    null = {law: neutral_courses(tree, living, law, rng, walks) for law in dict.fromkeys(laws.values())}
     means = {}
     for name in world.weight_names:
         values = world.agents[name].to_numpy().astype(np.float64)
@@ -73,5 +72,5 @@ def world_course(
     return WorldCourse(
         float(generation[living[-1]].mean() - generation[living[0]].mean()),
         means,
-        {name: null[gene] for name, gene in genes.items()},
+        {name: null[law] for name, law in laws.items()},
     )

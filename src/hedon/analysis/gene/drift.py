@@ -20,7 +20,7 @@ from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.world.record import WorldRecord, generator
-from hedon.config.gene import gene_config
+from hedon.config.gene import gene_of
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
@@ -87,11 +87,6 @@ class DriftTest:
     drift_high: float = NAN
 
 
-def start_of(world: WorldRecord, weight: str) -> float:
-    """Mean of the law from which founders draw a weight."""
-    return gene_config(world.config, weight).initial_mean
-
-
 def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
     """Each weight of a world against walks along its pedigree.
 
@@ -103,15 +98,14 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
     if tree.gaps or not tree.size or world.config.genome.founders:
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
-    genes = {name: gene_config(world.config, name) for name in world.weight_names}
-    laws = {gene: mutation_law(world.config, gene) for gene in genes.values()}
-    null = {gene: neutral_means(tree, last, law, rng, walks) for gene, law in laws.items()}
+    laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}
+    null = {law: neutral_means(tree, last, law, rng, walks) for law in dict.fromkeys(laws.values())}
     results = []
-    for name, gene in genes.items():
-        start = gene.initial_mean
+    for name, law in laws.items():
+        start = law.mean
         mean = float(world.agents[name].to_numpy()[last].mean(dtype=np.float64))
-        low, median, high = np.quantile(null[gene], (0.025, 0.5, 0.975))
-        score = rank_score(mean, null[gene])
+        low, median, high = np.quantile(null[law], (0.025, 0.5, 0.975))
+        score = rank_score(mean, null[law])
         p = float(2.0 * stats.norm.sf(abs(score)))
         results.append(WorldDrift(name, start, mean, float(low), float(median), float(high), score, p))
     return results

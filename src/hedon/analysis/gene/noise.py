@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import birth_number, is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
+from hedon.config.gene import gene_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -78,14 +79,13 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
     whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
     agents = world.agents.head(int(whole))
     tree = genealogy(agents)
-    law = mutation_law(world.config)
+    law = mutation_law(world.config, gene_of(world.config, weight))
     child = np.flatnonzero(is_mutated(tree, law, world.last_step))
     weights = agents[weight].to_numpy().astype(np.float64)
-    limit = world.config.genome.weight_limit
-    clipped = np.abs(weights[child]) >= limit * (1.0 - _NEAR)
+    clipped = np.abs(weights[child]) >= law.limit * (1.0 - _NEAR)
     number = birth_number(tree, law.window, law.late)[child]
     change = weights[child] - weights[tree.parent[child]]
-    return Mutations(tree.birth[child], number, change, clipped, float(np.spacing(np.float32(limit))))
+    return Mutations(tree.birth[child], number, change, clipped, float(np.spacing(np.float32(law.limit))))
 
 
 def noise_table(found: Mutations) -> NoiseTable:

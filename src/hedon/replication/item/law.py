@@ -7,6 +7,7 @@ import numpy as np
 from hedon.analysis.descent.walk import mutation_law
 from hedon.analysis.world.record import SEED
 from hedon.config import Config
+from hedon.config.gene import gene_of
 from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
 from hedon.figure.law import draw_birth, draw_hazard
 from hedon.figure.named import NamedFigure
@@ -54,7 +55,7 @@ def _birth(material: Material) -> Iterator[NamedFigure]:
 
 def _walk(material: Material) -> Iterator[NamedFigure]:
     config = BASELINE.config(material.fidelity)
-    law, births = mutation_law(config), window_births(config)
+    law, births = mutation_law(config, gene_of(config, "neutral_1")), window_births(config)
     frozen = ""
     if law.frozen:
         frozen = (
