@@ -72,6 +72,8 @@ enum class RewardInput : int32_t {
 };
 inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "relief"};
 
+constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
+
 /// How a weight follows from its genes. x is the distance of energy or age from `threshold`, in units of
 /// `threshold_width`.
 enum class RewardFamily : int32_t {

@@ -13,7 +13,17 @@ inline constexpr const char* CRITIC_TARGET_NAMES[] = {"per_state", "batch_mean"}
 enum class ActingWeights : int32_t { float32, bfloat16 };
 inline constexpr const char* ACTING_WEIGHTS_NAMES[] = {"float32", "bfloat16"};
 
+/// How agents choose what to do.
+enum class Policy : int32_t {
+  ppo,       ///< by a network of their own, which learns
+  random,    ///< by a standard normal, as a network does that has not learned
+  still,     ///< the motors never run
+  external,  ///< the caller says it, step by step
+};
+inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "still", "external"};
+
 struct LearningConfig {
+  Policy policy;
   int32_t rollout_steps;
   int32_t minibatch_size;
   int32_t update_epochs;
@@ -29,7 +39,7 @@ struct LearningConfig {
   CriticTarget critic_target;
   ActingWeights acting_weights;
 
-  HEDON_FIELDS(LearningConfig, rollout_steps, minibatch_size, update_epochs, gamma, gae_lambda, clip_coef,
+  HEDON_FIELDS(LearningConfig, policy, rollout_steps, minibatch_size, update_epochs, gamma, gae_lambda, clip_coef,
                learning_rate, adam_beta1, adam_beta2, adam_epsilon, value_coef, entropy_coef, critic_target,
                acting_weights)
 };

@@ -22,7 +22,9 @@ SavedExtent extent_of(const World& world) {
   }
   extent.filled = head.step % world.shape->steps;
   const int64_t window_start = head.step - extent.filled;
-  for (const int32_t slot : extent.slots) extent.learners += state.life[slot].birth_step <= window_start;
+  extent.learners = learners_of(world, extent.slots);
+  extent.free_learners = learners_of(world, extent.free);
+  for (const int32_t slot : extent.learners) extent.taught += state.life[slot].birth_step <= window_start;
   return extent;
 }
 

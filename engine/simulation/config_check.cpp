@@ -159,7 +159,7 @@ void check_reward(Complaint& complaint, const std::string& path, const WorldConf
     complaint.need(term.second_gene < species.genome.genes.count, path + ".second_gene", term.second_gene,
                    "the index of a gene");
     const bool food = term.input == RewardInput::food;
-    const bool sight = term.input == RewardInput::see_mean || term.input == RewardInput::see_max;
+    const bool sight = is_sight(term.input);
     if (food) complaint.need(term.index < meals_of(config), path + ".index", term.index, "the index of a meal");
     if (sight) complaint.need(term.index < species.sensor.sees.count, path + ".index", term.index, "a sight channel");
   }

@@ -90,6 +90,35 @@ bool rises(const std::vector<T>& values, bool strictly) {
   return true;
 }
 
+/// The species of each of the living, in their order.
+std::vector<int32_t> saved_species(const Inspector& in, size_t living) {
+  if (in.world_.shape->species == 1) return std::vector<int32_t>(living, 0);
+  return in.numbers<int32_t>("species");
+}
+
+/// Reads which of the living are of a species that learns.
+bool read_learners(Inspector& in, SavedExtent& extent, const std::vector<int64_t>& births) {
+  const WorldShape& shape = *in.world_.shape;
+  if (shape.species > 1 && (!in.has<int32_t>("species", {static_cast<int64_t>(births.size())}) ||
+                            !in.within<int32_t>("species", 0, shape.species - 1))) {
+    return false;
+  }
+  size_t room = 0, learners = 0;
+  for (int32_t s = 0; s < shape.species; ++s)
+    room += shape.of[s].learns ? static_cast<size_t>(shape.of[s].capacity()) : 0;
+  const std::vector<int32_t> species = saved_species(in, births.size());
+  const int64_t window_start = in.numbers<int64_t>("head.step")[0] - extent.filled;
+  for (size_t i = 0; i < births.size(); ++i) {
+    if (!shape.of[species[i]].learns) continue;
+    ++learners;
+    extent.taught += births[i] <= window_start;
+  }
+  if (learners > room) return in.refuse("species has more agents of one species than there is room for");
+  extent.learners.resize(learners);
+  extent.free_learners.resize(room - learners);
+  return true;
+}
+
 /// Reads how many rows the arrays have. The slots are those that the world will give to the living.
 bool read_extent(Inspector& in, SavedExtent& extent) {
   const WorldShape& shape = *in.world_.shape;
@@ -109,10 +138,10 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
   const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
   if (!rises(births, false)) return in.refuse("life.birth_step is out of order");
   if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
-  for (const int64_t birth : births) extent.learners += birth <= step - extent.filled;
   extent.slots.resize(births.size());
   extent.free.resize(static_cast<size_t>(shape.capacity) - births.size());
   extent.ghosts = in.numbers<int32_t>("head.ghost_count")[0];
+  if (!read_learners(in, extent, births)) return false;
   if (shape.newborns == 0) return true;
   extent.newborns = in.numbers<int32_t>("head.births_in_window")[0];
   return in.within<int32_t>("head.births_in_window", 0, shape.newborns);
@@ -138,17 +167,10 @@ bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& ch
   return good;
 }
 
-/// The species of each of the living, in their order.
-std::vector<int32_t> saved_species(const Inspector& in, size_t living) {
-  if (in.world_.shape->species == 1) return std::vector<int32_t>(living, 0);
-  return in.numbers<int32_t>("species");
-}
-
 /// Checks that every species has room for its living and its newborns.
 bool check_species(Inspector& in, size_t living) {
   const WorldShape& shape = *in.world_.shape;
   if (shape.species == 1) return true;
-  if (!in.within<int32_t>("species", 0, shape.species - 1)) return false;
   std::vector<int32_t> count(static_cast<size_t>(shape.species));
   for (const int32_t s : saved_species(in, living)) {
     if (++count[static_cast<size_t>(s)] > shape.of[s].capacity())
@@ -180,7 +202,8 @@ bool check_life(Inspector& in) {
          in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
-         in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
+         (!in.world_.shape->learning ||
+          (in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
          in.within<float>("body.angle", -turn, turn);
 }
@@ -263,8 +286,9 @@ bool is_possible(const ObservationShape& sizes, const uint8_t* bytes) {
 
 /// Checks the indices by which networks read rows: channels of rays, and bits of touch.
 bool check_observations(Inspector& in, const SavedExtent& extent) {
-  if (extent.filled == 0) return true;
-  const std::vector<int32_t> species = saved_species(in, extent.slots.size());
+  if (extent.filled == 0 || !in.world_.shape->learning) return true;
+  std::vector<int32_t> species = saved_species(in, extent.slots.size());
+  std::erase_if(species, [&](int32_t s) { return !in.world_.shape->of[s].learns; });
   const std::vector<uint8_t> bytes = in.numbers<uint8_t>("observation");
   const size_t size = static_cast<size_t>(in.world_.shape->lines) * sizeof(ObservationLine);
   for (size_t at = 0; at < bytes.size(); at += size) {
@@ -358,15 +382,17 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
     state.alive[slot] = 1;
   }
   extent.free = free_slots(target);
+  extent.learners = learners_of(target, extent.slots);
+  extent.free_learners = learners_of(target, extent.free);
   for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
-  for (const int32_t slot : extent.slots)
+  for (const int32_t slot : extent.learners)
     target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   if (inherits_late(target)) {
-    for (const int32_t slot : extent.free)
+    for (const int32_t slot : extent.free_learners)
       target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   }
   restore_pairs(in, target, extent);

@@ -14,13 +14,15 @@ namespace hedon {
 
 /// Numbers of rows in the arrays of a checkpoint, and their slots.
 struct SavedExtent {
-  std::vector<int32_t> slots;  ///< of the living, in the order of their ids
-  std::vector<int32_t> free;   ///< free slots: see `free_slots`
-  std::vector<int32_t> foods;  ///< slots of the foods present, ascending
-  int64_t newborns;            ///< births of this window that wait for their genomes
-  int64_t ghosts;              ///< foods just eaten that are still seen
-  int64_t learners;            ///< number of the living that were there when the window began; they come first
-  int64_t filled;              ///< steps done in the window
+  std::vector<int32_t> slots;          ///< of the living, in the order of their ids
+  std::vector<int32_t> learners;       ///< those of them whose species learns
+  std::vector<int32_t> free;           ///< free slots: see `free_slots`
+  std::vector<int32_t> free_learners;  ///< those of them whose species learns
+  std::vector<int32_t> foods;          ///< slots of the foods present, ascending
+  int64_t newborns;                    ///< births of this window that wait for their genomes
+  int64_t ghosts;                      ///< foods just eaten that are still seen
+  int64_t taught;                      ///< number of learners that were there when the window began; they come first
+  int64_t filled;                      ///< steps done in the window
 };
 
 /// The free slots, species by species, each in the order of its stack.
@@ -31,6 +33,15 @@ inline std::vector<int32_t> free_slots(const World& world) {
     slots.insert(slots.end(), first, first + world.state.free_count[s]);
   }
   return slots;
+}
+
+/// Those of a list of slots whose species learns.
+inline std::vector<int32_t> learners_of(const World& world, const std::vector<int32_t>& slots) {
+  std::vector<int32_t> learners;
+  for (const int32_t slot : slots) {
+    if (world.species(slot).learns) learners.push_back(slot);
+  }
+  return learners;
 }
 
 /// Rows of one array in the memory of a world: row i begins `stride` bytes times index[i] (or i) after `first`.
@@ -79,7 +90,7 @@ class SavedArrays {
     // What depends on a rule that a world does not have is not there.
     if (array.count == 0 && size.rows != Extent::slots) return;
     if (is_by_slot(size.rows)) {
-      by_slot(name, array, width);
+      by_slot(name, array, width, size.rows == Extent::learner_slots ? extent_.learners : extent_.slots);
     } else if (size.rows == Extent::newborns || size.rows == Extent::mixed_newborns) {
       if (name == "newborn") free_slots();
       columns(name, array.data, nullptr, extent_.newborns, width);
@@ -109,20 +120,15 @@ class SavedArrays {
   }
 
   template <class T>
-  void by_slot(const std::string& name, const Array<T>& array, int64_t width) {
-    columns(name, array.data, extent_.slots.data(), static_cast<int64_t>(extent_.slots.size()), width);
-    if (name == "old_slot") by_free_slot(name, array, width);
-  }
-
-  template <class T>
-  void by_free_slot(const std::string& name, const Array<T>& array, int64_t width) {
-    columns("free." + name, array.data, extent_.free.data(), static_cast<int64_t>(extent_.free.size()), width);
+  void by_slot(const std::string& name, const Array<T>& array, int64_t width, const std::vector<int32_t>& slots) {
+    columns(name, array.data, slots.data(), static_cast<int64_t>(slots.size()), width);
+    if (name == "old_slot") by_slot("free." + name, array, width, extent_.free);
   }
 
   /// With late inheritance the next newborns find in free slots what the dead have left.
   void free_slots() {
-    by_free_slot("params", state_.params, shape_.params);
-    by_free_slot("genome", state_.genome, shape_.genes);
+    if (shape_.learning) by_slot("free.params", state_.params, shape_.params, extent_.free_learners);
+    by_slot("free.genome", state_.genome, shape_.genes, extent_.free);
   }
 
   void foods() {
@@ -132,20 +138,21 @@ class SavedArrays {
   }
 
   void bodies() {
-    BodyState::for_each_field(
-        [&](const char* name, auto member) { by_slot(std::string("body.") + name, state_.physics.bodies.*member, 0); });
+    BodyState::for_each_field([&](const char* name, auto member) {
+      by_slot(std::string("body.") + name, state_.physics.bodies.*member, 0, extent_.slots);
+    });
   }
 
   /// The rows of the window so far, for the agents that will learn from it.
   template <class T>
   void rollout(const std::string& name, const Array<T>& array, int64_t width) {
-    if (extent_.filled == 0) return;
+    if (extent_.filled == 0 || !shape_.learning) return;
     using Number = std::conditional_t<std::is_same_v<T, ObservationLine>, uint8_t, T>;
     const int64_t numbers = sizeof(T) / sizeof(Number);
     // One observation more than steps; two actions per step.
-    const int64_t per_step = width / shape_.steps;
+    const int64_t per_step = width / shape_.rollout;
     visit_(name, SavedRows<Number>{reinterpret_cast<Number*>(array.data), width * static_cast<int64_t>(sizeof(T)),
-                                   extent_.slots.data(), extent_.learners, extent_.filled * per_step * numbers});
+                                   extent_.learners.data(), extent_.taught, extent_.filled * per_step * numbers});
   }
 
   const WorldState& state_;

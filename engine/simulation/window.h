@@ -10,7 +10,8 @@
 
 namespace hedon {
 
-/// Every agent that lived through the whole window learns from its rollout; all others wait for the next window.
+/// Every agent that lived through the whole window learns from its rollout, if its species learns; all others wait for
+/// the next window.
 /// `scratch` holds `stride` floats for each member of the group.
 template <class Group>
 HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
@@ -26,6 +27,7 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
   // The living are in the order of birth, so those that lived through the window come first.
   group.for_each_claimed(learners, [&](int32_t i) {
     const int32_t slot = state.living[i];
+    if (!world.species(slot).learns) return;
     note_start(world, slot);
     PackedObservation& next = world.observation(slot, shape.steps);
     observe(world, slot, group.rank(), next);
@@ -51,7 +53,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
     world.kernel->pack_weights(species.network, world.network(slot));
   });
   group.once([&] {
-    for (int32_t i = 0; i < learners; ++i) world.counters(state.living[i]).learners += 1;
+    for (int32_t i = 0; i < learners; ++i)
+      world.counters(state.living[i]).learners += world.species(state.living[i]).learns;
     if (inherits_late(world)) settle_newborns(world);
     open_window(world);
   });

@@ -205,11 +205,14 @@ HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
 /// Forgets the deaths that wait in the views `event.…`; call it when they are read.
 HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() { world().head().event_count = 0; }
 
-/// What the agent in `slot` senses now and how its network answers; changes nothing of the world's state.
+/// What the agent in `slot` senses now and how its network answers, zeros if its species has none; changes nothing of
+/// the world's state.
 HEDON_EXPORT(hedon_mind) const Mind* hedon_mind(int32_t slot) {
   note_start(world(), slot);
   observe(world(), slot, 0, mind.observation);
-  world().kernel->forward(world().species(slot).network, world().network(slot), mind.observation, mind.output);
+  memset(mind.output, 0, sizeof mind.output);
+  if (world().species(slot).learns)
+    world().kernel->forward(world().species(slot).network, world().network(slot), mind.observation, mind.output);
   return &mind;
 }
 

@@ -12,19 +12,24 @@ namespace hedon {
 
 inline constexpr float LOG_SQRT_TWO_PI = 0.91893853320467274178f;
 
+/// Two standard normals for the action of the agent in `slot` in this step.
+HEDON_FN NormalPair action_noise(const World& world, int32_t slot) {
+  const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(world.state.life[slot].agent_id),
+                            static_cast<uint32_t>(world.head().step)};
+  const Random4 bits = random.draw(0);
+  return to_normal(bits.word[0], bits.word[1]);
+}
+
 /// Samples an action for the agent in `slot` and keeps it with its log-probability and the state's value.
 HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedObservation& observation) {
   const WorldState& state = world.state;
   const NetworkShape& network = world.species(slot).network;
   float output[16];
   world.kernel->forward(network, world.network(slot), observation, output);
-  const RandomStream random{world.seed, Purpose::action, static_cast<uint32_t>(state.life[slot].agent_id),
-                            static_cast<uint32_t>(world.head().step)};
-  const Random4 bits = random.draw(0);
-  const NormalPair noise = to_normal(bits.word[0], bits.word[1]);
+  const NormalPair noise = action_noise(world, slot);
   const float z[ACTIONS] = {noise.first, noise.second};
   const float* log_sd = world.params(slot) + network.log_sd();
-  const int64_t row = slot * int64_t{world.shape->steps} + t;
+  const int64_t row = slot * int64_t{world.shape->rollout} + t;
   float log_prob = 0.0f;
   for (int a = 0; a < ACTIONS; ++a) {
     state.action[row * ACTIONS + a] = output[a] + exp_float(log_sd[a]) * z[a];
@@ -34,15 +39,36 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
   state.value[row] = output[ACTIONS];
 }
 
+/// The action of the agent in `slot`, into row `t` of its rollout, by the policy of its species.
+HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
+  float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
+  switch (world.species(slot).config->learning.policy) {
+    case Policy::ppo:
+      return sample_action(world, slot, t, world.observation(slot, t));
+    case Policy::random: {
+      const NormalPair noise = action_noise(world, slot);
+      action[0] = noise.first;
+      action[1] = noise.second;
+      return;
+    }
+    case Policy::external:
+      for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.command[int64_t{slot} * ACTIONS + a];
+      return;
+    case Policy::still:
+      return;
+  }
+}
+
 /// Turns the action into the forces of the two motors, and the force and torque on the body.
 HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
   const MotorConfig& motor = species.config->motor;
   StepScratch& scratch = world.scratch;
-  const float* action = &world.state.action[(slot * int64_t{world.shape->steps} + t) * ACTIONS];
+  const float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
+  const bool rests = species.config->learning.policy == Policy::still;
   const float range = motor.max_force - motor.min_force;
-  const float left = motor.min_force + range * sigmoid(action[0]);
-  const float right = motor.min_force + range * sigmoid(action[1]);
+  const float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
+  const float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
   const float sine = scratch.heading_sine[slot], cosine = scratch.heading_cosine[slot];
   scratch.force_left[slot] = left;
   scratch.force_right[slot] = right;
@@ -57,11 +83,11 @@ template <class Group>
 HEDON_FN void sense_and_act(Group& group, World& world, int64_t t) {
   const auto one = [&](int32_t i) {
     const int32_t slot = world.scratch.by_slot[i];
+    const int64_t row = world.kept(slot, t);
     note_start(world, slot);
-    PackedObservation& observation = world.observation(slot, t);
-    observe(world, slot, group.rank(), observation);
-    sample_action(world, slot, t, observation);
-    apply_motors(world, slot, t);
+    if (world.species(slot).observes) observe(world, slot, group.rank(), world.observation(slot, row));
+    choose_action(world, slot, row);
+    apply_motors(world, slot, row);
   };
   if (t % 2 == 0)
     group.for_each(world.head().living_count, one);

@@ -14,6 +14,7 @@ struct EnumNames;
     static constexpr auto& text = names; \
   }
 HEDON_ENUM(ContactSolver, CONTACT_SOLVER_NAMES);
+HEDON_ENUM(Policy, POLICY_NAMES);
 HEDON_ENUM(CriticTarget, CRITIC_TARGET_NAMES);
 HEDON_ENUM(ActingWeights, ACTING_WEIGHTS_NAMES);
 HEDON_ENUM(MutationNoise, MUTATION_NOISE_NAMES);

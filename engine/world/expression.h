@@ -36,9 +36,11 @@ HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
   return own;
 }
 
-/// Sets the parts of a new network that genes set. The agent in `slot` has its network and its genome.
+/// Sets the parts of a new network that genes set, if its species learns. The agent in `slot` has its network and its
+/// genome.
 HEDON_FN void express_genes(World& world, int32_t slot) {
   const Species& species = world.species(slot);
+  if (!species.learns) return;
   const GenomeConfig& genome = species.config->genome;
   for (int32_t i = 0; i < genome.learning.count; ++i) {
     const LearningGene& set = genome.learning[i];

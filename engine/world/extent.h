@@ -13,9 +13,11 @@ namespace hedon {
 enum class Extent : uint8_t {
   one,
   slots,
-  mixed_slots,   ///< slots, if there are several species
-  old_slots,     ///< slots, if only agents in old slots have children
-  packed_slots,  ///< slots, if some act with weights in pairs
+  mixed_slots,     ///< slots, if there are several species
+  old_slots,       ///< slots, if only agents in old slots have children
+  learner_slots,   ///< slots, if some species learns; of other species they are not used
+  external_slots,  ///< slots, if some species is told what to do
+  packed_slots,    ///< slots, if some act with weights in pairs
   species,
   mixed_species,  ///< the same, if there are several
   kinds,
@@ -32,6 +34,7 @@ enum class Extent : uint8_t {
   params,
   pairs,
   hidden,
+  actions,
   steps,         ///< of a rollout
   step_actions,  ///< actions of a rollout
   observations,  ///< cache lines of the observations of a rollout, and of the one after it
@@ -53,7 +56,8 @@ enum class Lifetime : uint8_t {
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
-         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::hunted_slots;
+         rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::packed_slots ||
+         rows == Extent::wide_slots || rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
@@ -72,6 +76,10 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.species > 1 ? shape.capacity : 0;
     case Extent::old_slots:
       return shape.old_slots ? shape.capacity : 0;
+    case Extent::learner_slots:
+      return shape.learning ? shape.capacity : 0;
+    case Extent::external_slots:
+      return shape.external ? shape.capacity : 0;
     case Extent::packed_slots:
       return shape.packed ? shape.capacity : 0;
     case Extent::species:
@@ -106,12 +114,14 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.pairs;
     case Extent::hidden:
       return HIDDEN;
+    case Extent::actions:
+      return ACTIONS;
     case Extent::steps:
-      return shape.steps;
+      return shape.rollout;
     case Extent::step_actions:
-      return int64_t{shape.steps} * ACTIONS;
+      return int64_t{shape.rollout} * ACTIONS;
     case Extent::observations:
-      return (int64_t{shape.steps} + 1) * shape.lines;
+      return (int64_t{shape.rollout} + 1) * shape.lines;
     case Extent::wide_slots:
       return shape.lines > NARROW_LINES ? shape.capacity : 0;
     case Extent::hunted_slots:

@@ -81,7 +81,8 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
 /// One agent's reward for this step, into its rollout.
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
-  const PackedObservation& seen = world.observation(slot, t);
+  const int64_t row = world.kept(slot, t);
+  const PackedObservation& seen = world.observation(slot, row);
   const Life& life = world.state.life[slot];
   const RewardInputs inputs{.eaten = world.meal(slot),
                             .force = applied_force(world, slot),
@@ -94,7 +95,7 @@ HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
                             .capacity = species.config->energy.capacity,
                             .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
   const float r = reward(species.config->reward, world.genome(slot), inputs);
-  world.state.reward[slot * int64_t{world.shape->steps} + t] = r;
+  world.state.reward[slot * int64_t{world.shape->rollout} + row] = r;
   world.state.life[slot].reward += r;
 }
 

@@ -15,6 +15,7 @@ namespace hedon {
 
 /// Makes the optimizer of a slot that of an agent that has learned nothing.
 HEDON_FN void forget_updates(World& world, int32_t slot) {
+  if (!world.species(slot).learns) return;
   const WorldState& state = world.state;
   const int32_t size = world.species(slot).network.size();
   const int64_t first = int64_t{slot} * world.shape->params;
@@ -22,8 +23,9 @@ HEDON_FN void forget_updates(World& world, int32_t slot) {
   state.updates[slot] = 0;
 }
 
-/// Gives the agent in `slot` a new network and the optimizer that belongs to it.
+/// Gives the agent in `slot` a new network and the optimizer that belongs to it, if its species learns.
 HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& random) {
+  if (!world.species(slot).learns) return;
   const NetworkShape& network = world.species(slot).network;
   init_network(network, random, world.params(slot));
   world.kernel->pack_weights(network, world.network(slot));

@@ -42,12 +42,15 @@ struct WorldShape {
   int32_t circles;      ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
   int32_t events;       ///< deaths that can wait for the reader
   int32_t newborns;     ///< births of a window that can wait for their genomes
-  int32_t steps;        ///< of a rollout
+  int32_t steps;        ///< of a window
+  int32_t rollout;      ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
   int32_t genes;        ///< of the longest genome: the length of a row
   int32_t params;       ///< of the largest network
   int32_t pairs;        ///< of weights of the largest network
   bool ghosts;          ///< eaten food is seen for one step
   bool old_slots;       ///< only agents in slots that were taken when the window began have children
+  bool learning;        ///< some species learns
+  bool external;        ///< some species is told what to do
   bool packed;          ///< some species acts with weights in pairs
   bool hunting;         ///< some species eats another
   int32_t lines;        ///< cache lines of an observation
@@ -106,13 +109,16 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     grow(shape.pairs, species.network.pairs());
     grow(shape.lines, species.network.observation.wide() ? WIDE_LINES : NARROW_LINES);
     for (int32_t prey = 0; prey < own.diet.prey.count; ++prey) shape.hunting |= own.diet.prey[prey] > 0.0f;
-    shape.packed |= own.learning.acting_weights == ActingWeights::bfloat16;
+    shape.learning |= species.learns;
+    shape.external |= own.learning.policy == Policy::external;
+    shape.packed |= species.learns && own.learning.acting_weights == ActingWeights::bfloat16;
   }
   for (int32_t s = 0; s < shape.species; ++s) shape.of[s].network.observation.lines = shape.lines;
   shape.walls = walls;
   shape.outer_walls = outer_walls;
   shape.events = EVENTS_PER_SLOT * shape.capacity;
   shape.steps = config.species[0].learning.rollout_steps;
+  shape.rollout = shape.learning ? shape.steps : 1;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
   shape.ghosts = config.rules.eaten_food == EatenFood::seen;

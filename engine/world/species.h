@@ -33,6 +33,8 @@ struct Species {
   NetworkShape network;
   BodyShape body;
   Channels sight, touch;
+  bool learns;                           ///< it has networks, which learn
+  bool observes;                         ///< its network, or its reward, reads what its rays meet
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
   float mouth_cosine;                    ///< cosine of the mouth's half angle
@@ -79,6 +81,9 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.body = make_disc(config.body.radius, config.body.density);
   species.sight = make_channels(config.sensor.sees, types);
   species.touch = make_channels(config.sensor.collides, types);
+  species.learns = config.learning.policy == Policy::ppo;
+  species.observes = species.learns;
+  for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sight(config.reward.terms[i].input);
   const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,
                       config.sensor.collides.count * config.sensor.touch_sectors, dense, NARROW_LINES}};

@@ -104,8 +104,10 @@ struct World {
   }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genes]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->meals()]; }
+  /// The row of a rollout that holds step `t` of the window: who does not learn keeps only the present step.
+  HEDON_FN int64_t kept(int32_t slot, int64_t t) const { return species(slot).learns ? t : 0; }
   HEDON_FN PackedObservation& observation(int32_t slot, int64_t t) const {
-    ObservationLine* line = &state.observation[(slot * (int64_t{shape->steps} + 1) + t) * shape->lines];
+    ObservationLine* line = &state.observation[(slot * (int64_t{shape->rollout} + 1) + t) * shape->lines];
     return *reinterpret_cast<PackedObservation*>(line);
   }
 };

@@ -173,6 +173,11 @@ def test_two_genes_cannot_have_one_name():
         load_config("baseline", overrides=["reward.family=by_age", "food.normal_old.energy=1"])
 
 
+def test_genes_cannot_set_the_learning_of_who_does_not_learn():
+    with pytest.raises(ConfigError, match="there is no learning that genes could set"):
+        load_config("baseline", overrides=["genome.learning.gamma.initial_sd=0.1", 'learning.policy="random"'])
+
+
 def test_a_gene_cannot_multiply_nothing():
     for name, value in (("gamma", 1.0), ("learning_rate", 0.0), ("entropy_coef", 0.0)):
         settings = [f"genome.learning.{name}.initial_sd=0.1", f"learning.{name}={value}"]

@@ -110,6 +110,9 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
             rule = "no gene can set this: there are " + ", ".join(LEARNING_GENES)
             yield Problem(f"{path}genome.learning.{gene}", rule, nearest=nearest(gene, tuple(LEARNING_GENES)))
             return
+    if genome.learning and learning.policy != "ppo":
+        rule = f'learning.policy = "{learning.policy}": there is no learning that genes could set'
+        yield Problem(f"{path}genome.learning", rule)
     if "gamma" in genome.learning and not 0 < learning.gamma < 1:
         rule = "must lie between 0 and 1 where a gene sets it"
         yield Problem(f"{path}learning.gamma", rule, format_value(learning.gamma))

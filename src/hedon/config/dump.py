@@ -12,6 +12,7 @@ from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
 EARLIER = {
+    "learning.policy": "ppo",
     "learning.acting_weights": "float32",
     "physics.solver": "sequential",
     "sensor.ray_inside": "hit",
@@ -47,6 +48,9 @@ EARLIER = {
 }
 """Settings that older versions did not have, with what those versions did. A complete file without such a setting is
 older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""
+
+SINCE_SPECIES = ("learning.policy",)
+"""Those that did not exist when `[species]` was new: digests leave them out of species too."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
@@ -93,7 +97,7 @@ def digest(config: Config) -> str:
     seen = [
         [path, value]
         for path, value in flatten(config).items()
-        if not path.endswith(".color") and (path, value) not in EARLIER.items()
+        if not path.endswith(".color") and (_shared(path), value) not in EARLIER.items()
     ]
     genes = old_rows(config)
     if genes is not None:
@@ -101,6 +105,12 @@ def digest(config: Config) -> str:
         at = next(i for i, row in enumerate(seen) if row[0] == "genome.neutral_count")
         seen[at + 1 : at + 1] = genes
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
+
+
+def _shared(path: str) -> str:
+    """The path of a species' setting in the sections that all share, where digests treat both alike."""
+    common = path.split(".", 2)[-1] if path.startswith("species.") else path
+    return common if common in SINCE_SPECIES else path
 
 
 def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:

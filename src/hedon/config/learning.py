@@ -8,8 +8,17 @@ from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 
 @dataclass(frozen=True, slots=True)
 class LearningConfig:
-    """Proximal policy optimization (Schulman et al. 2017) with generalized advantage estimation."""
+    """How agents choose actions, and learn: proximal policy optimization (Schulman et al. 2017) with GAE."""
 
+    policy: Annotated[
+        Literal["ppo", "random", "still", "external"],
+        Doc(
+            "how agents choose actions: a network that learns; standard normals before the sigmoid, as a new network "
+            "gives; none, so that no motor runs; or what the caller says (`hedon.env`)",
+            "",
+            OURS,
+        ),
+    ] = "ppo"
     rollout_steps: Annotated[
         int,
         Doc(

@@ -66,7 +66,7 @@ class RunPlan:
         founders: Founders | None = None,
     ) -> None:
         checked = {
-            "config": _with_founders(validated(config), founders),
+            "config": _with_founders(_without_caller(validated(config)), founders),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),
@@ -108,6 +108,18 @@ class Display(Protocol):
     def update(self, moment: Moment) -> None:
         """Shows a moment; called about five times a second."""
         ...
+
+
+def _without_caller(config: Config) -> Config:
+    """The config. ArgumentError: a species waits for actions, which a run has nobody to give."""
+    for name, species in config.agents.items():
+        if species.learning.policy == "external":
+            place = f"species.{name}.learning.policy" if config.species else "learning.policy"
+            raise ArgumentError(
+                f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
+                'hedon.env (docs/guide/environment.md), or choose "ppo", "random" or "still"'
+            )
+    return config
 
 
 def _with_founders(config: Config, founders: Founders | None) -> Config:
