@@ -9,6 +9,7 @@ namespace hedon {
 namespace {
 
 constexpr double LARGEST = 1e6;  ///< of any setting that is not a count: its square, and sums of squares, are finite
+constexpr float MAX_FACTOR = 1000.0f;  ///< of a schedule
 constexpr int MAX_TOUCH_BITS = 128;
 constexpr int64_t MAX_WALLS = 1024;
 constexpr int64_t MAX_WORLDS = 1'000'000;
@@ -32,6 +33,12 @@ constexpr Limit INTEGERS[] = {
     {"food.initial_count", 0, 100'000},
     {"food.candidates", 1, 10'000},
     {"food.placement.switch_after", 1, 1'000'000'000},
+    {"food.growth_schedule.period", 0, 1'000'000'000},
+    {"food.growth_schedule.points.step", 0, 1'000'000'000},
+    {"food.capacity_schedule.period", 0, 1'000'000'000},
+    {"food.capacity_schedule.points.step", 0, 1'000'000'000},
+    {"species.hazard.schedule.period", 0, 1'000'000'000},
+    {"species.hazard.schedule.points.step", 0, 1'000'000'000},
     {"species.birth.attempts", 1, 1000},
     {"species.diet.digestion_steps", 0, 1'000'000},
     {"species.sensor.sees", 0, MAX_TYPES - 1},
@@ -118,6 +125,18 @@ void visit(Complaint& complaint, const std::string& path, const std::string& nam
   }
 }
 
+/// Steps rise and lie within the period, and no factor is negative or above `most`.
+void check_schedule(Complaint& complaint, const std::string& path, const ScheduleConfig& schedule, float most) {
+  for (int32_t i = 0; i < schedule.points.count; ++i) {
+    const SchedulePoint& point = schedule.points[i];
+    const bool rises = i == 0 || schedule.points[i - 1].step < point.step;
+    complaint.need(rises && (schedule.period == 0 || point.step < schedule.period), path + ".points.step", point.step,
+                   "above the step before, and below the period");
+    complaint.need(point.factor >= 0.0f && point.factor <= most, path + ".points.factor", point.factor,
+                   "from 0 to " + std::to_string(static_cast<int>(most)));
+  }
+}
+
 void check_food(Complaint& complaint, const WorldConfig& config) {
   complaint.need(config.food.count >= 1, "food", config.food.count, "at least one kind");
   for (int32_t k = 0; k < config.food.count; ++k) {
@@ -126,6 +145,8 @@ void check_food(Complaint& complaint, const WorldConfig& config) {
     const std::string path = "food[" + std::to_string(k) + "]";
     complaint.need(food.initial_count <= food.capacity, path + ".initial_count", food.initial_count,
                    "at most the kind's capacity");
+    check_schedule(complaint, path + ".growth_schedule", food.growth_schedule, MAX_FACTOR);
+    check_schedule(complaint, path + ".capacity_schedule", food.capacity_schedule, 1.0f);
     if (place.form == PlacementForm::uniform) continue;
     const int32_t fewest = place.form == PlacementForm::switching ? 2 : 1;
     complaint.need(place.centers.count >= fewest, path + ".placement.centers", place.centers.count,
@@ -180,6 +201,7 @@ void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
   check_types(complaint, path + "sensor.sees", own.sensor.sees, types);
   check_types(complaint, path + "sensor.collides", own.sensor.collides, types);
   check_reward(complaint, path + "reward.terms", config, own);
+  check_schedule(complaint, path + "hazard.schedule", own.hazard.schedule, MAX_FACTOR);
   check_genome(complaint, path + "genome.learning", own.genome);
   complaint.need(own.diet.food.count == config.food.count, path + "diet.food", own.diet.food.count,
                  "one factor for each kind of food");

@@ -83,16 +83,45 @@ struct PopulationConfig {
   HEDON_FIELDS(PopulationConfig, capacity, initial_count, heading_range)
 };
 
-enum class PlacementForm : int32_t { uniform, gaussian, switching };
-inline constexpr const char* PLACEMENT_FORM_NAMES[] = {"uniform", "gaussian", "switching"};
+enum class PlacementForm : int32_t {
+  uniform,
+  gaussian,   ///< around the one center
+  switching,  ///< around one center after another
+  mixture,    ///< around any of the centers, by a draw
+  rectangle,  ///< uniform in a rectangle around the one center, whose half sides are `sd`
+};
+inline constexpr const char* PLACEMENT_FORM_NAMES[] = {"uniform", "gaussian", "switching", "mixture", "rectangle"};
 
 struct PlacementConfig {
   PlacementForm form;
   FixedList<Vec2, MAX_FOOD_CENTERS> centers;
   Vec2 sd;
   int32_t switch_after;
+  Vec2 drift;     ///< of all centers [u per step], which stay inside the arena
+  float spacing;  ///< least distance between the centers of foods of the kind
 
-  HEDON_FIELDS(PlacementConfig, form, centers, sd, switch_after)
+  HEDON_FIELDS(PlacementConfig, form, centers, sd, switch_after, drift, spacing)
+};
+
+enum class ScheduleForm : int32_t { steps, linear };
+inline constexpr const char* SCHEDULE_FORM_NAMES[] = {"steps", "linear"};
+
+struct SchedulePoint {
+  int32_t step;
+  float factor;
+
+  HEDON_FIELDS(SchedulePoint, step, factor)
+};
+
+inline constexpr int MAX_SCHEDULE_POINTS = 16;
+
+/// A factor that follows time; without points it is 1.
+struct ScheduleConfig {
+  ScheduleForm form;
+  int32_t period;                                        ///< steps after which it begins again; 0: never
+  FixedList<SchedulePoint, MAX_SCHEDULE_POINTS> points;  ///< steps rise
+
+  HEDON_FIELDS(ScheduleConfig, form, period, points)
 };
 
 struct FoodConfig {
@@ -102,8 +131,11 @@ struct FoodConfig {
   int32_t initial_count;
   int32_t candidates;
   PlacementConfig placement;
+  ScheduleConfig growth_schedule;
+  ScheduleConfig capacity_schedule;
 
-  HEDON_FIELDS(FoodConfig, energy, growth_rate, capacity, initial_count, candidates, placement)
+  HEDON_FIELDS(FoodConfig, energy, growth_rate, capacity, initial_count, candidates, placement, growth_schedule,
+               capacity_schedule)
 };
 
 enum class Starvation : int32_t { floor, death };
@@ -126,8 +158,9 @@ struct HazardConfig {
   float beta_energy;
   float alpha_age;
   float beta_age;
+  ScheduleConfig schedule;  ///< of the whole hazard
 
-  HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age)
+  HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age, schedule)
 };
 
 /// Which of the two comes first in a step.

@@ -6,9 +6,21 @@
 #include "base/device.h"
 #include "base/random.h"
 #include "world/placement.h"
+#include "world/schedule.h"
 #include "world/world.h"
 
 namespace hedon {
+
+/// Where a center has drifted to by now.
+HEDON_FN Vec2 center_at(const World& world, const PlacementConfig& placement, int32_t center) {
+  const auto moved = [&](float start, float drift, float side) {
+    const double now = static_cast<double>(start) + static_cast<double>(drift) * static_cast<double>(world.head().step);
+    return now < 0.0 ? 0.0f : (now > side ? side : static_cast<float>(now));
+  };
+  const Vec2 start = placement.centers[center];
+  const ArenaConfig& arena = world.config->arena;
+  return {moved(start.x, placement.drift.x, arena.width), moved(start.y, placement.drift.y, arena.height)};
+}
 
 /// A candidate position for a food of kind `k`; it may lie outside the arena.
 HEDON_FN Vec2 draw_food_position(const World& world, int32_t k, const RandomStream& random, uint32_t index) {
@@ -18,9 +30,28 @@ HEDON_FN Vec2 draw_food_position(const World& world, int32_t k, const RandomStre
     return {world.config->arena.width * to_uniform(bits.word[0]),
             world.config->arena.height * to_uniform(bits.word[1])};
   }
-  const Vec2 center = placement.centers[world.state.food_stock[k].center];
+  const bool any = placement.form == PlacementForm::mixture;
+  const int32_t center =
+      any ? static_cast<int32_t>(to_index(bits.word[2], placement.centers.count)) : world.state.food_stock[k].center;
+  const Vec2 middle = center_at(world, placement, center);
+  if (placement.form == PlacementForm::rectangle) {
+    return {middle.x + placement.sd.x * (2.0f * to_uniform(bits.word[0]) - 1.0f),
+            middle.y + placement.sd.y * (2.0f * to_uniform(bits.word[1]) - 1.0f)};
+  }
   const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
-  return {center.x + placement.sd.x * normal.first, center.y + placement.sd.y * normal.second};
+  return {middle.x + placement.sd.x * normal.first, middle.y + placement.sd.y * normal.second};
+}
+
+/// Whether a place is far enough from the other foods of kind `k`.
+HEDON_FN bool has_spacing(const World& world, int32_t k, Vec2 position) {
+  const float spacing = world.config->food[k].placement.spacing;
+  if (!(spacing > 0.0f)) return true;
+  const auto& foods = world.state.physics.circles;
+  for (int32_t f = world.shape->food_offset[k]; f < world.shape->food_offset[k + 1]; ++f) {
+    const Vec2 apart{foods.x[f] - position.x, foods.y[f] - position.y};
+    if (foods.present[f] != 0 && squared_length(apart) < spacing * spacing) return false;
+  }
+  return true;
 }
 
 /// Puts a food of kind `k` into a free slot of its kind.
@@ -41,7 +72,8 @@ HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& ra
   FoodStock& stock = world.state.food_stock[k];
   for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
     const Vec2 position = draw_food_position(world, k, random, static_cast<uint32_t>(i));
-    if (can_place(world, position, world.config->food_radius)) place_food(world, k, position);
+    if (has_spacing(world, k, position) && can_place(world, position, world.config->food_radius))
+      place_food(world, k, position);
   }
 }
 
@@ -98,13 +130,16 @@ HEDON_FN void eat(World& world) {
   }
 }
 
-/// n <- min(n + g - eaten, n_max), then new food up to the floor of n. `eat` has already subtracted the eaten food.
+/// n <- min(n + g - eaten, n_max), then new food up to the floor of n. `eat` has already subtracted the eaten food. If
+/// the capacity falls, foods that are there stay until they are eaten.
 HEDON_FN void grow(World& world) {
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
     const FoodConfig& config = world.config->food[k];
     FoodStock& stock = world.state.food_stock[k];
-    stock.number += static_cast<double>(config.growth_rate);
-    if (stock.number > config.capacity) stock.number = config.capacity;
+    const int64_t step = world.head().step;
+    const double most = factor_at(config.capacity_schedule, step) * config.capacity;
+    stock.number += factor_at(config.growth_schedule, step) * static_cast<double>(config.growth_rate);
+    if (stock.number > most) stock.number = most;
     const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k),
                               static_cast<uint32_t>(world.head().step)};
     place_missing_food(world, k, random, config.candidates);

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "evolution/reward.h"
 #include "world/population.h"
+#include "world/schedule.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -38,10 +39,11 @@ HEDON_FN bool is_eaten(const World& world, int32_t slot) {
 /// Decides whether an agent dies at the end of this step, from its draw and its age and energy then.
 HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
+  const HazardConfig& config = world.species(slot).config->hazard;
   const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
+  const double chance = factor_at(config.schedule, world.head().step) * hazard(config, age, life.energy);
   world.scratch.dies[slot] =
-      world.scratch.starved[slot] != 0 || is_eaten(world, slot) ||
-      world.scratch.death_draw[slot] < hazard(world.species(slot).config->hazard, age, life.energy);
+      world.scratch.starved[slot] != 0 || is_eaten(world, slot) || world.scratch.death_draw[slot] < chance;
 }
 
 /// Pays one agent its meals and charges it for living and for its motors.

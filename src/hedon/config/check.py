@@ -6,11 +6,13 @@ import struct
 from collections.abc import Iterator
 
 from hedon.config.arena import ArenaConfig, is_inside
+from hedon.config.check_schedule import schedule_problems
 from hedon.config.check_species import species_problems
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
 from hedon.config.problem import Problem, format_value
+from hedon.config.schedule import MAX_FACTOR
 
 MIN_WALL = 0.01
 """Length of the shortest outer wall whose direction float32 can still hold [u]."""
@@ -89,6 +91,7 @@ def _kinds(config: Config) -> Iterator[Problem]:
             message = f"must be at most {path}.capacity = {food.capacity}"
             yield Problem(f"{path}.initial_count", message, format_value(food.initial_count))
         yield from _placement(config, food, f"{path}.placement")
+        yield from schedule_problems(food.schedule, f"{path}.schedule", {"growth_rate": MAX_FACTOR, "capacity": 1.0})
 
 
 def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]:
@@ -98,10 +101,10 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
             yield Problem(f"{path}.centers[{i}]", "lies outside the arena", format_value((x, y)))
     if place.form == "uniform":
         return
-    if place.form == "gaussian" and len(place.centers) != 1:
-        yield Problem(f"{path}.centers", f'"gaussian" takes one center, not {len(place.centers)}')
-    if place.form == "switching" and len(place.centers) < 2:
-        yield Problem(f"{path}.centers", f'"switching" takes at least two centers, not {len(place.centers)}')
+    if place.form in ("gaussian", "rectangle") and len(place.centers) != 1:
+        yield Problem(f"{path}.centers", f'"{place.form}" takes one center, not {len(place.centers)}')
+    if place.form in ("switching", "mixture") and len(place.centers) < 2:
+        yield Problem(f"{path}.centers", f'"{place.form}" takes at least two centers, not {len(place.centers)}')
     if min(place.sd) <= 0:
         yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', format_value(place.sd))
 

@@ -4,9 +4,11 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
+from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
 from hedon.config.layout import LEARNING_GENES, WALL, chosen, layouts
 from hedon.config.problem import Problem, format_value, nearest
+from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
 
 MAX_TOUCH_BITS = 128
@@ -28,6 +30,7 @@ def species_problems(config: Config) -> Iterator[Problem]:
         yield from _lists(config, species, path)
         yield from _sight(config, species, path)
         yield from _genes(config, name, path)
+        yield from schedule_problems(species.hazard.schedule, f"{path}hazard.schedule", {"scale": MAX_FACTOR})
     yield from _nobody(config)
     yield from _crowd(config)
     yield from _collisions(config)

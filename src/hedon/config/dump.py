@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -40,17 +41,17 @@ EARLIER = {
     "genome.second.initial_sd": 0.1,
     "genome.set_point.initial_mean": 0.5,
     "genome.set_point.initial_sd": 0.1,
+    "food.*.placement.drift": (0.0, 0.0),
+    "food.*.placement.spacing": 0.0,
     "reward.family": "linear",
     "reward.threshold": 50.0,
     "reward.threshold_width": 10.0,
     "reward.meal_coef": 1.0,
     "reward.relief_coef": 0.0,
 }
-"""Settings that older versions did not have, with what those versions did. A complete file without such a setting is
-older and means this value. Digests leave the setting out if it has this value, so that older digests stay valid."""
-
-SINCE_SPECIES = ("learning.policy",)
-"""Those that did not exist when `[species]` was new: digests leave them out of species too."""
+"""Settings that older versions did not have, with what those versions did; `*` stands for every kind of food. A
+complete file without such a setting is older and means this value. Digests leave the setting out if it has this value,
+so that older digests stay valid."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
@@ -97,7 +98,7 @@ def digest(config: Config) -> str:
     seen = [
         [path, value]
         for path, value in flatten(config).items()
-        if not path.endswith(".color") and (_shared(path), value) not in EARLIER.items()
+        if not path.endswith(".color") and not _is_earlier(path, value)
     ]
     genes = old_rows(config)
     if genes is not None:
@@ -107,10 +108,11 @@ def digest(config: Config) -> str:
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
 
 
-def _shared(path: str) -> str:
-    """The path of a species' setting in the sections that all share, where digests treat both alike."""
-    common = path.split(".", 2)[-1] if path.startswith("species.") else path
-    return common if common in SINCE_SPECIES else path
+def _is_earlier(path: str, value: Any) -> bool:
+    """Whether a setting has the value that it had before it existed, in the sections of a species too."""
+    shared = re.sub(r"^species\.[^.]+\.", "", path)
+    every = re.sub(r"^food\.[^.]+\.", "food.*.", shared)
+    return every in EARLIER and EARLIER[every] == value
 
 
 def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from hedon.config.evolution import GeneConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
+from hedon.config.schedule import ScheduleConfig
 
 MAX_KINDS = 8
 """Most kinds that the engine has room for."""
@@ -15,13 +16,18 @@ class PlacementConfig:
     """Where new food of a kind appears."""
 
     form: Annotated[
-        Literal["uniform", "gaussian", "switching"],
-        Doc("everywhere, around one center, or around one of several centers in turn", "", PAPER),
+        Literal["uniform", "gaussian", "switching", "mixture", "rectangle"],
+        Doc(
+            "everywhere; around one center; around one of several centers in turn, or of any by a draw; in a rectangle "
+            "around one center",
+            "",
+            PAPER + "; mixture and rectangle are ours",
+        ),
     ] = "uniform"
     centers: Annotated[
         tuple[tuple[float, float], ...],
         Doc(
-            "centers of the Gaussians: one for gaussian, at least two for switching",
+            "centers: one for gaussian and rectangle, at least two for switching and mixture",
             "u",
             CODE,
             Range(max_items=16),
@@ -29,7 +35,7 @@ class PlacementConfig:
     ] = ()
     sd: Annotated[
         tuple[float, float],
-        Doc("standard deviations of the Gaussians along x and y", "u", CODE),
+        Doc("standard deviations of the Gaussians, or half sides of the rectangle, along x and y", "u", CODE),
     ] = (0.0, 0.0)
     switch_after: Annotated[
         int,
@@ -40,11 +46,19 @@ class PlacementConfig:
             Range(ge=1, le=1_000_000_000),
         ),
     ] = 1000
+    drift: Annotated[
+        tuple[float, float],
+        Doc("how the centers move; at the end of the arena they stop", "u/step", OURS),
+    ] = (0.0, 0.0)
+    spacing: Annotated[
+        float,
+        Doc("least distance between two foods of the kind", "u", OURS, Range(ge=0, le=1e4)),
+    ] = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class FoodConfig:
-    """One kind of food."""
+    """One kind of food. `[food.<kind>.schedule.growth_rate]` and `.capacity` make these follow time."""
 
     energy: Annotated[
         float,
@@ -82,3 +96,4 @@ class FoodConfig:
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)
     gene: GeneConfig = field(default_factory=GeneConfig)
+    schedule: dict[str, ScheduleConfig] = field(default_factory=dict)

@@ -38,6 +38,9 @@ def settle_food(tables: Table) -> Iterator[Problem]:
     food = tables.get("food")
     if not isinstance(food, dict):
         return
+    if list(food) == [EVERY]:  # it says nothing of any kind
+        del tables["food"]
+        return
     every = food.pop(EVERY, {})
     if not isinstance(every, dict):
         yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))

@@ -1,14 +1,18 @@
 """Birth and death: their probabilities per step, by age and energy."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
+from hedon.config.schedule import ScheduleConfig
 
 
 @dataclass(frozen=True, slots=True)
 class HazardConfig:
-    """Probability of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age)."""
+    """Probability of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age).
+
+    `[hazard.schedule.scale]` makes the whole of it follow time.
+    """
 
     kappa: Annotated[
         float,
@@ -30,6 +34,7 @@ class HazardConfig:
         float,
         Doc("how fast age raises the probability", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 4e-6
+    schedule: dict[str, ScheduleConfig] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,9 @@ SEQUEL_PRESETS = (
     "prey-alone",
 )
 """The conditions of its sequel, on predators and prey."""
-PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS)
+OUR_PRESETS = ("seasons",)
+"""Conditions that are ours."""
+PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
 FIDELITIES = ("corrected", "released", "text")
 """Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
 

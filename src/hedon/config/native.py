@@ -1,12 +1,18 @@
 """A config in the form that the engine takes: plain dicts and lists, with layouts in place of names."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from hedon.config.config import Config
+from hedon.config.food import FoodConfig
 from hedon.config.layout import SpeciesLayout, diet, layouts, types
+from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
+FOOD_SCHEDULES = {"growth_rate": "growth", "capacity": "capacity"}
+"""Settings of a food that may follow time, with the engine's names of them."""
+HAZARD_SCHEDULE = "scale"
 PYTHON_ONLY = (
     "name",
     "preset",
@@ -37,7 +43,7 @@ def engine_config(config: Config) -> dict[str, Any]:
             "child_heading": config.birth.heading,
         },
         "food_radius": config.body.food_radius,
-        "food": [_without(asdict(food), "color", "gene") for food in config.food.values()],
+        "food": [_food(food) for food in config.food.values()],
         "species": [_species(config, species, made[name]) for name, species in config.agents.items()],
     }
 
@@ -47,6 +53,17 @@ def distance_sd(config: Config, species: SpeciesConfig) -> tuple[float, float]:
     scale = config.arena.width if species.birth.distance_unit == "arena_width" else 1.0
     sd = species.birth.distance_sd * scale
     return sd, sd
+
+
+def _food(food: FoodConfig) -> dict[str, Any]:
+    schedules = {f"{name}_schedule": _schedule(food.schedule, each) for each, name in FOOD_SCHEDULES.items()}
+    return _without(asdict(food), "color", "gene", "schedule") | schedules
+
+
+def _schedule(schedules: Mapping[str, ScheduleConfig], name: str) -> dict[str, Any]:
+    schedule = schedules.get(name, ScheduleConfig())
+    points = [{"step": step, "factor": factor} for step, factor in schedule.points]
+    return {"form": schedule.form, "period": schedule.period, "points": points}
 
 
 def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
@@ -71,7 +88,7 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
             "digestion_steps": species.diet.digestion_steps,
         },
         "energy": asdict(species.energy),
-        "hazard": asdict(species.hazard),
+        "hazard": asdict(species.hazard) | {"schedule": _schedule(species.hazard.schedule, HAZARD_SCHEDULE)},
         "birth": birth | {"distance_sd": distance_sd(config, species)},
         "genome": _genome(species, layout),
         "reward": _reward(species, layout),

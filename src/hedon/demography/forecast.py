@@ -7,6 +7,7 @@ import numpy as np
 
 from hedon.config import Config
 from hedon.config.layout import diet
+from hedon.config.schedule import mean_factor
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
 
@@ -103,7 +104,11 @@ def _balance(config: Config) -> tuple[float, float, float]:
     need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
     eaten = diet(config, next(iter(config.agents.values())))
     energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
-    supply = sum(food.growth_rate * energies[kind] for kind, food in config.food.items() if energies[kind] > 0)
+    supply = sum(
+        food.growth_rate * mean_factor(food.schedule, "growth_rate") * energies[kind]
+        for kind, food in config.food.items()
+        if energies[kind] > 0
+    )
     return need, supply, supply / need if need else math.inf
 
 

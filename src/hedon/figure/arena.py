@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Ellipse, FancyArrowPatch
+from matplotlib.patches import Ellipse, FancyArrowPatch, Rectangle
 
 from hedon.config import Config
 from hedon.config.arena import walls
@@ -102,6 +102,11 @@ def _draw_panel(axes: Axes, panel: ArenaPanel) -> None:
 def _draw_placement(axes: Axes, placement: PlacementConfig, color: str) -> None:
     """Ellipses around each center; arrows from center to center where food moves on."""
     if placement.form == "uniform":
+        return
+    if placement.form == "rectangle":
+        (x, y), (half_width, half_height) = placement.centers[0], placement.sd
+        corner = (x - half_width, y - half_height)
+        axes.add_patch(Rectangle(corner, 2 * half_width, 2 * half_height, color=color, alpha=0.15, zorder=1))
         return
     for center in placement.centers:
         for deviations in _DEVIATIONS:

@@ -35,6 +35,7 @@ import polars as pl
 
 from hedon.analysis.world.population import whole_window
 from hedon.config import Config
+from hedon.config.schedule import factor_at
 from hedon.demography.life import hazard
 
 EXTINCT, IDLE, ROOM, FOOD, BETWEEN = (
@@ -99,7 +100,12 @@ def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
     sums = {name: float(rows[name].sum()) for name in _SUMMED}
     steps, lived = int(rows["steps"].sum()), sums["agent_steps"]
     refused = sums["births_failed_full"] + sums["births_failed_space"]
-    grown = steps * sum(food.growth_rate * food.energy for food in config.food.values() if food.energy > 0)
+    ends, lengths = rows["step"].to_numpy(), rows["steps"].to_numpy()
+    grown = sum(
+        food.growth_rate * food.energy * float(factor_at(food.schedule, "growth_rate", ends) @ lengths)
+        for food in config.food.values()
+        if food.energy > 0
+    )
     kinds = [kind for kind, food in config.food.items() if food.energy > 0]
     eaten = sum(config.food[kind].energy * float(rows[f"eaten_{kind}"].sum()) for kind in kinds)
     starving = float(hazard(config.hazard, 0.0, 0.0))
