@@ -142,6 +142,14 @@ void PythonSimulation::run(int64_t steps) {
   }
 }
 
+void PythonSimulation::show(int32_t species, const Shown& out) {
+  Simulation& simulation = get();
+  if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
+  const Running mark{running_};
+  const nb::gil_scoped_release release;
+  simulation.show(species, out);
+}
+
 /// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.
 void PythonSimulation::raise_faults() {
   Simulation& simulation = *simulation_;

@@ -36,6 +36,9 @@ class PythonSimulation {
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
+  /// The same as in `Simulation`, with the interpreter lock released.
+  void show(int32_t species, const Shown& out);
+
   /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises
   /// KeyboardInterrupt. The worlds are then in a valid state, after fewer steps.
   /// EngineError: also what a world reports.

@@ -23,6 +23,10 @@ namespace hedon {
 namespace {
 
 using FloatsIn = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using TableIn = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using TableOut = nb::ndarray<float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using RowsOut = nb::ndarray<float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using IdsOut = nb::ndarray<int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using IntsIn = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 /// A copy with its own memory, as a NumPy array.
@@ -159,6 +163,34 @@ void set_genomes(PythonSimulation& self, int index,
   for (int32_t i = 0; i < from.head().living_count; ++i) express_genes(from, from.state.living[i]);
 }
 
+/// Refuses an array of the caller that has not one row for each slot of a species in each world.
+template <class Table>
+void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
+  const WorldShape& shape = self.get().shape();
+  if (species < 0 || species >= shape.species) throw nb::index_error("no species has this index");
+  if (self.get().config().species[species].learning.policy != Policy::external)
+    throw nb::value_error("the species must be external");
+  if (table.shape(0) != static_cast<size_t>(self.get().world_count()) ||
+      table.shape(1) != static_cast<size_t>(shape.of[species].capacity()))
+    throw nb::value_error("arrays must have a row for each slot of the species in each world");
+}
+
+void command(PythonSimulation& self, int32_t species, TableIn actions) {
+  need_rows(self, species, actions);
+  if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
+  self.get().command(species, actions.data());
+}
+
+void show(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
+  need_rows(self, species, observation);
+  need_rows(self, species, reward);
+  need_rows(self, species, agent_id);
+  const int32_t entries = self.get().shape().of[species].network.observation.size();
+  if (observation.shape(2) != static_cast<size_t>(entries))
+    throw nb::value_error("observations must have as many columns as there are entries");
+  self.show(species, {observation.data(), reward.data(), agent_id.data()});
+}
+
 /// `FloatMode` as a context manager.
 class PythonFloatMode {
  public:
@@ -221,6 +253,15 @@ void bind_simulation(nb::module_& module) {
       .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
+      .def("command", &command, nb::arg("species"), nb::arg("actions"),
+           nb::sig("def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
+           "Tells the agents of an external species what to do from now on: (worlds, slots, 2).")
+      .def("show", &show, nb::arg("species"), nb::arg("observation"), nb::arg("reward"), nb::arg("agent_id"),
+           nb::sig("def show(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: "
+                   "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None"),
+           "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
+           "arrays of "
+           "(worlds, slots, …).")
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("species"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")

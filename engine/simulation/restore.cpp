@@ -37,19 +37,17 @@ bool read_learners(Inspector& in, SavedExtent& extent, const std::vector<int64_t
                             !in.within<int32_t>("species", 0, shape.species - 1))) {
     return false;
   }
-  size_t room = 0, learners = 0;
+  size_t room = 0;
   for (int32_t s = 0; s < shape.species; ++s)
     room += shape.of[s].learns ? static_cast<size_t>(shape.of[s].capacity()) : 0;
   const std::vector<int32_t> species = saved_species(in, births.size());
   const int64_t window_start = in.numbers<int64_t>("head.step")[0] - extent.filled;
   for (size_t i = 0; i < births.size(); ++i) {
     if (!shape.of[species[i]].learns) continue;
-    ++learners;
+    extent.learners.push_back(-1);  // its slot is not known yet
     extent.taught += births[i] <= window_start;
   }
-  if (learners > room) return in.refuse("species has more agents of one species than there is room for");
-  extent.learners.resize(learners);
-  extent.free_learners.resize(room - learners);
+  extent.free_learners.resize(room > extent.learners.size() ? room - extent.learners.size() : 0);
   return true;
 }
 

@@ -27,6 +27,13 @@ struct SceneInput {
   Array<const int32_t> food_kind;
 };
 
+/// The caller's arrays for the agents of one species: (worlds, slots of the species, …) each.
+struct Shown {
+  float* observation;  ///< (…, entries); zeros where nobody lives
+  float* reward;       ///< of the last step, for the agent whose id was there before it; else 0
+  int32_t* agent_id;   ///< -1 where nobody lives; holds the ids of before the step on entry
+};
+
 /// Bytes that a simulation reserves, by purpose. Memory that is never touched costs nothing.
 struct MemoryNeed {
   int64_t networks;  ///< and the moments of their optimizers
@@ -70,6 +77,13 @@ class Simulation {
 
   /// Advances every world that is not over by `steps` steps. The results do not depend on threads.
   void run(int64_t steps);
+
+  /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2), before the
+  /// sigmoid.
+  void command(int32_t species, const float* actions);
+
+  /// Writes what the agents of an external species sense now, and what they earned in the last step.
+  void show(int32_t species, const Shown& out);
 
   int world_count() const { return static_cast<int>(worlds_.size()); }
   World& world(int index) { return worlds_[static_cast<size_t>(index)]; }

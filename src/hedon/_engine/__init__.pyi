@@ -61,6 +61,16 @@ class Simulation:
         Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
+    def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:
+        """
+        Tells the agents of an external species what to do from now on: (worlds, slots, 2).
+        """
+
+    def show(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
+        """
+        Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …).
+        """
+
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Empties a world and puts these agents and foods into it."""
 

@@ -111,6 +111,17 @@ def gene_columns(config: Config) -> tuple[str, ...]:
     )
 
 
+def observation_columns(config: Config, name: str) -> tuple[str, ...]:
+    """Names of the entries of what a species observes, in order: model page, section 5."""
+    species, layout = config.agents[name], layouts(config)[name]
+    heading = ("heading",) if species.sensor.scaling == "raw" else ("heading_sine", "heading_cosine")
+    return (
+        *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
+        *(f"touch_{kind}_{i}" for kind in layout.touches for i in range(species.sensor.touch_sectors)),
+        *("velocity_x", "velocity_y", *heading, "angular_velocity", "energy"),
+    )
+
+
 def choose_species(name: str | None, config: Config) -> str | None:
     """The species of this name, or by default the first; None where there is only one, without a name.
 

@@ -1,0 +1,61 @@
+/// Worlds that a caller drives: what agents are told, and what they sense and earn.
+#include <atomic>
+#include <cstring>
+
+#include "base/float_mode.h"
+#include "simulation/simulation.h"
+
+namespace hedon {
+namespace {
+
+/// Slots that a thread takes at once.
+constexpr int32_t SLOTS_AT_ONCE = 16;
+
+/// Writes what is known of the agent in `slot` into the row of the caller's arrays.
+void show_agent(World& world, int32_t slot, int rank, const Shown& out, int64_t row) {
+  const ObservationShape& shape = world.species(slot).network.observation;
+  float* const observation = out.observation + row * shape.size();
+  int32_t& id = out.agent_id[row];
+  const bool acted = id >= 0, alive = world.state.alive[slot] != 0;
+  out.reward[row] = acted ? world.state.reward[slot * int64_t{world.shape->rollout}] : 0.0f;
+  id = alive ? world.state.life[slot].agent_id : -1;
+  if (!alive) {
+    if (acted) memset(observation, 0, static_cast<size_t>(shape.size()) * sizeof(float));
+    return;
+  }
+  ObservationLine lines[WIDE_LINES];
+  PackedObservation& seen = *reinterpret_cast<PackedObservation*>(lines);
+  note_start(world, slot);
+  observe(world, slot, rank, seen);
+  unpack(shape, seen, observation);
+}
+
+}  // namespace
+
+void Simulation::command(int32_t species, const float* actions) {
+  const Species& own = shape_.of[species];
+  const int64_t numbers = int64_t{own.capacity()} * ACTIONS;
+  for (World& world : worlds_) {
+    memcpy(&world.state.command[int64_t{own.first_slot} * ACTIONS], actions,
+           static_cast<size_t>(numbers) * sizeof(float));
+    actions += numbers;
+  }
+}
+
+void Simulation::show(int32_t species, const Shown& out) {
+  const FloatMode mode(flush_);
+  const Species& own = shape_.of[species];
+  const int32_t blocks = (own.capacity() + SLOTS_AT_ONCE - 1) / SLOTS_AT_ONCE;
+  for (World& world : worlds_) gather_scene(world);
+  std::atomic<int32_t> next{0};
+  pool_->run([&](int rank) {
+    for (int32_t i = next.fetch_add(1); i < world_count() * blocks; i = next.fetch_add(1)) {
+      const int32_t first = own.first_slot + i % blocks * SLOTS_AT_ONCE;
+      const int32_t last = first + SLOTS_AT_ONCE < own.last_slot ? first + SLOTS_AT_ONCE : own.last_slot;
+      const int64_t before = int64_t{i / blocks} * own.capacity() - own.first_slot;
+      for (int32_t slot = first; slot < last; ++slot) show_agent(world(i / blocks), slot, rank, out, before + slot);
+    }
+  });
+}
+
+}  // namespace hedon
