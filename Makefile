@@ -5,6 +5,8 @@ RUN := $(UV) run --no-progress
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # Builds below start their own jobs: make's job server does not reach them through uv.
+# Rules in Python are compiled by Numba, some 190 MB: only the tests install it.
+EXTRA := --extra rules
 unexport MAKEFLAGS
 
 .PHONY: run test test-long static sanitized sync stubs viewer clean
@@ -15,7 +17,7 @@ run: sync
 
 test: sync
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
-	$(RUN) $(BROWSER) pytest --numprocesses auto --dist loadfile
+	$(RUN) $(BROWSER) $(EXTRA) pytest --numprocesses auto --dist loadfile
 
 # Side by side, since each keeps one processor busy.
 static: sync
@@ -31,7 +33,7 @@ sanitized: sync
 
 # The same questions asked hundreds of times, and those that take minutes: before a release.
 test-long: sync
-	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) pytest --numprocesses auto --dist loadfile \
+	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) python tests/soak.py
 	$(RUN) python tests/sanitize.py tsan

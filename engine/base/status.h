@@ -23,6 +23,7 @@ enum class Status : int32_t {
   ids_inconsistent,
   counts_inconsistent,
   ledger_open,
+  rule_not_finite,
   count,
 };
 
@@ -58,6 +59,8 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"ids_inconsistent", "The living are not in the order of their ids, or an id was not given to any agent.", REPEAT},
     {"counts_inconsistent", "Counts of births, deaths or foods do not agree with the world.", REPEAT},
     {"ledger_open", "The energy of the agents differs from the sum in the ledger.", REPEAT},
+    {"rule_not_finite", "A rule paid an agent, or kept for it, a number that is not finite.",
+     "Check the species' reward.rule for this agent: a division by 0, or a memory that grows without end."},
 };
 static_assert(sizeof(STATUS_TEXT) / sizeof(StatusText) == static_cast<int>(Status::count));
 

@@ -175,6 +175,12 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
     throw nb::value_error("arrays must have a row for each slot of the species in each world");
 }
 
+/// The address of a function `RewardRule`. It must stay as long as the simulation: the caller holds it.
+void set_rule(PythonSimulation& self, int32_t species, uint64_t address) {
+  if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");
+  self.get().set_rule(species, reinterpret_cast<RewardRule>(static_cast<uintptr_t>(address)));
+}
+
 void command(PythonSimulation& self, int32_t species, TableIn actions) {
   need_rows(self, species, actions);
   if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
@@ -253,6 +259,9 @@ void bind_simulation(nb::module_& module) {
       .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
+      .def("set_rule", &set_rule, nb::arg("species"), nb::arg("address"),
+           "Gives a species the function that pays it, by its address: void(int64 count, double *records, double "
+           "*paid).")
       .def("command", &command, nb::arg("species"), nb::arg("actions"),
            nb::sig("def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
            "Tells the agents of an external species what to do from now on: (worlds, slots, 2).")

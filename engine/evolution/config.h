@@ -103,9 +103,11 @@ struct RewardConfig {
   RewardFamily family;
   float threshold;        ///< of energy [energy] or age [step], for the families that depend on them
   float threshold_width;  ///< in the same unit
+  int32_t rule;           ///< 1 if a function of the caller pays, and not the terms
+  int32_t memory;         ///< numbers that the rule keeps for each agent
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
 
-  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, terms)
+  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, rule, memory, terms)
 };
 
 }  // namespace hedon

@@ -46,6 +46,7 @@ HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
 /// The weight of a term, from its genes.
 HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, const float* genome,
                          const RewardInputs& inputs) {
+  if (term.input == RewardInput::relief) return 1.0f;  // its gene is the set point
   const float w = genome[term.gene], second = genome[term.second_gene];
   switch (config.family) {
     case RewardFamily::linear:
@@ -64,7 +65,8 @@ HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, con
   return w;
 }
 
-HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, const RewardInputs& inputs) {
+HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, const float* genome,
+                            const RewardInputs& inputs) {
   switch (term.input) {
     case RewardInput::food:
       return static_cast<float>(inputs.eaten[term.index]);
@@ -72,21 +74,19 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
     case RewardInput::see_max:
       return sight_of(inputs, term.index, term.input == RewardInput::see_mean);
     case RewardInput::relief:
-      break;  // it has no weight
+      return relief(genome[term.gene], inputs);
     case RewardInput::action:
       return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
   }
   return 0.0f;
 }
 
-/// r = Σ coef · weight · input over the terms; relief has no weight: its gene is the set point.
+/// r = Σ coef · weight · input over the terms.
 HEDON_FN float reward(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
   float sum = 0.0f;
   for (int32_t i = 0; i < config.terms.count; ++i) {
     const RewardTerm& term = config.terms[i];
-    sum += term.input == RewardInput::relief
-               ? term.coef * relief(genome[term.gene], inputs)
-               : term.coef * weight_of(config, term, genome, inputs) * reward_input(config, term, inputs);
+    sum += term.coef * weight_of(config, term, genome, inputs) * reward_input(config, term, genome, inputs);
   }
   return sum;
 }

@@ -43,6 +43,8 @@ constexpr Limit INTEGERS[] = {
     {"species.diet.digestion_steps", 0, 1'000'000},
     {"species.sensor.sees", 0, MAX_TYPES - 1},
     {"species.sensor.collides", 0, MAX_TYPES - 1},
+    {"species.reward.rule", 0, 1},
+    {"species.reward.memory", 0, 16},
     {"species.reward.terms.index", 0, MAX_TYPES - 1},
     {"species.reward.terms.gene", 0, MAX_GENES - 1},
     {"species.reward.terms.second_gene", 0, MAX_GENES - 1},

@@ -1,4 +1,4 @@
-/// Worlds that a caller drives: what agents are told, and what they sense and earn.
+/// What a caller adds to worlds: rules that pay agents, what agents are told, and what they sense and earn.
 #include <atomic>
 #include <cstring>
 
@@ -31,6 +31,17 @@ void show_agent(World& world, int32_t slot, int rank, const Shown& out, int64_t 
 }
 
 }  // namespace
+
+void Simulation::set_rule(int32_t species, RewardRule rule) {
+  for (World& world : worlds_) world.rule[species] = rule;
+}
+
+int32_t Simulation::unruled() const {
+  for (int32_t s = 0; s < shape_.species; ++s) {
+    if (config_.species[s].reward.rule != 0 && worlds_[0].rule[s] == nullptr) return s;
+  }
+  return -1;
+}
 
 void Simulation::command(int32_t species, const float* actions) {
   const Species& own = shape_.of[species];

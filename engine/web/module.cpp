@@ -118,6 +118,9 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   if (!wrong.empty()) return fail(wrong);
   const std::string setting = check_config(input.config);
   if (!setting.empty()) return fail(setting);
+  for (int32_t s = 0; s < input.config.species.count; ++s) {
+    if (input.config.species[s].reward.rule != 0) return fail("a page cannot pay agents by a rule in Python");
+  }
   const std::string company = check_company(input.config, input.walls, input.outer_walls, 1, 1, {});
   return company.empty() ? 0 : fail(company);
 }

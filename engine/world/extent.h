@@ -17,6 +17,7 @@ enum class Extent : uint8_t {
   old_slots,       ///< slots, if only agents in old slots have children
   learner_slots,   ///< slots, if some species learns; of other species they are not used
   external_slots,  ///< slots, if some species is told what to do
+  ruled_slots,     ///< slots, if some species is paid by a rule of the caller
   packed_slots,    ///< slots, if some act with weights in pairs
   species,
   mixed_species,  ///< the same, if there are several
@@ -35,6 +36,8 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   actions,
+  memory,        ///< numbers that a rule keeps for each agent
+  record,        ///< numbers that a rule gets for one agent
   steps,         ///< of a rollout
   step_actions,  ///< actions of a rollout
   observations,  ///< cache lines of the observations of a rollout, and of the one after it
@@ -56,8 +59,8 @@ enum class Lifetime : uint8_t {
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
-         rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::packed_slots ||
-         rows == Extent::wide_slots || rows == Extent::hunted_slots;
+         rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
+         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
@@ -80,6 +83,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.learning ? shape.capacity : 0;
     case Extent::external_slots:
       return shape.external ? shape.capacity : 0;
+    case Extent::ruled_slots:
+      return shape.ruled ? shape.capacity : 0;
     case Extent::packed_slots:
       return shape.packed ? shape.capacity : 0;
     case Extent::species:
@@ -114,6 +119,10 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.pairs;
     case Extent::hidden:
       return HIDDEN;
+    case Extent::memory:
+      return shape.memory;
+    case Extent::record:
+      return shape.record;
     case Extent::actions:
       return ACTIONS;
     case Extent::steps:

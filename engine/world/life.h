@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "evolution/reward.h"
 #include "world/population.h"
+#include "world/rule.h"
 #include "world/schedule.h"
 #include "world/world.h"
 
@@ -24,12 +25,6 @@ HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
 /// Probability of having a child in a step at energy `energy`.
 HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
   return config.kappa / (1.0 + exp_double(config.delay - static_cast<double>(config.beta) * energy));
-}
-
-/// Euclidean norm of the two forces that the agent in `slot` applied in this step.
-HEDON_FN float applied_force(const World& world, int32_t slot) {
-  const float left = world.scratch.force_left[slot], right = world.scratch.force_right[slot];
-  return sqrtf(left * left + right * right);
 }
 
 HEDON_FN bool is_eaten(const World& world, int32_t slot) {
@@ -80,23 +75,12 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   life.force_right += scratch.force_right[slot];
 }
 
-/// One agent's reward for this step, into its rollout.
+/// One agent's reward for this step, into its rollout, unless a rule pays its species.
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
   const int64_t row = world.kept(slot, t);
-  const PackedObservation& seen = world.observation(slot, row);
-  const Life& life = world.state.life[slot];
-  const RewardInputs inputs{.eaten = world.meal(slot),
-                            .force = applied_force(world, slot),
-                            .max_force = species.max_force,
-                            .ray = seen.ray,
-                            .ray_type = seen.ray_type,
-                            .rays = species.config->sensor.ray_count,
-                            .energy_before = world.scratch.energy_before[slot],
-                            .energy = life.energy,
-                            .capacity = species.config->energy.capacity,
-                            .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
-  const float r = reward(species.config->reward, world.genome(slot), inputs);
+  if (species.config->reward.rule != 0) return;
+  const float r = reward(species.config->reward, world.genome(slot), reward_inputs(world, slot, t));
   world.state.reward[slot * int64_t{world.shape->rollout} + row] = r;
   world.state.life[slot].reward += r;
 }

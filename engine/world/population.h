@@ -49,6 +49,7 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   if (state.touch_more.count > 0) state.touch_more[slot] = 0;
   if (world.shape->hunting) state.digestion[slot] = world.scratch.eaten[slot] = 0;
   if (state.species.count > 0) state.species[slot] = species;
+  for (int64_t m = 0; m < world.shape->memory; ++m) state.memory[int64_t{slot} * world.shape->memory + m] = 0.0;
   for (int64_t a = 0; a < ACTIONS && state.command.count > 0; ++a) state.command[int64_t{slot} * ACTIONS + a] = 0.0f;
   world.scratch.dies[slot] = 0;
 

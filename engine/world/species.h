@@ -35,6 +35,7 @@ struct Species {
   Channels sight, touch;
   bool learns;                           ///< it has networks, which learn
   bool observes;                         ///< its network, or its reward, reads what its rays meet
+  int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
   float mouth_cosine;                    ///< cosine of the mouth's half angle
@@ -83,6 +84,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.touch = make_channels(config.sensor.collides, types);
   species.learns = config.learning.policy == Policy::ppo;
   species.observes = species.learns;
+  species.observes |= config.reward.rule != 0;
+  species.record = config.reward.terms.count + config.genome.genes.count + 8 + config.reward.memory;
   for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sight(config.reward.terms[i].input);
   const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,

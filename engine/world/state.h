@@ -138,6 +138,7 @@ struct WorldState {
   Array<int64_t> eaten_by;  // by species: meals of each kind since the world began
 
   Array<float> command;  // (slots, 2) what the caller told agents to do, before the sigmoid
+  Array<double> memory;  // what the rule of its species keeps for each agent
 
   // Learners, by slot.
   Array<float> params;
@@ -175,16 +176,16 @@ struct WorldState {
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
                (eaten_by, mixed_species, meals, saved), (command, external_slots, actions, saved),
-               (params, learner_slots, params, saved), (folded_bias, learner_slots, hidden, derived),
-               (packed_weights, packed_slots, pairs, derived), (first_moment, learner_slots, params, saved),
-               (second_moment, learner_slots, params, saved), (updates, learner_slots, one, saved),
-               (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved), (newborn, newborns, one, saved),
-               (newborn_species, mixed_newborns, one, saved), (newborn_genome, newborns, genes, saved),
-               (observation, slots, observations, rollout), (action, slots, step_actions, rollout),
-               (log_prob, slots, steps, rollout), (value, slots, steps, rollout), (reward, slots, steps, rollout),
-               (event, events, one, waiting), (event_species, events, one, waiting),
-               (event_cause, events, one, waiting), (event_eaten, events, meals, waiting),
-               (event_genome, events, genes, waiting))
+               (memory, ruled_slots, memory, saved), (params, learner_slots, params, saved),
+               (folded_bias, learner_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
+               (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),
+               (updates, learner_slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
+               (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),
+               (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
+               (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
+               (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
+               (event_species, events, one, waiting), (event_cause, events, one, waiting),
+               (event_eaten, events, meals, waiting), (event_genome, events, genes, waiting))
 };
 
 }  // namespace hedon

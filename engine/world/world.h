@@ -53,6 +53,8 @@ struct StepScratch {
   Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
   Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
   Array<float> claim_distance;             ///< squared
+  Array<double> record, paid;              ///< of the agents that a rule pays, one after another
+  Array<int32_t> paid_slot;                ///< their slots
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 
@@ -69,10 +71,15 @@ struct StepScratch {
                (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
-               (parent, slots, one, scratch), (parent_key, slots, one, scratch))
+               (record, ruled_slots, record, scratch), (paid, ruled_slots, one, scratch),
+               (paid_slot, ruled_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };
 
+/// Pays `count` agents: reads and may change their records, one after another, and writes what each is paid.
+using RewardRule = void (*)(int64_t count, double* records, double* paid);
+
 struct World {
+  RewardRule rule[MAX_SPECIES];  ///< of each species; null for none
   const WorldConfig* config;
   const WorldShape* shape;
   const Kernel* kernel;

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -28,8 +29,15 @@ def test_blocks_are_found():
     assert len(names("toml")) >= 3
 
 
+OPTIONAL = {"rule": ("numba", "rules"), "environment": ("pettingzoo", "env")}
+"""What a page needs beside hedon itself: a module, and the optional packages of hedon that bring it."""
+
+
 @pytest.mark.parametrize("page", names("python"))
 def test_python_of_a_page_runs_from_top_to_bottom(page, tmp_path):
+    module, extra = OPTIONAL.get(page.stem, ("hedon", ""))
+    if find_spec(module) is None:
+        pytest.skip(f'needs the optional packages: pip install "hedon[{extra}]"')
     # Each block at its place in the page, so that a traceback names the line there.
     text = page.read_text(encoding="utf-8")
     program = ""

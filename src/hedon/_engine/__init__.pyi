@@ -61,6 +61,11 @@ class Simulation:
         Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
+    def set_rule(self, species: int, address: int) -> None:
+        """
+        Gives a species the function that pays it, by its address: void(int64 count, double *records, double *paid).
+        """
+
     def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:
         """
         Tells the agents of an external species what to do from now on: (worlds, slots, 2).

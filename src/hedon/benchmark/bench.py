@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.benchmark import growth, network, physics, rays, records, startup, world
+from hedon.benchmark import growth, network, physics, rays, records, rule, startup, world
 from hedon.benchmark.machine import Calibration, calibrate, describe
 from hedon.benchmark.measure import Row, Table
 from hedon.benchmark.plan import Plan, PlanError
@@ -39,10 +39,11 @@ PARTS = {
     "world": Part("whole worlds with learning, by threads, worlds and instruction sets", world.measure, world.table),
     "records": Part("writing a run's tables", records.measure, records.table),
     "startup": Part("from the start of a process to its first step", startup.measure, startup.table),
+    "rule": Part("a reward in Python, beside the terms of a config", rule.measure, rule.table),
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
 }
-DEFAULT_PARTS = tuple(name for name in PARTS if name != "growth")
-"""Growth takes minutes and gigabytes, so it runs only if asked for."""
+DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("growth", "rule"))
+"""Growth takes minutes and gigabytes, and a rule needs an optional package, so they run only if asked for."""
 
 
 def choose(names: Sequence[str]) -> tuple[str, ...]:

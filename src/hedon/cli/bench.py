@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 def bench(
     parts: Annotated[
-        list[str] | None, typer.Argument(metavar="[PART]...", help="What to measure; by default all except growth.")
+        list[str] | None,
+        typer.Argument(metavar="[PART]...", help="What to measure; by default all except growth and rule."),
     ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write all raw numbers to this file.")
@@ -49,6 +50,7 @@ def bench(
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step
+      rule      a reward in Python, beside the terms of a config; needs hedon[rules]
       growth    one world without learning, up to 500 times as large; takes minutes and 21 GB
 
     Other programs may use the machine too. So the cases are measured in turn, several times, and times are

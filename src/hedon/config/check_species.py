@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, WALL, chosen, layouts
+from hedon.config.layout import LEARNING_GENES, WALL, chosen, layouts, rule_columns
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
@@ -15,6 +15,8 @@ MAX_TOUCH_BITS = 128
 """Most types times touch sectors that the engine has room for."""
 MAX_GENES = 64
 """Most genes that the engine has room for."""
+RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
+"""A rule: its file, its function and, once a run has it, the digest of the file."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -31,6 +33,7 @@ def species_problems(config: Config) -> Iterator[Problem]:
         yield from _sight(config, species, path)
         yield from _genes(config, name, path)
         yield from schedule_problems(species.hazard.schedule, f"{path}hazard.schedule", {"scale": MAX_FACTOR})
+        yield from _rule(config, name, path)
     yield from _nobody(config)
     yield from _crowd(config)
     yield from _collisions(config)
@@ -95,6 +98,22 @@ def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
             yield Problem(f"{path}diet.eats", f"the share of a {name} must be from 0 to 1", format_value(share))
         if name in everything and name not in chosen(config, species.body.collides):
             yield Problem(f"{path}diet.eats", f"it passes through {name}, so it cannot eat it: add it to body.collides")
+
+
+def _rule(config: Config, name: str, path: str) -> Iterator[Problem]:
+    species = config.agents[name]
+    rule = species.reward.rule
+    if rule and not re.fullmatch(RULE_PATTERN, rule):
+        yield Problem(
+            f"{path}reward.rule", "must be FILE.py:NAME, a Python file and a function in it", format_value(rule)
+        )
+    columns = rule_columns(config, name) if rule else ()
+    for column in {each for each in columns if columns.count(each) > 1}:
+        yield Problem(f"{path}reward.rule", f"two things that it reads are called {column}: rename a food")
+    if species.reward.memory and not rule:
+        yield Problem(
+            f"{path}reward.memory", "is kept by a rule: give reward.rule too", format_value(species.reward.memory)
+        )
 
 
 def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:

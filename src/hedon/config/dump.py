@@ -14,6 +14,8 @@ from hedon.config.problem import format_value
 
 EARLIER = {
     "learning.policy": "ppo",
+    "reward.rule": "",
+    "reward.memory": 0,
     "learning.acting_weights": "float32",
     "physics.solver": "sequential",
     "sensor.ray_inside": "hit",

@@ -178,4 +178,17 @@ class RewardConfig:
         Literal["max_force", "none"],
         Doc("what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'),
     ] = "max_force"
+    rule: Annotated[
+        str,
+        Doc(
+            "a Python function that pays instead, as FILE.py:NAME; a run adds @ and the digest of the file. Empty for "
+            "the sum above (guide/rule.md)",
+            "",
+            OURS,
+        ),
+    ] = ""
+    memory: Annotated[
+        int,
+        Doc("numbers that the rule keeps for each agent from step to step", "", OURS, Range(ge=0, le=16)),
+    ] = 0
     see: dict[str, SeeConfig] = field(default_factory=dict)

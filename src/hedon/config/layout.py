@@ -122,6 +122,20 @@ def observation_columns(config: Config, name: str) -> tuple[str, ...]:
     )
 
 
+RULE_INPUTS = ("age", "energy_before", "energy", "moved", "nearness", "force_left", "force_right", "linear")
+"""What a rule gets of every agent beside its reward's inputs, its genes and its memory, in the engine's order."""
+
+
+def rule_columns(config: Config, name: str) -> tuple[str, ...]:
+    """Names of the fields of the record that a rule of a species gets of each agent, in order.
+
+    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `relief`.
+    """
+    layout, memory = layouts(config)[name], config.agents[name].reward.memory
+    inputs = ("relief" if term.input == "relief" else term.gene.removeprefix("w_") for term in layout.terms)
+    return (*inputs, *layout.gene_names, *RULE_INPUTS, *(f"memory_{i + 1}" for i in range(memory)))
+
+
 def choose_species(name: str | None, config: Config) -> str | None:
     """The species of this name, or by default the first; None where there is only one, without a name.
 

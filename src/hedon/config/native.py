@@ -133,6 +133,8 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
         "family": reward.family,
         "threshold": reward.threshold,
         "threshold_width": reward.threshold_width,
+        "rule": int(bool(reward.rule)),
+        "memory": reward.memory,
         "terms": terms,
     }
 

@@ -31,6 +31,7 @@ SHAPE = (
     "sensor.scaling",
     "genome.neutral_count",
     "genome.founders",
+    "reward.memory",
     "learning.rollout_steps",
 )
 """Settings and sections that fix the shapes of a world's arrays, or how it began. The kinds of food and their

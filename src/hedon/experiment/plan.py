@@ -19,6 +19,7 @@ from hedon.experiment.argument import (
     number,
     seed_list,
 )
+from hedon.experiment.rule import pinned
 from hedon.experiment.sample import Rows
 from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.record.founder import Founders
@@ -42,6 +43,7 @@ class RunPlan:
     Raises:
         ConfigError: A setting is wrong.
         FounderError: The founders do not fit the config.
+        RuleError: A rule is not there, or is not the one that the config is pinned to.
         ArgumentError: Another value is wrong.
     """
 
@@ -66,7 +68,7 @@ class RunPlan:
         founders: Founders | None = None,
     ) -> None:
         checked = {
-            "config": _with_founders(_without_caller(validated(config)), founders),
+            "config": _with_founders(pinned(_without_caller(validated(config))), founders),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),

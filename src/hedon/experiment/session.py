@@ -31,6 +31,7 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
         extinct_steps=tuple(None for _ in plan.seeds),
         food_colors=tuple(food.color for food in config.food.values()),
         frames=plan.frames,
+        rules=tuple(rule.source for rule in simulation.rules),
         **collect_provenance(),
     )
     return replace(manifest, sessions=(_session(manifest, from_step),))

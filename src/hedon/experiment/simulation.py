@@ -13,6 +13,7 @@ from hedon.config.layout import layouts
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.native import engine_input
+from hedon.experiment.rule import rules
 from hedon.record.founder import Founders
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
@@ -42,6 +43,7 @@ class Simulation:
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
+        RuleError: A rule of the config is not there, has changed, or cannot be compiled.
         EngineError: The kernel is unknown or not for this processor, there is too little memory, or there is no room
             for the initial agents or foods.
 
@@ -60,6 +62,9 @@ class Simulation:
         self.engine = _engine.Simulation(
             given.settings, given.walls, given.outer_walls, list(self.seeds), threads, kernel
         )
+        self.rules = rules(self.config)
+        for rule in self.rules:
+            self.engine.set_rule(list(self.config.agents).index(rule.species), rule.compiled.address)
         self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
 
     def run(self, steps: int) -> None:

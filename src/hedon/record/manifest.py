@@ -48,6 +48,28 @@ class Session:
 
 
 @dataclass(frozen=True)
+class RuleSource:
+    """The text of a rule in Python that pays agents.
+
+    Attributes:
+        file: path as the config gives it.
+        name: of the function.
+        digest: the first 16 hexadecimal digits of the SHA-256 of the text.
+        text: of the whole file.
+    """
+
+    file: str
+    name: str
+    digest: str
+    text: str
+
+    @property
+    def place(self) -> str:
+        """What a config that is pinned to this text says."""
+        return f"{self.file}:{self.name}@{self.digest}"
+
+
+@dataclass(frozen=True)
 class Parent:
     """The run that a branch started from.
 
@@ -96,6 +118,7 @@ class Manifest:
         world_digests: per world, the digest of its last state, as `World.digest()` gives it; empty until the end.
         records_digest: digest of all rows of all tables, no matter which parts hold them; None until the end.
         fault: the engine's message if the run stopped at a fault; None otherwise.
+        rules: the rules in Python that pay agents, with their texts.
         format_version: of the run folder.
     """
 
@@ -133,6 +156,7 @@ class Manifest:
     species: tuple[str, ...] = ("agent",)
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
+    rules: tuple[RuleSource, ...] = ()
     format_version: int = FORMAT_VERSION
 
     def __post_init__(self) -> None:

@@ -1,0 +1,198 @@
+"""Rules in Python: what the engine pays by them, against the same rule in plain Python and against its own terms."""
+
+import json
+
+import numpy as np
+import pytest
+from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
+
+from hedon import RunPlan, branch, load_config, open_run, resume, run
+from hedon.config import ConfigError
+from hedon.config.layout import rule_columns
+from hedon.experiment.rule import RuleError, pinned, rules
+
+pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
+
+LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
+RULES = """
+def same(agent):
+    return agent.linear
+
+def by_terms(agent):
+    return agent.w_normal * agent.normal + 0.01 * agent.w_action * agent.action
+
+def curious(agent):
+    surprise = abs(agent.nearness - agent.memory_1)
+    agent.memory_1 += 0.1 * (agent.nearness - agent.memory_1)
+    return agent.w_action * surprise
+
+def homeostatic(agent):
+    return abs(agent.energy_before - 40.0) - abs(agent.energy - 40.0)
+
+def bad(agent):
+    return 1.0 / (agent.age - 3.0)
+
+def wordy(agent):
+    return "much"
+
+def untyped(agent):
+    return agent.hungr
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "my_rules.py"
+    path.write_text(RULES)
+    return path
+
+
+def paid(file, name, *settings, memory=0, threads=1, seeds=(3,)):
+    return make_simulation(
+        *settings, f'reward.rule="{file}:{name}"', f"reward.memory={memory}", seeds=seeds, threads=threads
+    )
+
+
+def test_a_rule_that_repeats_the_terms_changes_nothing(file):
+    """Learning, births and deaths too: the rewards have the same bits."""
+    plain, ruled = make_simulation(*LIVELY, seeds=(3,)), paid(file, "same", *LIVELY)
+    for simulation in (plain, ruled):
+        simulation.run(200)
+    assert plain.worlds[0].counters["learners"] > 0
+    assert plain.worlds[0].digest() == ruled.worlds[0].digest()
+
+
+def recording(file, name):
+    """A rule that also copies its whole record into its memory, from the fourth number on; and its columns."""
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, "genome.neutral_count=1", "genome.action.initial_mean=2")
+    columns = rule_columns(make_simulation(*settings).config, "agent")
+    body = RULES.split(f"def {name}(agent):\n")[1].split("\n\n")[0]
+    copies = "".join(f"    agent.memory_{i + 4} = agent.{column}\n" for i, column in enumerate(columns))
+    file.write_text(f"def both(agent):\n{copies}{body}\n")
+    return paid(file, "both", *settings, memory=16), columns
+
+
+def test_the_record_has_what_its_columns_say(file):
+    simulation, columns = recording(file, "same")
+    simulation.run(30)
+    world = simulation.worlds[0]
+    before = world.agents()
+    simulation.run(1)
+    after = world.agents()
+    record = dict(zip(columns, world.view("memory")[world.living, 3:].T, strict=True))
+    np.testing.assert_array_equal(record["energy_before"], before["energy"])
+    np.testing.assert_array_equal(record["energy"], after["energy"])
+    np.testing.assert_array_equal(record["age"], after["age"])
+    np.testing.assert_allclose(record["moved"], after["distance"] - before["distance"], atol=1e-6)
+    np.testing.assert_allclose(record["force_left"], after["force_left"] - before["force_left"], atol=1e-3)
+    np.testing.assert_allclose(record["force_right"], after["force_right"] - before["force_right"], atol=1e-3)
+    np.testing.assert_array_equal(record["normal"], (after["eaten"] - before["eaten"])[:, 0])
+    force = np.hypot(record["force_left"], record["force_right"])
+    np.testing.assert_allclose(record["action"], force / (80 * np.sqrt(2)), rtol=1e-6)
+    assert columns[2:5] == ("w_normal", "w_action", "neutral_1")
+    for i, name in enumerate(columns[2:5]):
+        np.testing.assert_array_equal(record[name], after["genome"][:, i])
+    np.testing.assert_allclose(record["linear"], after["reward"] - before["reward"], rtol=1e-4, atol=1e-7)
+    rays = world.view("observation")[world.living, 30, :96].copy().view(np.float32)  # reading + 1 of each ray
+    np.testing.assert_allclose(record["nearness"], np.maximum(rays - 1, 0).mean(axis=1), rtol=1e-5, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["by_terms", "curious", "homeostatic"])
+def test_plain_python_pays_the_same(file, name):
+    simulation, columns = recording(file, name)
+    (rule,) = rules(simulation.config)
+    kept, wanted = np.zeros((50, 16)), np.zeros(50)
+    for step in range(20):
+        simulation.run(1)
+        world = simulation.worlds[0]
+        memory = world.view("memory")[world.living]
+        records = np.concatenate([memory[:, 3:], kept], axis=1)
+        wanted = rule.pay(records)
+        kept = records[:, len(columns) :]
+        np.testing.assert_array_equal(memory, kept)
+        np.testing.assert_array_equal(world.view("reward")[world.living, step], wanted.astype(np.float32))
+    assert wanted.any()
+
+
+def test_threads_and_checkpoints_change_nothing(file):
+    """Two species, of which one has a rule with memory; the newborn begin with an empty one."""
+    settings = (*LIVELY, "species.plain.body.radius=10", f'species.odd.reward.rule="{file}:curious"')
+    settings = (*settings, "species.odd.reward.memory=3")
+    once = make_simulation(*settings, seeds=(3,))
+    once.run(150)
+    first, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1))
+    first.run(90)
+    second.run(5)
+    second.engine.restore(0, first.engine.save(0))
+    second.run(60)
+    assert second.worlds[0].digest() == once.worlds[0].digest()
+    world = once.worlds[0]
+    assert world.counters["births"] > 10
+    agents, memory = world.agents(), world.view("memory")[world.living]
+    assert (memory[agents["species"] == 0] == 0).all()
+    assert (memory[(agents["species"] == 1) & (agents["age"] > 20), 0] > 0).any()
+    assert (memory[agents["age"] == 0] == 0).all()
+
+
+def test_a_run_keeps_its_rule_and_refuses_another(file, tmp_path):
+    overrides = [*LIVELY, f'reward.rule="{file}:curious"', "reward.memory=1"]
+    plan = RunPlan(load_config("baseline", overrides=overrides), seeds=(1,), steps=64, out=tmp_path / "run", threads=1)
+    run(plan)
+    (source,) = open_run(plan.out).manifest.rules
+    assert source.text == RULES
+    assert plan.config.reward.rule == source.place == f"{file}:curious@{source.digest}"
+    kept = json.loads((plan.out / "manifest.json").read_text())["rules"]
+    assert kept[0]["digest"] == source.digest
+    whole = RunPlan(load_config("baseline", overrides=overrides), seeds=(1,), steps=128, out=tmp_path / "w", threads=1)
+
+    resume(plan.out, steps=96, threads=1)
+    file.write_text(RULES.replace("0.1", "0.2"))
+    with pytest.raises(RuleError, match=r"my_rules\.py:curious@\w{16}: .* has changed since"):
+        resume(plan.out, steps=128)
+    other = branch(plan.out, tmp_path / "branch", [f'reward.rule="{file}:curious"'], steps=128, threads=1)
+    assert other.rules[0].digest != source.digest
+    file.unlink()
+    with pytest.raises(RuleError, match=r"cannot read .*my_rules\.py: No such file"):
+        resume(plan.out, steps=128)
+    file.write_text(RULES)
+    assert resume(plan.out, steps=128, threads=1).world_digests == run(whole).world_digests
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("curios", r"has no function curios; did you mean curious\?"),
+        ("wordy", "Numba cannot compile it"),
+        ("untyped", r"an agent has no hungr; it has normal, action, w_normal"),
+    ],
+)
+def test_a_rule_that_cannot_be_used_is_named(file, name, says):
+    with pytest.raises(RuleError, match=says):
+        paid(file, name, *QUICK)
+
+
+def test_a_reward_that_is_not_finite_stops_the_world(file):
+    simulation = paid(file, "bad", *QUICK, *DEATHLESS)
+    with pytest.raises(Exception, match=r"rule_not_finite: .* step 2, value inf, agent 0"):
+        simulation.run(10)
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        (['reward.rule="curious"'], r"reward\.rule.*FILE\.py:NAME"),
+        (["reward.memory=2"], r"reward\.memory.*give reward\.rule too"),
+        (['reward.rule="a.py:b"', "food.age.energy=1"], r"reward\.rule.*are called age"),
+    ],
+)
+def test_a_wrong_setting_is_named(settings, says):
+    with pytest.raises(ConfigError, match=says):
+        load_config("baseline", overrides=settings)
+
+
+def test_a_config_is_pinned_once(file):
+    config = load_config("predator", overrides=[f'species.prey.reward.rule="{file}:same"'])
+    once = pinned(config)
+    assert once.species["prey"].reward.rule.count("@") == 1
+    assert once.species["predator"].reward.rule == ""
+    assert pinned(once) == once
