@@ -4,9 +4,9 @@ UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
-# Builds below start their own jobs: make's job server does not reach them through uv.
 # Rules in Python are compiled by Numba, some 190 MB: only the tests install it.
 EXTRA := --extra rules
+# Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
 
 .PHONY: run test test-long static sanitized sync stubs viewer clean

@@ -13,6 +13,8 @@ from hedon.view.layout import describe
 
 PLACE = ("arena.", "birth.distance")
 """Settings that are made into walls or lengths before the engine gets them: the page does not change these."""
+PYTHON = ("reward.memory",)
+"""Ends of settings that mean something only beside a rule in Python, which the page cannot have."""
 
 
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
@@ -55,7 +57,7 @@ def _settings(config: Config) -> Iterator[dict[str, Any]]:
     """The settings that the engine gets as they are, with their schema."""
     before = engine_settings(config)
     for path, setting, value in leaves(config):
-        if path in PROVENANCE or path.startswith(PLACE):
+        if path in PROVENANCE or path.startswith(PLACE) or path.endswith(PYTHON):
             continue
         reached = _reached(config, path, setting, value, before)
         if reached:
