@@ -60,7 +60,8 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"counts_inconsistent", "Counts of births, deaths or foods do not agree with the world.", REPEAT},
     {"ledger_open", "The energy of the agents differs from the sum in the ledger.", REPEAT},
     {"rule_not_finite", "A rule paid an agent, or kept for it, a number that is not finite.",
-     "Check the species' reward.rule for this agent: a division by 0, or a memory that grows without end."},
+     "Check the species' reward.rule for this agent: an exception, a division by 0, or a memory that grows without "
+     "end."},
 };
 static_assert(sizeof(STATUS_TEXT) / sizeof(StatusText) == static_cast<int>(Status::count));
 

@@ -1,6 +1,7 @@
 /// Rewards by a rule of the caller: a function that pays all agents of a species at once.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/device.h"
@@ -72,6 +73,7 @@ HEDON_FN void pay_by_rule(World& world, int32_t s, int64_t t) {
     const int32_t slot = state.living[i];
     if (slot < species.first_slot || slot >= species.last_slot) continue;
     fill_record(world, slot, t, &scratch.record[int64_t{count} * width]);
+    scratch.paid[count] = static_cast<double>(NAN);  // stays where the rule fails half-way
     scratch.paid_slot[count++] = slot;
   }
   world.rule[s](count, scratch.record.data, scratch.paid.data);

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
-from hedon import RunPlan, branch, load_config, open_run, resume, run
+from hedon import EngineError, RunPlan, branch, load_config, open_run, resume, run
 from hedon.config import ConfigError
 from hedon.config.layout import rule_columns
 from hedon.experiment.rule import RuleError, pinned, rules
@@ -31,6 +31,11 @@ def homeostatic(agent):
 
 def bad(agent):
     return 1.0 / (agent.age - 3.0)
+
+def raising(agent):
+    if agent.age > 2.0:
+        raise ValueError("old")
+    return 1.0
 
 def wordy(agent):
     return "much"
@@ -171,9 +176,11 @@ def test_a_rule_that_cannot_be_used_is_named(file, name, says):
         paid(file, name, *QUICK)
 
 
-def test_a_reward_that_is_not_finite_stops_the_world(file):
-    simulation = paid(file, "bad", *QUICK, *DEATHLESS)
-    with pytest.raises(Exception, match=r"rule_not_finite: .* step 2, value inf, agent 0"):
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize(("name", "value"), [("bad", "inf"), ("raising", "-?nan")])
+def test_a_rule_that_fails_stops_the_world(file, name, value):
+    simulation = paid(file, name, *QUICK, *DEATHLESS)
+    with pytest.raises(EngineError, match=rf"rule_not_finite: .* step 2, value {value}, agent 0"):
         simulation.run(10)
 
 
