@@ -14,6 +14,7 @@ from hedon.cli.bench import bench
 from hedon.cli.branch import branch
 from hedon.cli.check import check
 from hedon.cli.demography import demography
+from hedon.cli.export import export
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.reproduce import reproduce
@@ -47,6 +48,7 @@ app.command()(report)
 app.command()(reproduce)
 app.command()(analyze)
 app.command()(demography)
+app.command()(export)
 app.command()(check)
 app.command()(replay_fault)
 app.command()(config.presets)

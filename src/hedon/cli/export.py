@@ -1,0 +1,68 @@
+"""`hedon export`: the records of a run as files for other tools."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from hedon.error import HedonError
+
+TABLES = ("csv", "parquet", "arrow")
+TREES = ("alife", "newick")
+
+
+class ExportArgumentError(HedonError):
+    """Arguments of `hedon export` that do not go together."""
+
+
+def export(
+    what: Annotated[
+        Literal["agents", "population", "frames", "phylogeny"],
+        typer.Argument(help="A table of all worlds, or the pedigree of one."),
+    ],
+    run: Annotated[Path, typer.Argument(help="Folder of the run; it is only read.")],
+    file_format: Annotated[
+        Literal["csv", "parquet", "arrow", "alife", "newick"] | None,
+        typer.Option(
+            "--format",
+            help="Of a table: csv (default), parquet or arrow. Of a phylogeny: alife (default), the ALife data "
+            "standard with all agents and their genes, or newick, a tree of the living.",
+        ),
+    ] = None,
+    world: Annotated[int | None, typer.Option(metavar="SEED", help="Whose pedigree, by the world's seed.")] = None,
+    species: Annotated[str | None, typer.Option(help="Only the pedigree of this species.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The new file; by default RUN-WHAT with the format's ending, here.")
+    ] = None,
+) -> None:
+    """Write the records of a run as one file for other tools.
+
+    \b
+    Examples:
+      hedon export agents runs/baseline-corrected-s1
+      hedon export population runs/baseline-corrected-s1 --format parquet --out population.parquet
+      hedon export phylogeny runs/baseline-corrected-s1 --format newick
+    """
+    from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
+    from hedon.export.table import table_of, write_new, write_table
+    from hedon.record.reader import open_run
+
+    formats = TREES if what == "phylogeny" else TABLES
+    chosen = file_format or formats[0]
+    if chosen not in formats:
+        raise ExportArgumentError(f"--format {chosen}: of {what} there is " + ", ".join(formats))
+    if what != "phylogeny" and (world is not None or species is not None):
+        raise ExportArgumentError(f"--world and --species choose a pedigree: {what} has all worlds and species")
+    opened = open_run(run)
+    ending = {"alife": "csv", "newick": "nwk"}.get(chosen, chosen)
+    target = out or Path(f"{run.resolve().name}-{what}.{ending}")
+    if what != "phylogeny":
+        write_table(table_of(opened, what), chosen, target)  # type: ignore[arg-type]
+    else:
+        agents = pedigree(opened, world, species)
+        if chosen == "alife":
+            write_table(alife_table(agents, opened.weight_names).lazy(), "csv", target)
+        else:
+            trees = newick(agents, last_step(opened, agents))
+            write_new(target, lambda file: file.write(trees.encode()))
+    typer.echo(f"wrote {target}")

@@ -1,0 +1,74 @@
+"""Whole tables of a run as one file."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO, Literal
+
+import polars as pl
+
+from hedon.error import HedonError
+from hedon.record.atomic import write_atomically
+from hedon.record.reader import Run
+from hedon.text import brief
+
+TableName = Literal["agents", "population", "frames"]
+TableFormat = Literal["csv", "parquet", "arrow"]
+
+
+class ExportError(HedonError):
+    """What cannot be exported, or a file that is there already."""
+
+
+def table_of(run: Run, name: TableName) -> pl.LazyFrame:
+    """A table of all worlds of a run.
+
+    Raises:
+        ExportError: the run has no frames.
+        RecordError: a part of the table is damaged.
+    """
+    if name == "agents":
+        return run.agents().lazy()
+    if name == "population":
+        return run.population().lazy()
+    frames = run.frames()
+    if frames.select(pl.len()).collect().item() == 0:
+        raise ExportError(f"{run.path} has no frames: record them with `hedon run --frames 64`")
+    return frames
+
+
+def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> None:
+    """Writes a table as one file, piece by piece, so that it may be larger than memory.
+
+    Args:
+        table: of a run.
+        file_format: csv (UTF-8, with a header; what is missing is empty), parquet, or arrow (IPC file, which is Feather
+            too).
+        out: the file, which must not be there.
+
+    Raises:
+        ExportError: the file is there already, or cannot be written.
+    """
+
+    def write(file: BinaryIO) -> None:
+        if file_format == "csv":
+            table.sink_csv(file)
+        elif file_format == "parquet":
+            table.sink_parquet(file)
+        else:
+            table.sink_ipc(file)
+
+    write_new(out, write)
+
+
+def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Writes a file that is not there yet, whole or not at all.
+
+    Raises:
+        ExportError: it is there already, or cannot be written.
+    """
+    if out.exists() or out.is_symlink():
+        raise ExportError(f"{brief(str(out))} is there already: choose another file with --out, or remove it")
+    try:
+        write_atomically(out, write)
+    except OSError as error:
+        raise ExportError(f"cannot write {brief(str(out))}: {error.strerror or error}") from error
