@@ -48,7 +48,7 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
-    """Up to which step a pedigree reaches: the end of its world or, if the run goes on or was killed, its last event."""
+    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended."""
     done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
     events = agents.select(pl.max_horizontal(pl.col("birth_step").max(), pl.col("death_step").max())).item()
     return max(done, events)
