@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from hedon.assay.end import End, on_surface
 from hedon.assay.landscape import Landscape, MeasureSurface
-from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled
+from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled, weight_title
 
 _TITLES = {
     "descendants": "living descendants",
@@ -62,6 +62,6 @@ def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurf
     axes.set_xlim(x[0], x[-1])
     axes.set_ylim(y[0], y[-1])
     axes.grid(visible=False)
-    axes.set_xlabel(f"weight of {landscape.genes[0].removeprefix('w_')}", color=MUTED)
-    axes.set_ylabel(f"weight of {landscape.genes[1].removeprefix('w_')}", color=MUTED)
+    axes.set_xlabel(weight_title(landscape.genes[0]), color=MUTED)
+    axes.set_ylabel(weight_title(landscape.genes[1]), color=MUTED)
     head(axes, _TITLES[surface.measure], f"chance of such a surface without effects: p = {surface.flat_p:.3g}")

@@ -180,11 +180,16 @@ def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> 
 
 
 def weight_title(name: str) -> str:
-    """What a weight is called: of action, of seeing something, or of a food."""
+    """What a gene is called: the weight of action, of seeing something or of a food, or by its name."""
+    for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
+        if name.startswith("w_") and name.endswith(ending):
+            return weight_title(name.removesuffix(ending)) + said
     if name == "w_action":
         return "weight of action"
     what = name.removeprefix("w_")
-    return f"weight of seeing {what.removeprefix('see_')}" if what.startswith("see_") else f"weight of {what} food"
+    if what.startswith("see_"):
+        return f"weight of seeing {what.removeprefix('see_')}"
+    return f"weight of {what} food" if name.startswith("w_") else f"gene {name}"
 
 
 def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
@@ -198,7 +203,7 @@ def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, s
     colors = {}
     for name in names:
         known = {"w_action": ACTION_COLOR}.get(name) or kinds.get(name.removeprefix("w_"))
-        colors[name] = known or (next(others) if name.startswith("w_") else NEUTRAL_COLOR)
+        colors[name] = known or (NEUTRAL_COLOR if name.startswith("neutral_") else next(others))
     return colors
 
 

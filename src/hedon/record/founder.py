@@ -172,7 +172,7 @@ def column_of(config: Config, name: str) -> str | None:
 def unknown_gene(config: Config, name: str) -> str:
     """Says that there is no such gene, which there are, and which is near."""
     columns = gene_columns(config)
-    shown = [column.removeprefix("w_") for column in columns if column.startswith("w_")]
+    shown = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
     neutral = f", neutral_1 to neutral_{config.genome.neutral_count}" if config.genome.neutral_count else ""
     near = nearest(name, [*columns, *shown, "food"])
     hint = f"; did you mean {near}?" if near else ""

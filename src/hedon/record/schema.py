@@ -8,7 +8,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.layout import diet, layouts
+from hedon.config.layout import LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -192,16 +192,25 @@ def run_tables(columns: Columns) -> dict[str, Table]:
 
 
 def _gene_column(name: str, columns: Columns) -> Column:
-    meaning = "neutral marker: inherited and mutated, no effect on the reward"
+    return Column(name, "f32", "1", _gene_meaning(name, columns), nullable=columns.several)
+
+
+def _gene_meaning(name: str, columns: Columns) -> str:
+    what = name.removeprefix("w_")
+    if name in columns.neutral_names:
+        return "neutral marker: inherited and mutated, no effect on the reward"
     if name == "w_action":
-        meaning = "reward weight for motor action"
-    elif name.startswith("w_see_"):
-        meaning = f"reward weight for seeing {name.removeprefix('w_see_')}"
-    elif name.removeprefix("w_") in columns.prey:
-        meaning = f"reward weight for eating a {name.removeprefix('w_')}"
-    elif name in columns.reward_names:
-        meaning = f"reward weight for a food of kind {name.removeprefix('w_')}"
-    return Column(name, "f32", "1", meaning, nullable=columns.several)
+        return "reward weight for motor action"
+    if what in columns.food_kinds:
+        return f"reward weight for a food of kind {what}"
+    if what in columns.prey:
+        return f"reward weight for eating a {what}"
+    for ending, meaning in SECOND_GENES.values():
+        if what.endswith(ending):
+            return f"{meaning}, beside {name.removesuffix(ending)}"
+    if name == SET_POINT:
+        return "energy that is sought, as a share of the capacity"
+    return LEARNING_GENES.get(name.removeprefix("g_"), f"reward weight for seeing {what.removeprefix('see_')}")
 
 
 def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:

@@ -13,7 +13,7 @@ from hedon.analysis.world.population import history
 from hedon.figure.history import draw_history
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
-from hedon.figure.style import food_colors, save_figure, step_unit
+from hedon.figure.style import food_colors, save_figure, step_unit, weight_title
 from hedon.figure.trace import over_worlds
 from hedon.figure.weight import draw_weights
 from hedon.figure.world import draw_world, ray_segments, telling_agent
@@ -155,3 +155,18 @@ def _pixel(figure: Figure, image: np.ndarray, x: float, y: float) -> np.ndarray:
 def _without_agents(snapshot: Snapshot) -> Snapshot:
     names = ("agent_id", "x", "y", "angle", "energy", "rays", "species")
     return replace(snapshot, **{name: getattr(snapshot, name)[:0] for name in names})
+
+
+@pytest.mark.parametrize(
+    ("gene", "title"),
+    [
+        ("w_normal", "weight of normal food"),
+        ("w_normal_old", "weight of normal food, when old"),
+        ("w_action_scale", "weight of action, power of ten"),
+        ("w_see_prey", "weight of seeing prey"),
+        ("g_gamma", "gene g_gamma"),
+        ("set_point", "gene set_point"),
+    ],
+)
+def test_what_a_gene_is_called(gene: str, title: str) -> None:
+    assert weight_title(gene) == title

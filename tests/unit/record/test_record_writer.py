@@ -9,11 +9,12 @@ import polars as pl
 import pytest
 from synthetic_run import INTERVAL, SyntheticWorld, population_rows, write_run
 
+from hedon.config import load_config
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, holds_run, part_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
-from hedon.record.schema import Columns, run_tables
+from hedon.record.schema import Columns, agent_table, columns_of, run_tables
 from hedon.record.writer import Writer
 
 MANIFEST = Manifest(food_kinds=("normal",), neutral_count=1, seeds=(1,), steps_asked=10_000)
@@ -274,3 +275,19 @@ def test_a_million_steps_take_less_than_30_megabytes(tmp_path: Path) -> None:
     size = sum(path.stat().st_size for path in (tmp_path / "run").rglob("*.parquet"))
     assert (tmp_path / "run" / LIVING).stat().st_size < 100_000
     assert size * 1e6 / (200 * INTERVAL) < 30e6
+
+
+def test_every_gene_says_what_it_is() -> None:
+    genes = [
+        "reward.family=by_age",
+        "reward.relief_coef=1.0",
+        "genome.learning.gamma.initial_sd=0.1",
+        "reward.see.wall.coef=0.1",
+    ]
+    table = agent_table(columns_of(load_config("baseline", overrides=genes)))
+    meaning = {column.name: column.meaning for column in table.columns}
+    assert meaning["w_normal"] == "reward weight for a food of kind normal"
+    assert meaning["w_normal_old"] == "reward weight when old, beside w_normal"
+    assert meaning["w_see_wall"] == "reward weight for seeing wall"
+    assert meaning["set_point"] == "energy that is sought, as a share of the capacity"
+    assert meaning["g_gamma"] == "power of ten by which the odds of the discount differ"
