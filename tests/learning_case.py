@@ -21,6 +21,7 @@ Shape = tuple[int, int, int, int]
 def config(**changes: Any) -> dict[str, Any]:
     """The learning settings of the baseline, with changes."""
     return {
+        "policy": "ppo",
         "rollout_steps": 1024,
         "minibatch_size": 256,
         "update_epochs": 10,

@@ -7,9 +7,9 @@ import numpy as np
 
 from hedon.config import Config
 from hedon.config.layout import diet
-from hedon.config.schedule import mean_factor
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
+from hedon.demography.schedule import mean_factor
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(32)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()

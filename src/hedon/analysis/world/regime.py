@@ -35,8 +35,8 @@ import polars as pl
 
 from hedon.analysis.world.population import whole_window
 from hedon.config import Config
-from hedon.config.schedule import factor_at
 from hedon.demography.life import hazard
+from hedon.demography.schedule import factor_at
 
 EXTINCT, IDLE, ROOM, FOOD, BETWEEN = (
     "extinct",
