@@ -48,6 +48,7 @@ enum class Purpose : uint32_t {
   vacant_network = 14,
   vacant_genome = 15,
   hunt = 16,
+  obstacle = 17,
 };
 
 /// The draws of one world for one purpose, one id (agent, food kind) and one step, counted by `index`.

@@ -50,7 +50,7 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"not_finite", "A number of the state is not finite.",
      "Check the named agent; lower learning.learning_rate or the forces."},
     {"outside_arena", "A body left the arena.", "Lower physics.max_speed, physics.dt or the forces."},
-    {"initial_placement", "There is no free place in the arena for all initial agents or foods.",
+    {"initial_placement", "There is no free place in the arena for all obstacles, initial agents or foods.",
      "Lower the initial counts or enlarge the arena."},
     {"id_overflow", "A counter of agents or steps has reached its limit.", "Start a new run."},
     {"overlap_too_deep", "A body overlaps another body, a food or a wall so far that contacts cannot separate them.",

@@ -62,6 +62,7 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
                               bx.get(),
                               by.get(),
                               static_cast<int32_t>(segments.shape(0)),
+                              static_cast<int32_t>(segments.shape(0)),
                               static_cast<float>(wall_type)};
   // For an fan at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
   const Aligned<float> next(HIDDEN * HIDDEN);

@@ -69,7 +69,6 @@ HEDON_INLINE uint32_t segments_ahead(const RayTargets& targets, const RayFan& fa
 /// Segments are made longer by a millionth, so that no ray passes between two that meet.
 HEDON_INLINE void cast_at_segments(const RayTargets& targets, const RayFan& fan, const Arc& arc, RayLanes& rays) {
   const Lanes start = broadcast(fan.start), length = broadcast(fan.length), nearest = broadcast(fan.nearest);
-  const Lanes type = broadcast(targets.segment_type);
   for (int32_t first = 0; first < targets.segments; first += 16) {
     for (uint32_t bits = segments_ahead(targets, fan, arc, first); bits != 0; bits &= bits - 1) {
       const int32_t at = first + lowest_bit(bits);
@@ -80,7 +79,8 @@ HEDON_INLINE void cast_at_segments(const RayTargets& targets, const RayFan& fan,
       const Lanes part = (broadcast(ax) * rays.direction_y - broadcast(ay) * rays.direction_x) * inverse;
       const Lanes distance = broadcast(ax * ey - ay * ex) * inverse;
       const LaneMask within = both(broadcast(-1.0e-6f) <= part, part <= broadcast(1.000001f));
-      take_hit(rays, both(within, nearest <= distance), distance, start, length, type);
+      const float type = at < targets.first_obstacle ? targets.segment_type : targets.segment_type + 1.0f;
+      take_hit(rays, both(within, nearest <= distance), distance, start, length, broadcast(type));
     }
   }
 }

@@ -47,7 +47,8 @@ struct RayTargets {
   const float* segment_bx;
   const float* segment_by;
   int32_t segments;
-  float segment_type;
+  int32_t first_obstacle;  ///< segments from here on are sides of obstacles, whose type is the next one
+  float segment_type;      ///< of the others
 };
 
 /// HIDDEN rows of floats, one after another.

@@ -27,7 +27,14 @@ HEDON_FN BodyShape make_disc(float radius, float density) {
 inline constexpr int MAX_BODY_CLASSES = 4;
 inline constexpr int MAX_CIRCLE_CLASSES = 8;
 
-/// The classes of bodies and of static circles. Each class owns a range of slots.
+/// How a contact rubs and bounces.
+struct Material {
+  float friction;     ///< coefficient
+  float restitution;  ///< coefficient
+};
+
+/// The classes of bodies and of static circles. Each class owns a range of slots. Walls from `first_obstacle` on have a
+/// material of their own.
 struct BodyTable {
   int32_t classes;
   int32_t first_slot[MAX_BODY_CLASSES + 1];  ///< class c owns slots [first_slot[c], first_slot[c + 1])
@@ -37,6 +44,8 @@ struct BodyTable {
   int32_t circle_classes;
   int32_t first_circle[MAX_CIRCLE_CLASSES + 1];
   float circle_radius;  ///< of every static circle [u]
+  int32_t first_obstacle;
+  Material obstacle;
 
   HEDON_FN int32_t body_class(int32_t slot) const {
     int32_t c = 0;
@@ -81,6 +90,7 @@ HEDON_FN BodyTable uniform_bodies(const BodyShape& shape, float circle_radius, i
   table.shape[0] = shape;
   table.meets_bodies[0] = table.meets_circles[0] = 1;
   table.circle_radius = circle_radius;
+  table.first_obstacle = INT32_MAX;
   return table;
 }
 

@@ -54,6 +54,8 @@ struct StaticContact {
   float arm;                 ///< [u]
   float turn;                ///< change of angular velocity per tangential impulse [1/u]
   float tangent_mass;        ///< effective mass along the tangent, per mass of a body
+  float friction;            ///< coefficient
+  float restitution;         ///< coefficient
   float normal_impulse;      ///< accumulated, >= 0 [u/s]
   float tangent_impulse;     ///< accumulated [u/s]
   float approach;            ///< normal velocity before solving; negative where they approach [u/s]

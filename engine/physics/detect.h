@@ -79,7 +79,7 @@ template <class Bodies>
 struct Batch {
   const PhysicsConfig& config;
   const Bodies& bodies;
-  float circle_radius;  ///< [u]
+  const BodyTable& table;
   const SolverConstants& c;
   const PhysicsState& state;
   const PhysicsScratch& scratch;
@@ -176,7 +176,8 @@ HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direc
 /// wall, just touch at a distance of `touch` [u].
 template <class Bodies>
 HEDON_FN void fill_contact(const Batch<Bodies>& batch, const PairList& pairs, const PairScratch& work, int32_t pair,
-                           Vec2 point, const Direction& normal, float touch, StaticContact& contact) {
+                           Vec2 point, const Direction& normal, float touch, const Material& material,
+                           StaticContact& contact) {
   contact.body = pairs.first[pair];
   contact.anchor_x = point.x - touch * normal.x;
   contact.anchor_y = point.y - touch * normal.y;
@@ -185,6 +186,8 @@ HEDON_FN void fill_contact(const Batch<Bodies>& batch, const PairList& pairs, co
   contact.arm = batch.bodies.radius(contact.body) + 0.5f * (normal.distance - touch);
   contact.turn = contact.arm * batch.bodies.inverse_gyration(contact.body);
   contact.tangent_mass = 1.0f / (1.0f + contact.arm * contact.turn);
+  contact.friction = material.friction;
+  contact.restitution = material.restitution;
   contact.normal_impulse = work.normal[pair];
   contact.tangent_impulse = work.tangent[pair];
   contact.approach = relative_velocity(contact, batch.scratch.motion[contact.body]).normal;
@@ -219,7 +222,9 @@ HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch<Bodies>& 
     const Direction normal = direction_of(between);
     if (squared < reach.solid) {
       StaticContact& contact = contacts[count++];
-      fill_contact(batch, pairs, work, pair, point, normal, touch, contact);
+      const bool obstacle = kind == PairKind::wall && other >= batch.table.first_obstacle;
+      const Material material = obstacle ? batch.table.obstacle : Material{batch.c.friction, batch.c.restitution};
+      fill_contact(batch, pairs, work, pair, point, normal, touch, material, contact);
       fast |= contact.approach <= -batch.c.restitution_threshold;
     }
     visitor.on_contact(kind, batch.state.neighbors.slot[body], other, Vec2{normal.x, normal.y}, scratch.angle[body],
@@ -237,7 +242,9 @@ HEDON_FN FoundContacts find_circle_contacts(const Batch<Bodies>& batch, ReachOf&
   return find_static_contacts(
       PairKind::circle, batch, batch.state.neighbors.circles, batch.scratch.circles, batch.range.first_circle_pair,
       batch.range.last_circle_pair,
-      [bodies = batch.bodies, radius = batch.circle_radius](int32_t body) { return bodies.radius(body) + radius; },
+      [bodies = batch.bodies, radius = batch.table.circle_radius](int32_t body) {
+        return bodies.radius(body) + radius;
+      },
       reach_of, contacts, visitor, center);
 }
 

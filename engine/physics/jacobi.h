@@ -140,7 +140,7 @@ HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies>& bat
   const SolverConstants& c = batch.c;
   const float depth = overlap(batch, contact);
   const float bias = c.correction_rate / c.dt * (depth > c.slop ? depth - c.slop : 0.0f);
-  const float limit = c.friction * contact.normal_impulse;
+  const float limit = material(contact, c).friction * contact.normal_impulse;
   const float tangent = clamp(kept * contact.tangent_impulse - contact.tangent_mass * velocity.tangent, -limit, limit);
   const float pushed = kept * contact.normal_impulse + normal_mass(contact) * (bias - velocity.normal);
   const float normal = pushed > 0.0f ? pushed : 0.0f;
@@ -155,7 +155,7 @@ HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies>& bat
 template <class Contact>
 HEDON_FN ContactVelocity bounce_once(const Contact& contact, const SolverConstants& c, ContactVelocity velocity) {
   if (!(contact.approach <= -c.restitution_threshold)) return {0.0f, 0.0f};
-  return {-normal_mass(contact) * (velocity.normal + c.restitution * contact.approach), 0.0f};
+  return {-normal_mass(contact) * (velocity.normal + material(contact, c).restitution * contact.approach), 0.0f};
 }
 
 /// One Jacobi pass of position correction, before the bodies move, along the normals of the contacts.

@@ -76,7 +76,7 @@ HEDON_FN FoundContacts find_in_colors(const Batch<Bodies>& batch, Visitor& visit
 /// Accumulates one solution of a contact; returns by how much the impulses changed.
 template <class Contact>
 HEDON_FN ContactVelocity accumulate(Contact& contact, const SolverConstants& c, ContactVelocity velocity) {
-  const float limit = c.friction * contact.normal_impulse;
+  const float limit = material(contact, c).friction * contact.normal_impulse;
   const float tangent = clamp(contact.tangent_impulse - contact.tangent_mass * velocity.tangent, -limit, limit);
   const float pushed = contact.normal_impulse - normal_mass(contact) * velocity.normal;
   const float normal = pushed > 0.0f ? pushed : 0.0f;
@@ -128,7 +128,7 @@ HEDON_FN void warm_start(const StaticContact* contacts, int32_t count, Motion* m
 template <class Contact>
 HEDON_FN float bounce(Contact& contact, const SolverConstants& c, float normal_velocity) {
   if (!(contact.approach < -c.restitution_threshold) || !(contact.normal_impulse > 0.0f)) return 0.0f;
-  const float wanted = normal_velocity + c.restitution * contact.approach;
+  const float wanted = normal_velocity + material(contact, c).restitution * contact.approach;
   const float pushed = contact.normal_impulse - normal_mass(contact) * wanted;
   const float normal = pushed > 0.0f ? pushed : 0.0f;
   const float change = normal - contact.normal_impulse;

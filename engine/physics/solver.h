@@ -113,6 +113,15 @@ HEDON_FN constexpr float normal_mass(const BodyContact&) { return 0.5f; }
 HEDON_FN float normal_mass(const MixedContact& contact) { return contact.normal_mass; }
 HEDON_FN constexpr float normal_mass(const StaticContact&) { return 1.0f; }
 
+/// How a contact rubs and bounces: only static objects differ.
+template <class Contact>
+HEDON_FN Material material(const Contact&, const SolverConstants& c) {
+  return {c.friction, c.restitution};
+}
+HEDON_FN Material material(const StaticContact& contact, const SolverConstants&) {
+  return {contact.friction, contact.restitution};
+}
+
 /// Share of a correction of positions that moves each body.
 struct Shares {
   float first, second;

@@ -106,7 +106,7 @@ HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyTabl
                                      float squared_limit, int32_t number, Visitor& visitor) {
   const NeighborList& list = state.neighbors;
   const Bodies bodies(table, scratch);
-  const Batch<Bodies> batch{config, bodies, table.circle_radius, c, state, scratch, batch_range(list, number)};
+  const Batch<Bodies> batch{config, bodies, table, c, state, scratch, batch_range(list, number)};
   const BatchRange& range = batch.range;
   BatchReport report{};
   load_batch(batch, force, report, visitor);

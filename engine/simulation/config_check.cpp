@@ -29,6 +29,10 @@ constexpr Limit INTEGERS[] = {
     {"species.sensor.touch_sectors", 1, 32},
     {"species.population.capacity", 1, 100'000},
     {"species.population.initial_count", 0, 100'000},
+    {"obstacle.count", 0, MAX_OBSTACLES},
+    {"obstacle.corners", 3, 8},
+    {"obstacle.schedule.period", 0, 1'000'000'000},
+    {"obstacle.schedule.points.step", 0, 1'000'000'000},
     {"food.capacity", 0, 100'000},
     {"food.initial_count", 0, 100'000},
     {"food.candidates", 1, 10'000},
@@ -65,6 +69,7 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "species.body.radius",
                                     "species.body.density",
                                     "food_radius",
+                                    "obstacle.min_side",
                                     "species.sensor.ray_length",
                                     "species.sensor.mouth_spread",
                                     "species.energy.capacity",
@@ -199,7 +204,7 @@ void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
   const std::string path = "species[" + std::to_string(s) + "].";
   const int32_t steps = own.learning.rollout_steps, minibatch = own.learning.minibatch_size;
   const float side = config.arena.width < config.arena.height ? config.arena.width : config.arena.height;
-  const int32_t types = config.species.count + config.food.count + 1;
+  const int32_t types = config.species.count + config.food.count + (config.obstacle.count > 0 ? 2 : 1);
   check_types(complaint, path + "sensor.sees", own.sensor.sees, types);
   check_types(complaint, path + "sensor.collides", own.sensor.collides, types);
   check_reward(complaint, path + "reward.terms", config, own);
@@ -236,6 +241,11 @@ std::string check_config(const WorldConfig& config) {
   for (int32_t s = 0; s < config.species.count; ++s) check_species(complaint, config, s);
   complaint.need(2.0f * config.food_radius < side, "food_radius", config.food_radius, "smaller than half the arena");
   check_food(complaint, config);
+  const ObstacleConfig& obstacle = config.obstacle;
+  complaint.need(obstacle.min_side <= obstacle.max_side, "obstacle.min_side", obstacle.min_side,
+                 "at most obstacle.max_side");
+  complaint.need(obstacle.damage >= 0.0f, "obstacle.damage", obstacle.damage, "at least 0");
+  check_schedule(complaint, "obstacle.schedule", obstacle.schedule, 1.0f);
   return complaint.text;
 }
 

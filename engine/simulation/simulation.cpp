@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "base/float_mode.h"
+#include "world/obstacle.h"
 #include "world/population.h"
 
 namespace hedon {
@@ -71,7 +72,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     memory_.emplace_back(lay_out_world(world, nullptr));
     lay_out_world(world, memory_.back().data());
     begin(world);
-    init_population(world);
+    if (!world.over()) init_population(world);
   }
   pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
@@ -105,8 +106,10 @@ void Simulation::begin(World& world) {
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
   world.state.physics.outer_walls = shape_.outer_walls;
+  for (size_t w = 0; w < walls_.size(); ++w) world.state.physics.walls[static_cast<int64_t>(w)] = walls_[w];
+  place_obstacles(world);
   for (int32_t w = 0; w < shape_.walls; ++w) {
-    const Segment& wall = world.state.physics.walls[w] = walls_[static_cast<size_t>(w)];
+    const Segment& wall = world.state.physics.walls[w];
     world.scene.wall_ax[w] = wall.a.x;
     world.scene.wall_ay[w] = wall.a.y;
     world.scene.wall_bx[w] = wall.b.x;

@@ -99,8 +99,9 @@ HEDON_FN void audit_capacity(const World& world) {
   if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
 }
 
-/// For each species: energy of its agents = initial + eaten + hunted + forgiven − basic − action − capped − lost, up to
-/// rounding: a step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible value.
+/// For each species: energy of its agents = initial + eaten + hunted + forgiven − basic − action − damage − capped −
+/// lost, up to rounding: a step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible
+/// value.
 HEDON_FN void audit_ledger(const World& world, int32_t s) {
   constexpr double ROUNDING = 8.0 * 0x1p-53;
   const Counters& c = world.state.counters[s];
@@ -111,10 +112,12 @@ HEDON_FN void audit_ledger(const World& world, int32_t s) {
   }
   const double eaten = c.energy_eaten < 0.0 ? -c.energy_eaten : c.energy_eaten;
   const double hunted = world.shape->hunting ? world.state.hunt_counters[s].energy_hunted : 0.0;
-  const double moved = c.energy_initial + eaten + hunted + c.energy_forgiven + c.energy_basic + c.energy_action +
-                       c.energy_capped + c.energy_lost + c.energy_shared + world.config->species[s].energy.capacity;
+  const double damage = world.shape->obstacles > 0 ? world.state.obstacle_counters[s].energy_damage : 0.0;
+  const double moved = damage + c.energy_initial + eaten + hunted + c.energy_forgiven + c.energy_basic +
+                       c.energy_action + c.energy_capped + c.energy_lost + c.energy_shared +
+                       world.config->species[s].energy.capacity;
   const double due = c.energy_initial + c.energy_eaten + hunted + c.energy_forgiven - c.energy_basic - c.energy_action -
-                     c.energy_capped - c.energy_lost;
+                     c.energy_capped - c.energy_lost - damage;
   const double gap = held > due ? held - due : due - held;
   const double steps = static_cast<double>(c.agent_steps + c.births + world.head().next_agent_id);
   if (!(gap <= ROUNDING * steps * moved)) world.fail(Status::ledger_open, -1, held - due);

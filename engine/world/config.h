@@ -16,8 +16,9 @@ namespace hedon {
 inline constexpr int MAX_SPECIES = MAX_BODY_CLASSES;
 inline constexpr int MAX_FOOD_KINDS = MAX_CIRCLE_CLASSES;
 inline constexpr int MAX_FOOD_CENTERS = 16;
+inline constexpr int MAX_OBSTACLES = 256;
 inline constexpr int MAX_RAYS = 32;
-inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 1;  ///< each species, each food kind, wall
+inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each species, each food kind, wall, obstacle
 
 struct ArenaConfig {
   float width;
@@ -138,6 +139,20 @@ struct FoodConfig {
                capacity_schedule)
 };
 
+/// Regular polygons that never move, at places that are drawn for each world.
+struct ObstacleConfig {
+  int32_t count;
+  int32_t corners;  ///< of each
+  float min_side;   ///< sides are between these [u]
+  float max_side;
+  float friction;
+  float restitution;
+  float damage;             ///< energy that touching one costs per step
+  ScheduleConfig schedule;  ///< of the share of them that do harm
+
+  HEDON_FIELDS(ObstacleConfig, count, corners, min_side, max_side, friction, restitution, damage, schedule)
+};
+
 enum class Starvation : int32_t { floor, death };
 inline constexpr const char* STARVATION_NAMES[] = {"floor", "death"};
 
@@ -198,7 +213,7 @@ struct DietConfig {
   HEDON_FIELDS(DietConfig, food, prey, digestion_steps)
 };
 
-/// Everything that makes a kind of agent. Types are numbered: the species, then the food kinds, then walls.
+/// Everything that makes a kind of agent. Types are numbered: the species, the food kinds, walls, then obstacles.
 struct SpeciesConfig {
   BodyConfig body;
   MotorConfig motor;
@@ -233,10 +248,11 @@ struct WorldConfig {
   PhysicsConfig physics;
   RuleConfig rules;
   float food_radius;
+  ObstacleConfig obstacle;
   FixedList<FoodConfig, MAX_FOOD_KINDS> food;
   FixedList<SpeciesConfig, MAX_SPECIES> species;
 
-  HEDON_FIELDS(WorldConfig, arena, physics, rules, food_radius, food, species)
+  HEDON_FIELDS(WorldConfig, arena, physics, rules, food_radius, obstacle, food, species)
 };
 
 }  // namespace hedon

@@ -28,6 +28,10 @@ enum class Extent : uint8_t {
   mixed_newborns,  ///< the same, if there are several species
   events,          ///< deaths that wait for the reader
   walls,
+  obstacles,
+  obstacle_slots,    ///< slots, if there are obstacles
+  harmed,            ///< species, if there are obstacles
+  obstacle_corners,  ///< two numbers for each corner of an obstacle
   circles,
   cell_ends,   ///< cells of the ray grid, and one
   candidates,  ///< for each member of a team: lists of circles that its rays may hit
@@ -60,7 +64,8 @@ enum class Lifetime : uint8_t {
 HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
          rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
-         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::hunted_slots;
+         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::obstacle_slots ||
+         rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
@@ -105,6 +110,14 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.events;
     case Extent::walls:
       return shape.walls;
+    case Extent::obstacles:
+      return shape.obstacles;
+    case Extent::obstacle_slots:
+      return shape.obstacles > 0 ? shape.capacity : 0;
+    case Extent::harmed:
+      return shape.obstacles > 0 ? shape.species : 0;
+    case Extent::obstacle_corners:
+      return shape.obstacles > 0 ? 2 * (shape.walls - shape.first_obstacle) / shape.obstacles : 0;
     case Extent::circles:
       return shape.circles;
     case Extent::cell_ends:

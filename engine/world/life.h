@@ -55,7 +55,12 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   }
   const double basic = config.energy.basic_cost;
   const double action = static_cast<double>(config.energy.action_cost) * applied_force(world, slot);
-  const double wanted = life.energy + eaten - action - basic;
+  double damage = 0.0;
+  if (world.shape->obstacles > 0) {
+    damage = static_cast<double>(world.config->obstacle.damage) * scratch.touched[slot];
+    scratch.energy_damage[slot] = damage;
+  }
+  const double wanted = life.energy + eaten - action - basic - damage;
   const double capacity = config.energy.capacity;
   scratch.energy_before[slot] = life.energy;
   scratch.energy_eaten[slot] = eaten;
@@ -66,7 +71,7 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   scratch.starved[slot] = wanted < 0.0 && config.energy.starvation == Starvation::death;
   life.energy = wanted < 0.0 ? 0.0 : (wanted > capacity ? capacity : wanted);
   life.energy_gained += eaten;
-  life.energy_spent += basic + action;
+  life.energy_spent += basic + action + damage;
 
   const BodyState& body = state.physics.bodies;
   const Vec2 moved{body.x[slot] - scratch.start_x[slot], body.y[slot] - scratch.start_y[slot]};
@@ -119,6 +124,10 @@ HEDON_FN void keep_ledger(World& world) {
     counters.energy_action += scratch.energy_action[slot];
     counters.energy_forgiven += scratch.energy_forgiven[slot];
     counters.energy_capped += scratch.energy_capped[slot];
+    if (world.shape->obstacles == 0) continue;
+    ObstacleCounters& harm = world.state.obstacle_counters[world.shape->species_of(slot)];
+    harm.obstacles_touched += scratch.touched[slot];
+    harm.energy_damage += scratch.energy_damage[slot];
   }
 }
 

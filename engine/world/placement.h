@@ -10,19 +10,37 @@
 
 namespace hedon {
 
-/// Whether a disc is completely inside the outer polygon (clockwise, convex) and touches no inner wall.
-HEDON_FN bool inside_arena(const World& world, Vec2 position, float radius) {
+/// Whether a disc is completely inside the outer polygon (clockwise, convex) and touches none of the inner walls before
+/// number `last_wall`.
+HEDON_FN bool clear_of_walls(const World& world, Vec2 position, float radius, int32_t last_wall) {
   const Array<Segment>& walls = world.state.physics.walls;
   for (int32_t w = 0; w < world.shape->outer_walls; ++w) {
     // The outer walls run clockwise, so the inside is to their right.
     const Vec2 along = walls[w].b - walls[w].a;
     if (cross(position - walls[w].a, along) < radius * length(along)) return false;
   }
-  for (int32_t w = world.shape->outer_walls; w < world.shape->walls; ++w) {
+  for (int32_t w = world.shape->outer_walls; w < last_wall; ++w) {
     const Vec2 near = nearest_on_segment(walls[w].a, walls[w].b, position);
     if (squared_length(position - near) < radius * radius) return false;
   }
   return true;
+}
+
+/// Whether a point lies in an obstacle. Its sides run clockwise.
+HEDON_FN bool in_obstacle(const World& world, Vec2 position) {
+  const int32_t corners = world.config->obstacle.corners;
+  for (int32_t i = 0; i < world.shape->obstacles; ++i) {
+    const Segment* sides = &world.state.physics.walls[world.shape->first_obstacle + i * corners];
+    int32_t within = 0;
+    while (within < corners && cross(position - sides[within].a, sides[within].b - sides[within].a) >= 0.0f) ++within;
+    if (within == corners) return true;
+  }
+  return false;
+}
+
+/// Whether a disc is inside the arena, touches no wall and no obstacle.
+HEDON_FN bool inside_arena(const World& world, Vec2 position, float radius) {
+  return clear_of_walls(world, position, radius, world.shape->walls) && !in_obstacle(world, position);
 }
 
 /// Whether a disc overlaps no living agent and no food present.

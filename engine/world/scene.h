@@ -68,11 +68,17 @@ HEDON_FN void gather_scene(World& world) {
 /// The scene in the form for the kernels.
 HEDON_FN RayTargets ray_targets(const World& world) {
   const RayScene& scene = world.scene;
-  return {scene.x.data,       scene.y.data,
-          scene.radius.data,  scene.type.data,
-          scene.wall_ax.data, scene.wall_ay.data,
-          scene.wall_bx.data, scene.wall_by.data,
-          world.shape->walls, static_cast<float>(world.shape->wall_type())};
+  return {scene.x.data,
+          scene.y.data,
+          scene.radius.data,
+          scene.type.data,
+          scene.wall_ax.data,
+          scene.wall_ay.data,
+          scene.wall_bx.data,
+          scene.wall_by.data,
+          world.shape->walls,
+          world.shape->first_obstacle,
+          static_cast<float>(world.shape->wall_type())};
 }
 
 /// Empty lists of candidates circles in the memory of one member of the team.

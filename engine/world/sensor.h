@@ -84,10 +84,11 @@ struct TouchVisitor {
     const Species& species = world->species(slot);
     bool mouth;
     const int32_t at = sector(species, slot, direction, angle, &mouth);
-    int32_t type = shape.wall_type();
+    int32_t type = shape.type_of_wall(other);
     if (kind == PairKind::body) type = shape.species_of(other);
     if (kind == PairKind::circle) type = shape.food_type(food_kind(shape, other));
-    if (mouth && eats(species, type)) mark |= bit;
+    const bool hurts = type == shape.obstacle_type();
+    if (hurts || (mouth && eats(species, type))) mark |= bit;
     const int32_t touched = species.touch.of_type[type] * species.config->sensor.touch_sectors + at;
     if (touched < 64)
       world->state.touch[slot] |= uint64_t{1} << touched;

@@ -38,25 +38,27 @@ struct WorldShape {
   int32_t kinds;  ///< food kinds
   int32_t foods;  ///< most foods present at a time, all kinds
   int32_t walls;
-  int32_t outer_walls;  ///< the first walls, a closed convex polygon
-  int32_t circles;      ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
-  int32_t events;       ///< deaths that can wait for the reader
-  int32_t newborns;     ///< births of a window that can wait for their genomes
-  int32_t steps;        ///< of a window
-  int32_t rollout;      ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
-  int32_t genes;        ///< of the longest genome: the length of a row
-  int32_t params;       ///< of the largest network
-  int32_t pairs;        ///< of weights of the largest network
-  bool ghosts;          ///< eaten food is seen for one step
-  bool old_slots;       ///< only agents in slots that were taken when the window began have children
-  bool learning;        ///< some species learns
-  bool external;        ///< some species is told what to do
-  bool ruled;           ///< some species is paid by a rule of the caller
-  int32_t memory;       ///< most numbers that a rule keeps for each agent
-  int32_t record;       ///< of the longest record that a rule gets
-  bool packed;          ///< some species acts with weights in pairs
-  bool hunting;         ///< some species eats another
-  int32_t lines;        ///< cache lines of an observation
+  int32_t outer_walls;     ///< the first walls, a closed convex polygon
+  int32_t first_obstacle;  ///< walls from here on are the sides of obstacles
+  int32_t obstacles;
+  int32_t circles;   ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
+  int32_t events;    ///< deaths that can wait for the reader
+  int32_t newborns;  ///< births of a window that can wait for their genomes
+  int32_t steps;     ///< of a window
+  int32_t rollout;   ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
+  int32_t genes;     ///< of the longest genome: the length of a row
+  int32_t params;    ///< of the largest network
+  int32_t pairs;     ///< of weights of the largest network
+  bool ghosts;       ///< eaten food is seen for one step
+  bool old_slots;    ///< only agents in slots that were taken when the window began have children
+  bool learning;     ///< some species learns
+  bool external;     ///< some species is told what to do
+  bool ruled;        ///< some species is paid by a rule of the caller
+  int32_t memory;    ///< most numbers that a rule keeps for each agent
+  int32_t record;    ///< of the longest record that a rule gets
+  bool packed;       ///< some species acts with weights in pairs
+  bool hunting;      ///< some species eats another
+  int32_t lines;     ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
   RayGrid scene;
   Species of[MAX_SPECIES];
@@ -66,7 +68,9 @@ struct WorldShape {
   HEDON_FN int32_t meals() const { return kinds + (hunting ? species : 0); }
   HEDON_FN int32_t food_type(int32_t kind) const { return species + kind; }
   HEDON_FN int32_t wall_type() const { return species + kinds; }
-  HEDON_FN int32_t types() const { return species + kinds + 1; }
+  HEDON_FN int32_t obstacle_type() const { return wall_type() + 1; }
+  HEDON_FN int32_t types() const { return species + kinds + (obstacles > 0 ? 2 : 1); }
+  HEDON_FN int32_t type_of_wall(int32_t wall) const { return wall < first_obstacle ? wall_type() : obstacle_type(); }
   HEDON_FN int32_t species_of(int32_t slot) const {
     int32_t s = 0;
     while (slot >= of[s].last_slot) ++s;
@@ -84,6 +88,8 @@ HEDON_FN BodyTable make_body_table(const WorldConfig& config, const WorldShape& 
   table.classes = shape.species;
   table.circle_classes = shape.kinds;
   table.circle_radius = config.food_radius;
+  table.first_obstacle = shape.first_obstacle;
+  table.obstacle = {config.obstacle.friction, config.obstacle.restitution};
   for (int32_t k = 0; k <= shape.kinds; ++k) table.first_circle[k] = shape.food_offset[k];
   for (int32_t s = 0; s < shape.species; ++s) {
     table.first_slot[s + 1] = shape.of[s].last_slot;
@@ -103,6 +109,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   const auto grow = [](int32_t& most, int32_t value) { most = value > most ? value : most; };
   shape.species = config.species.count;
   shape.kinds = config.food.count;
+  shape.obstacles = config.obstacle.count;
   for (int32_t s = 0; s < shape.species; ++s) {
     const SpeciesConfig& own = config.species[s];
     const Species& species = shape.of[s] = make_species(own, shape.capacity, shape.types());
@@ -122,7 +129,8 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     shape.packed |= species.learns && own.learning.acting_weights == ActingWeights::bfloat16;
   }
   for (int32_t s = 0; s < shape.species; ++s) shape.of[s].network.observation.lines = shape.lines;
-  shape.walls = walls;
+  shape.first_obstacle = walls;
+  shape.walls = walls + config.obstacle.count * config.obstacle.corners;
   shape.outer_walls = outer_walls;
   shape.events = EVENTS_PER_SLOT * shape.capacity;
   shape.steps = config.species[0].learning.rollout_steps;

@@ -70,6 +70,14 @@ struct HuntCounters {
   HEDON_FIELDS(HuntCounters, deaths_starved, deaths_eaten, energy_hunted, energy_prey)
 };
 
+/// Sums since the world began, of one species, in worlds with obstacles.
+struct ObstacleCounters {
+  int64_t obstacles_touched;  ///< that did harm, each once per agent and step
+  double energy_damage;       ///< what touching them cost
+
+  HEDON_FIELDS(ObstacleCounters, obstacles_touched, energy_damage)
+};
+
 /// Why an agent died.
 enum class Cause : int32_t { age_energy, starved, eaten };
 inline constexpr const char* CAUSE_NAMES[] = {"age_energy", "starved", "eaten"};
@@ -137,6 +145,9 @@ struct WorldState {
   Array<HuntCounters> hunt_counters;
   Array<int64_t> eaten_by;  // by species: meals of each kind since the world began
 
+  Array<float> obstacle;  // (obstacles, corners · 2) where their corners are: follows from the config and the seed
+  Array<ObstacleCounters> obstacle_counters;
+
   Array<float> command;  // (slots, 2) what the caller told agents to do, before the sigmoid
   Array<double> memory;  // what the rule of its species keeps for each agent
 
@@ -175,7 +186,8 @@ struct WorldState {
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
-               (eaten_by, mixed_species, meals, saved), (command, external_slots, actions, saved),
+               (eaten_by, mixed_species, meals, saved), (obstacle, obstacles, obstacle_corners, derived),
+               (obstacle_counters, harmed, one, saved), (command, external_slots, actions, saved),
                (memory, ruled_slots, memory, saved), (params, learner_slots, params, saved),
                (folded_bias, learner_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
                (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),

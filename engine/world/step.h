@@ -9,6 +9,7 @@
 #include "world/food.h"
 #include "world/hunt.h"
 #include "world/life.h"
+#include "world/obstacle.h"
 #include "world/sensor.h"
 #include "world/world.h"
 
@@ -74,6 +75,7 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   group.once([&] {
     check_inside(world);
     eat(world);
+    if (world.shape->obstacles > 0) feel_obstacles(world);
   });
   if (world.fault().status != Status::ok) return;
   const auto reward_and_fates = [&](int32_t slot) {

@@ -24,10 +24,17 @@ Overrides = Annotated[
 def presets() -> None:
     """List the presets, and the fidelities that can be combined with them."""
     from hedon.cli.display.table import PrintedTable
-    from hedon.config.load import FIDELITIES, PAPER_PRESETS, SEQUEL_PRESETS, describe_fidelity, describe_preset
+    from hedon.config.load import (
+        FIDELITIES,
+        OUR_PRESETS,
+        PAPER_PRESETS,
+        SEQUEL_PRESETS,
+        describe_fidelity,
+        describe_preset,
+    )
 
     console = make_console()
-    for names in (PAPER_PRESETS, SEQUEL_PRESETS):
+    for names in (PAPER_PRESETS, SEQUEL_PRESETS, OUR_PRESETS):
         rows = []
         for name in names:
             config = load_config(name)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.check_schedule import schedule_problems
-from hedon.config.check_species import species_problems
+from hedon.config.check_species import MAX_COVERAGE, species_problems
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
@@ -16,7 +16,7 @@ from hedon.config.schedule import MAX_FACTOR
 
 MIN_WALL = 0.01
 """Length of the shortest outer wall whose direction float32 can still hold [u]."""
-RESERVED_KINDS = ("agent", "wall", "action")
+RESERVED_KINDS = ("agent", "wall", "obstacle", "action")
 """Names with another meaning in sensor channels or in the columns of records."""
 
 
@@ -25,6 +25,7 @@ def contradictions(config: Config) -> Iterator[Problem]:
     yield from _names(config)
     yield from _rounding(config)
     yield from _arena(config)
+    yield from _obstacles(config)
     yield from _kinds(config)
     yield from _founders(config)
     yield from species_problems(config)
@@ -71,6 +72,20 @@ def _corners_fit(arena: ArenaConfig) -> bool:
 def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
     """Whether a point lies outside the outline. False if the outline itself is wrong, which has its own message."""
     return _corners_fit(arena) and not is_inside(arena, x, y)
+
+
+def _obstacles(config: Config) -> Iterator[Problem]:
+    obstacle = config.obstacle
+    yield from schedule_problems(obstacle.schedule, "obstacle.schedule", {"harmful": 1.0})
+    if obstacle.min_side > obstacle.max_side:
+        rule = f"must be at most obstacle.max_side = {obstacle.max_side:g}"
+        yield Problem("obstacle.min_side", rule, format_value(obstacle.min_side))
+    # Circles around obstacles do not overlap when they are placed; random placement stops long before they fill it.
+    around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
+    most = math.floor(MAX_COVERAGE * config.arena.width * config.arena.height / (math.pi * around**2))
+    if obstacle.count > most:
+        rule = f"too many to place: the arena has room for {most} with sides of {obstacle.max_side:g}"
+        yield Problem("obstacle.count", rule, format_value(obstacle.count))
 
 
 def _kinds(config: Config) -> Iterator[Problem]:

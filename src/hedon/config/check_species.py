@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, WALL, chosen, layouts, rule_columns
+from hedon.config.layout import LEARNING_GENES, SOLID, chosen, layouts, rule_columns
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
@@ -43,9 +43,9 @@ def _names(config: Config) -> Iterator[Problem]:
     if len(config.species) > MAX_SPECIES:
         yield Problem("species", f"there must be at most {MAX_SPECIES} species, not {len(config.species)}")
     for name in config.species:
-        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in (*config.food, WALL, "action"):
+        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in (*config.food, *SOLID, "action"):
             rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
-            yield Problem(f"species.{name}", f"{rule} and be no kind of food and not {WALL} or action")
+            yield Problem(f"species.{name}", f"{rule} and be no kind of food and not {' or '.join((*SOLID, 'action'))}")
 
 
 def _rules(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
@@ -122,6 +122,10 @@ def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
         if name not in seen:
             rule = "it does not see this: it sees " + ", ".join(seen)
             yield Problem(f"{path}reward.see.{name}", rule, nearest=nearest(name, seen))
+    for name, see in species.reward.see.items():
+        if see.reads and see.reads not in seen:
+            rule = "must be empty or one of " + ", ".join(seen)
+            yield Problem(f"{path}reward.see.{name}.reads", rule, format_value(see.reads), nearest(see.reads, seen))
 
 
 def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
@@ -141,7 +145,8 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
     for value in ("learning_rate", "entropy_coef"):
         if value in genome.learning and getattr(learning, value) == 0:
             yield Problem(f"{path}learning.{value}", "a gene multiplies it, so it must not be 0", "0.0")
-    if any(each not in chosen(config, species.sensor.sees) for each in species.reward.see):
+    seen = chosen(config, species.sensor.sees)
+    if any(name not in seen or (see.reads and see.reads not in seen) for name, see in species.reward.see.items()):
         return  # that is said already
     names = layouts(config)[name].gene_names
     if len(names) > MAX_GENES:

@@ -11,6 +11,7 @@ from hedon.config.field import OURS, Doc
 from hedon.config.food import FoodConfig
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.obstacle import ObstacleConfig
 from hedon.config.physics import PhysicsConfig
 from hedon.config.population import PopulationConfig
 from hedon.config.species import ONLY, PER_SPECIES, DietConfig, SpeciesConfig
@@ -45,6 +46,7 @@ class Config:
     sensor: SensorConfig = field(default_factory=SensorConfig)
     population: PopulationConfig = field(default_factory=PopulationConfig)
     diet: DietConfig = field(default_factory=DietConfig)
+    obstacle: ObstacleConfig = field(default_factory=ObstacleConfig)
     food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
     energy: EnergyConfig = field(default_factory=EnergyConfig)
     hazard: HazardConfig = field(default_factory=HazardConfig)

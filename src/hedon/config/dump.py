@@ -45,6 +45,13 @@ EARLIER = {
     "genome.set_point.initial_sd": 0.1,
     "food.*.placement.drift": (0.0, 0.0),
     "food.*.placement.spacing": 0.0,
+    "obstacle.count": 0,
+    "obstacle.corners": 3,
+    "obstacle.min_side": 40.0,
+    "obstacle.max_side": 40.0,
+    "obstacle.friction": 0.6,
+    "obstacle.restitution": 0.6,
+    "obstacle.damage": 0.0,
     "reward.family": "linear",
     "reward.threshold": 50.0,
     "reward.threshold_width": 10.0,
@@ -54,6 +61,8 @@ EARLIER = {
 """Settings that older versions did not have, with what those versions did; `*` stands for every kind of food. A
 complete file without such a setting is older and means this value. Digests leave the setting out if it has this value,
 so that older digests stay valid."""
+IN_TABLES = {"reward.see.*.reads": ""}
+"""The same for settings of tables that a config need not have, whose default is what those versions did."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
@@ -113,8 +122,9 @@ def digest(config: Config) -> str:
 def _is_earlier(path: str, value: Any) -> bool:
     """Whether a setting has the value that it had before it existed, in the sections of a species too."""
     shared = re.sub(r"^species\.[^.]+\.", "", path)
-    every = re.sub(r"^food\.[^.]+\.", "food.*.", shared)
-    return every in EARLIER and EARLIER[every] == value
+    every = re.sub(r"^(food|reward\.see)\.[^.]+\.", r"\1.*.", shared)
+    earlier = EARLIER | IN_TABLES
+    return every in earlier and earlier[every] == value
 
 
 def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:

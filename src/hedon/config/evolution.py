@@ -121,7 +121,7 @@ class GenomeConfig:
 
 @dataclass(frozen=True, slots=True)
 class SeeConfig:
-    """A reward for seeing a species or a kind of food, by its name: coef·weight·what the rays read of it."""
+    """A reward for seeing a species, a kind of food, walls or obstacles, by name: coef·weight·what rays read of it."""
 
     coef: Annotated[
         float,
@@ -131,6 +131,14 @@ class SeeConfig:
         Literal["mean", "max"],
         Doc("how the readings of the rays, 0 for those that meet something else, become one number", "", OURS),
     ] = "mean"
+    reads: Annotated[
+        str,
+        Doc(
+            "the rays of this name are read instead: a wrong channel. Empty for its own",
+            "",
+            OURS + "; for obstacles the code of the sequel reads those of food",
+        ),
+    ] = ""
     gene: GeneConfig = field(default_factory=GeneConfig)
 
 

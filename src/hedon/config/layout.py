@@ -17,6 +17,10 @@ from hedon.text import brief
 
 WALL = "wall"
 """What senses call a wall."""
+OBSTACLE = "obstacle"
+"""What senses call an obstacle, in worlds that have some."""
+SOLID = (WALL, OBSTACLE)
+"""What every species sees and collides with, where it is."""
 SCALE, OLD = "_scale", "_old"
 SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
 """Families of rewards whose weights have a second gene: the end of its name, and what it is."""
@@ -93,8 +97,8 @@ class SpeciesLayout:
 
 
 def types(config: Config) -> tuple[str, ...]:
-    """What senses may tell apart, in the engine's order: the species, the kinds of food, walls."""
-    return (*config.agents, *config.food, WALL)
+    """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
+    return (*config.agents, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
 
 
 def layouts(config: Config) -> dict[str, SpeciesLayout]:
@@ -177,9 +181,9 @@ def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
 
 
 def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for, in order; walls are always among them."""
+    """The types that a list of names stands for, in order; walls and obstacles are always among them."""
     every = types(config)
-    return every if EVERYTHING in names else tuple(name for name in every if name in names or name == WALL)
+    return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
 class _Layout:
@@ -238,7 +242,8 @@ def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
             made.add_term("food", index, name, f"eating a {name}", genome.prey, reward.meal_coef)
     made.add_term("action", 0, "action", "motor action", genome.action, reward.action_coef)
     for name, see in reward.see.items():
-        made.add_term(f"see_{see.over_rays}", sees.index(name), f"see_{name}", f"seeing {name}", see.gene, see.coef)
+        read = sees.index(see.reads or name)
+        made.add_term(f"see_{see.over_rays}", read, f"see_{name}", f"seeing {name}", see.gene, see.coef)
     if reward.relief_coef:
         made.add_gene(SET_POINT, "reward", "energy that it seeks, as a share of the capacity", genome.set_point)
         made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))

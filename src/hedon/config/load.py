@@ -31,6 +31,8 @@ SEQUEL_PRESETS = (
     "predator-less-food",
     "predator-frozen",
     "prey-alone",
+    "pitfall",
+    "pitfall-weak",
 )
 """The conditions of its sequel, on predators and prey."""
 OUR_PRESETS = ("seasons",)

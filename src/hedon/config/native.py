@@ -12,7 +12,7 @@ from hedon.config.species import SpeciesConfig
 
 FOOD_SCHEDULES = {"growth_rate": "growth", "capacity": "capacity"}
 """Settings of a food that may follow time, with the engine's names of them."""
-HAZARD_SCHEDULE = "scale"
+HAZARD_SCHEDULE, OBSTACLE_SCHEDULE = "scale", "harmful"
 PYTHON_ONLY = (
     "name",
     "preset",
@@ -43,6 +43,7 @@ def engine_config(config: Config) -> dict[str, Any]:
             "child_heading": config.birth.heading,
         },
         "food_radius": config.body.food_radius,
+        "obstacle": asdict(config.obstacle) | {"schedule": _schedule(config.obstacle.schedule, OBSTACLE_SCHEDULE)},
         "food": [_food(food) for food in config.food.values()],
         "species": [_species(config, species, made[name]) for name, species in config.agents.items()],
     }

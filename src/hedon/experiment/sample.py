@@ -107,6 +107,9 @@ class PopulationSampler:
     def _now(self) -> Sampled:
         world = self.world
         counters = world.counters_of(self.species)
+        if self.columns.obstacles:
+            for name in ("obstacles_touched", "energy_damage"):
+                counters[name] = world.view(f"obstacle_counters.{name}")[self.species].item()
         if not self.columns.several:
             return Sampled(world.step, counters, tuple(world.view("food_stock.eaten").tolist()))
         for name in ("deaths_starved", "deaths_eaten", "energy_hunted", "energy_prey"):
@@ -144,6 +147,7 @@ def snapshot(world: World) -> Snapshot:
         food_x=foods["x"],
         food_y=foods["y"],
         walls=walls(config.arena),
+        obstacles=world.obstacles,
         food_kinds=tuple(config.food),
         species_names=tuple(config.agents),
         food_radius=config.body.food_radius,

@@ -31,10 +31,19 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
         extinct_steps=tuple(None for _ in plan.seeds),
         food_colors=tuple(food.color for food in config.food.values()),
         frames=plan.frames,
+        obstacle_places=_places(simulation) if config.obstacle.count else (),
         rules=tuple(rule.source for rule in simulation.rules),
         **collect_provenance(),
     )
     return replace(manifest, sessions=(_session(manifest, from_step),))
+
+
+def _places(simulation: Simulation) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:
+    """The corners of the obstacles of each world, to the thousandth of a unit: for pictures."""
+    return tuple(
+        tuple(tuple((round(x, 3), round(y, 3)) for x, y in corners) for corners in world.obstacles.tolist())
+        for world in simulation.worlds
+    )
 
 
 def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, from_step: int) -> Manifest:

@@ -198,6 +198,12 @@ class World:
         circles = {name: self.view(f"physics.circles.{name}")[present] for name in ("x", "y")}
         return {"kind": kind[present], **circles}
 
+    @property
+    def obstacles(self) -> NDArray[np.float32]:
+        """Places of the corners of each obstacle [u], (obstacles, corners, 2)."""
+        count, corners = self.config.obstacle.count, self.config.obstacle.corners
+        return self.view("obstacle").reshape(count, corners, 2).copy()
+
     def observations(self, species: int = 0) -> NDArray[np.float32]:
         """What each living agent of a species observes now, (alive, observation size)."""
         return self._engine.observations(self.index, species)

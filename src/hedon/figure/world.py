@@ -16,6 +16,7 @@ from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"
 """Of agents where no color stands for their energy."""
+OBSTACLE_COLOR = "#c9a26b"
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
 _AGENT_RAY = "#1f63a0"
@@ -41,6 +42,7 @@ def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[
         figure = new_figure(_WIDTH, _WIDTH * 0.86 * height / width + 0.8)
         axes = figure.subplots()
         draw_walls(axes, snapshot.walls)
+        draw_obstacles(axes, snapshot.obstacles)
         for index in rays_of:
             _draw_rays(axes, snapshot, index, colors)
         draw_foods(axes, snapshot, colors)
@@ -68,7 +70,8 @@ def telling_agent(snapshot: Snapshot) -> int | None:
         return None
     hits = ((snapshot.rays >= 0) & (snapshot.rays < _NEAR)).sum(axis=1)  # (agents, types)
     weights = np.ones(hits.shape[1])
-    weights[1:-1], weights[-1] = 2.0, 0.2  # food is what an agent looks for; walls are everywhere
+    solid = 2 if len(snapshot.obstacles) else 1
+    weights[1:-solid], weights[-solid] = 2.0, 0.2  # food is what an agent looks for; walls are everywhere
     return int(np.argmax(hits @ weights))
 
 
@@ -102,6 +105,12 @@ def draw_walls(axes: Axes, walls: np.ndarray, linewidth: float = 2.4) -> None:
         axes.add_patch(Polygon(outline, closed=True, facecolor=_FLOOR, edgecolor="none", zorder=0))
     segments = list(walls.reshape(-1, 2, 2))
     axes.add_collection(LineCollection(segments, colors=_WALL, linewidths=linewidth, capstyle="round", zorder=5))
+
+
+def draw_obstacles(axes: Axes, obstacles: np.ndarray) -> None:
+    """Draws obstacles, shape (o, corners, 2) [u], as solid polygons."""
+    polygons = [Polygon(corners, closed=True) for corners in obstacles]
+    axes.add_collection(PatchCollection(polygons, facecolor=OBSTACLE_COLOR, edgecolor=_WALL, linewidth=0.8, zorder=2))
 
 
 def draw_foods(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> None:
@@ -185,7 +194,8 @@ def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, 
 
 def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
     species = [_AGENT_RAY, *_SPECIES_COLORS[1:]][: len(snapshot.species_names)]
-    return [*species, *(colors[kind] for kind in snapshot.food_kinds), MUTED]
+    solid = [MUTED, OBSTACLE_COLOR] if len(snapshot.obstacles) else [MUTED]
+    return [*species, *(colors[kind] for kind in snapshot.food_kinds), *solid]
 
 
 def _discs(axes: Axes, centers: np.ndarray, radius: float, **look: object) -> EllipseCollection:
@@ -226,7 +236,9 @@ def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_
             f"ray that sees {name}": color for name, color in zip(names, _type_colors(snapshot, colors), strict=False)
         }
         rays |= {f"sees {kind} food": colors[kind] for kind in snapshot.food_kinds}
-        rays |= {"sees a wall": MUTED, "sees nothing": PALE}
+        rays |= {"sees a wall": MUTED}
+        rays |= {"sees an obstacle": OBSTACLE_COLOR} if len(snapshot.obstacles) else {}
+        rays |= {"sees nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
     columns = len(handles) if len(handles) <= _LEGEND_COLUMNS else -(-len(handles) // 2)
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.4)

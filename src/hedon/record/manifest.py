@@ -118,6 +118,8 @@ class Manifest:
         world_digests: per world, the digest of its last state, as `World.digest()` gives it; empty until the end.
         records_digest: digest of all rows of all tables, no matter which parts hold them; None until the end.
         fault: the engine's message if the run stopped at a fault; None otherwise.
+        obstacles: whether the worlds have obstacles; fixes the columns of the tables.
+        obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
         rules: the rules in Python that pay agents, with their texts.
         format_version: of the run folder.
     """
@@ -156,6 +158,8 @@ class Manifest:
     species: tuple[str, ...] = ("agent",)
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
+    obstacles: bool = False
+    obstacle_places: tuple[tuple[tuple[tuple[float, float], ...], ...], ...] = ()
     rules: tuple[RuleSource, ...] = ()
     format_version: int = FORMAT_VERSION
 
@@ -170,7 +174,7 @@ class Manifest:
     @property
     def columns(self) -> Columns:
         """What the columns of the tables follow from."""
-        return Columns(self.food_kinds, self.neutral_count, self.species, self.rewards, self.prey)
+        return Columns(self.food_kinds, self.neutral_count, self.species, self.rewards, self.prey, self.obstacles)
 
     def _problems(self) -> Iterator[str]:
         """What no run can have been, and what tables and figures could not be made with."""

@@ -28,6 +28,7 @@ class Columns:
         species: names, in the order of the config.
         rewards: names of the genes that have an effect on the reward, of all species, in order.
         prey: names of the species that are eaten by others.
+        obstacles: whether the worlds have obstacles.
     """
 
     food_kinds: tuple[str, ...]
@@ -35,6 +36,7 @@ class Columns:
     species: tuple[str, ...] = ("agent",)
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
+    obstacles: bool = False
 
     @property
     def reward_names(self) -> tuple[str, ...]:
@@ -69,7 +71,7 @@ def columns_of(config: Config) -> Columns:
     neutral = max(species.genome.neutral_count for species in config.agents.values())
     eaten = {name for species in config.agents.values() for name in diet(config, species)}
     prey = tuple(name for name in config.agents if name in eaten)
-    return Columns(tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey)
+    return Columns(tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey, config.obstacle.count > 0)
 
 
 SPECIES = Column("species", "string", "", "name of the species")
@@ -81,6 +83,10 @@ _HUNTING = (
     Column("deaths_eaten", "i32", "1", "agents of the species that were eaten in the interval"),
     Column("energy_hunted", "f64", "energy", "gained by eating agents in the interval"),
     Column("energy_prey", "f64", "energy", "held by those that were eaten in the interval; part of energy_lost"),
+)
+_HARM = (
+    Column("obstacles_touched", "i64", "1", "harmful obstacles touched, summed over agents and steps of the interval"),
+    Column("energy_damage", "f64", "energy", "charged for touching them in the interval"),
 )
 
 
@@ -103,7 +109,7 @@ def agent_table(columns: Columns) -> Table:
         *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in columns.food_kinds),
         *(Column(f"eaten_{name}", "i32", "1", f"agents of the species {name} eaten") for name in columns.prey),
         Column("energy_gained", "f32", "energy", "energy of all food eaten; poison counts negative"),
-        Column("energy_spent", "f32", "energy", "energy charged for living and for action"),
+        Column("energy_spent", "f32", "energy", "energy charged for living, for action and by obstacles"),
         Column("children", "i32", "1", "children born"),
         Column("distance", "f32", "u", "length of the path traveled"),
         Column("mean_force_left", "f32", "u·mass/s²", "mean force of the left motor over its life"),
@@ -153,6 +159,7 @@ def population_table(columns: Columns) -> Table:
             for name in columns.prey
         ),
         *(_HUNTING if columns.several else []),
+        *(_HARM if columns.obstacles else []),
         Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
         Column("energy_eaten", "f64", "energy", "gained from food in the interval; poison counts negative"),
         Column("energy_basic", "f64", "energy", "charged for living in the interval"),

@@ -1,7 +1,7 @@
 """The state of one world at one moment, for pictures: `final.npz`, plain arrays without pickle."""
 
 import zipfile
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import SNAPSHOT
 
-_ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays, t types and s species)
+_ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, o obstacles, c corners, r rays, t types, s species)
     "agent_id": (np.int64, "n"),
     "x": (np.float32, "n"),
     "y": (np.float32, "n"),
@@ -23,6 +23,7 @@ _ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, r rays, t typ
     "food_x": (np.float32, "m"),
     "food_y": (np.float32, "m"),
     "walls": (np.float32, "w4"),
+    "obstacles": (np.float32, "oc2"),
     "radius": (np.float64, "s"),
     "ray_count": (np.int32, "s"),
     "ray_length": (np.float64, "s"),
@@ -44,12 +45,13 @@ class Snapshot:
         angle: their headings [rad], 0 along +y, counter-clockwise, shape (n,).
         energy: their energies, shape (n,).
         rays: readings of their rays, shape (n, rays, types): 1 − distance / ray length for the type that is
-            hit, −1 for the others; types are each species, each food kind, wall. Without agents (0, rays, types).
-            Past the last ray of a species, −1.
+            hit, −1 for the others; types are each species, each food kind, wall, obstacle. Without agents
+            (0, rays, types). Past the last ray of a species, −1.
         species: index into `species_names`, shape (n,).
         food_kind: index into `food_kinds` of the m foods present, shape (m,).
         food_x, food_y: their positions [u], shape (m,).
         walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4).
+        obstacles: places of their corners [u], shape (o, c, 2).
         food_kinds: names, in the order of the config.
         food_radius: [u].
         species_names: in the order of the config.
@@ -80,10 +82,11 @@ class Snapshot:
     mouth_spread: np.ndarray
     food_kinds: tuple[str, ...]
     species_names: tuple[str, ...] = ("agent",)
+    obstacles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), np.float32))
     food_radius: float = 4.0
 
     def __post_init__(self) -> None:
-        sizes: dict[str, int] = {"4": 4}
+        sizes: dict[str, int] = {"4": 4, "2": 2}
         for name, (dtype, letters) in _ARRAYS.items():
             array = np.asarray(getattr(self, name), dtype)
             if array.ndim != len(letters) or any(
@@ -99,7 +102,7 @@ def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
     Raises:
         RecordError: it cannot be written.
     """
-    arrays: dict[str, Any] = {field.name: np.asarray(getattr(snapshot, field.name)) for field in fields(Snapshot)}
+    arrays: dict[str, Any] = {each.name: np.asarray(getattr(snapshot, each.name)) for each in fields(Snapshot)}
     try:
         write_atomically(folder / SNAPSHOT, lambda file: np.savez_compressed(file, **arrays))
     except OSError as error:
@@ -117,7 +120,7 @@ def load_snapshot(folder: Path) -> Snapshot | None:
         return None
     try:
         with np.load(path, allow_pickle=False) as file:
-            values = {field.name: file[field.name] for field in fields(Snapshot)}
+            values = {each.name: file[each.name] for each in fields(Snapshot) if each.name in file}
     except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise RecordError(f"damaged snapshot {path}: {error}") from error
     scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}

@@ -108,7 +108,7 @@ def test_each_contradiction(overrides: list[str], line: str) -> None:
     assert [str(problem) for problem in caught.value.problems] == [line]
 
 
-@pytest.mark.parametrize("kind", ["agent", "wall", "action", "Big", "1st", "a-b"])
+@pytest.mark.parametrize("kind", ["agent", "wall", "obstacle", "action", "Big", "1st", "a-b"])
 def test_names_of_kinds(kind: str) -> None:
     with pytest.raises(ConfigError, match=f"food.{kind}: a kind's name must have only a-z"):
         load_config("baseline", overrides=[f"food.{kind}.energy=1"])

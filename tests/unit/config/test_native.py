@@ -27,6 +27,7 @@ LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
 OTHER: dict[str, Any] = {
     "body.collides": ("normal",),
     "sensor.sees": ("normal", "poison"),
+    "reward.see.poison.reads": "normal",
     "diet.eats": (("normal", 0.5),),
     "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),
     "food.normal.placement.centers": ((1.0, 1.0),),

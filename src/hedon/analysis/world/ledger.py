@@ -71,6 +71,8 @@ def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) ->
     flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
     if "energy_hunted" in population.columns:
         flow = flow + population["energy_hunted"].to_numpy()
+    if "energy_damage" in population.columns:
+        flow = flow - population["energy_damage"].to_numpy()
     before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
     return np.abs(total - before - flow)
 

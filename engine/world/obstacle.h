@@ -1,0 +1,102 @@
+/// Obstacles: regular polygons at places that depend only on the config and the seed of the world, and the harm they
+/// do.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/math.h"
+#include "base/random.h"
+#include "world/placement.h"
+#include "world/schedule.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Draws tried for the place of one obstacle.
+inline constexpr uint32_t OBSTACLE_TRIES = 20000;
+
+/// One polygon by the circle through its corners.
+struct Polygon {
+  Vec2 center;
+  float radius, angle;
+};
+
+HEDON_FN Vec2 corner_of(const Polygon& polygon, int32_t corner, int32_t corners) {
+  double sine, cosine;
+  sincos_double(static_cast<double>(polygon.angle) - 2.0 * PI * corner / corners, &sine, &cosine);
+  return {polygon.center.x + polygon.radius * static_cast<float>(cosine),
+          polygon.center.y + polygon.radius * static_cast<float>(sine)};
+}
+
+/// Draws a place for obstacle `i` whose circle is inside, and away from inner walls and the obstacles before it.
+HEDON_FN bool find_obstacle_place(const World& world, int32_t i, const Vec2* centers, const float* radii,
+                                  Polygon* polygon) {
+  const ObstacleConfig& config = world.config->obstacle;
+  const RandomStream random{world.seed, Purpose::obstacle, static_cast<uint32_t>(i), 0};
+  double sine, cosine;
+  sincos_double(PI / config.corners, &sine, &cosine);
+  const float per_side = static_cast<float>(0.5 / sine);
+  for (uint32_t k = 0; k < OBSTACLE_TRIES; ++k) {
+    const Random4 bits = random.draw(k);
+    const float side = config.min_side + (config.max_side - config.min_side) * to_uniform(bits.word[3]);
+    *polygon = {
+        {world.config->arena.width * to_uniform(bits.word[0]), world.config->arena.height * to_uniform(bits.word[1])},
+        side * per_side,
+        TWO_PI_F * to_uniform(bits.word[2])};
+    bool is_free = clear_of_walls(world, polygon->center, polygon->radius, world.shape->first_obstacle);
+    for (int32_t other = 0; other < i && is_free; ++other) {
+      const float reach = polygon->radius + radii[other];
+      is_free = squared_length(centers[other] - polygon->center) >= reach * reach;
+    }
+    if (is_free) return true;
+  }
+  return false;
+}
+
+/// Puts the obstacles of a world behind its other walls. Their sides run clockwise, so their inside is to the right.
+HEDON_FN void place_obstacles(World& world) {
+  const int32_t corners = world.config->obstacle.corners;
+  Vec2 centers[MAX_OBSTACLES];
+  float radii[MAX_OBSTACLES];
+  for (int32_t i = 0; i < world.shape->obstacles; ++i) {
+    Polygon polygon;
+    if (!find_obstacle_place(world, i, centers, radii, &polygon)) return world.fail(Status::initial_placement, -1, i);
+    centers[i] = polygon.center;
+    radii[i] = polygon.radius;
+    for (int32_t c = 0; c < corners; ++c) {
+      const Vec2 corner = corner_of(polygon, c, corners);
+      float* const kept = &world.state.obstacle[(int64_t{i} * corners + c) * 2];
+      kept[0] = corner.x;
+      kept[1] = corner.y;
+      world.state.physics.walls[world.shape->first_obstacle + i * corners + c] = {
+          corner, corner_of(polygon, (c + 1) % corners, corners)};
+    }
+  }
+}
+
+/// How many obstacles do harm now: the first ones.
+HEDON_FN int32_t harmful_obstacles(const World& world) {
+  const ObstacleConfig& config = world.config->obstacle;
+  return static_cast<int32_t>(factor_at(config.schedule, world.head().step) * config.count + 0.5);
+}
+
+/// Counts for each agent the harmful obstacles that it touched in this step, whichever of their sides.
+HEDON_FN void feel_obstacles(World& world) {
+  const PairList& pairs = world.state.physics.neighbors.walls;
+  const NeighborList& list = world.state.physics.neighbors;
+  for (int32_t i = 0; i < world.head().living_count; ++i) world.scratch.touched[world.state.living[i]] = 0;
+  const int32_t harmful = harmful_obstacles(world);
+  // The walls of a body are listed in order, so the sides of an obstacle follow one another.
+  int32_t body = -1, last = -1;
+  for (int32_t pair = 0; pair < pairs.start[list.head[0].bodies]; ++pair) {
+    if (pairs.mark[pair] == 0) continue;
+    const int32_t obstacle = (pairs.second[pair] - world.shape->first_obstacle) / world.config->obstacle.corners;
+    if (obstacle >= harmful || (pairs.first[pair] == body && obstacle == last)) continue;
+    body = pairs.first[pair];
+    last = obstacle;
+    world.scratch.touched[list.slot[body]] += 1;
+  }
+}
+
+}  // namespace hedon
