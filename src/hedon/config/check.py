@@ -82,8 +82,9 @@ def _obstacles(config: Config) -> Iterator[Problem]:
         yield Problem("obstacle.min_side", rule, format_value(obstacle.min_side))
     # Circles around obstacles do not overlap when they are placed; random placement stops long before they fill it.
     around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
-    most = math.floor(MAX_COVERAGE * config.arena.width * config.arena.height / (math.pi * around**2))
-    if obstacle.count > most:
+    area, room = math.pi * around**2, MAX_COVERAGE * config.arena.width * config.arena.height
+    if obstacle.count * area > room:
+        most = math.floor(room / area)
         rule = f"too many to place: the arena has room for {most} with sides of {obstacle.max_side:g}"
         yield Problem("obstacle.count", rule, format_value(obstacle.count))
 
