@@ -68,11 +68,14 @@ enum class RewardInput : int32_t {
   action,    ///< norm of the two forces, divided as `ActionNorm` says
   see_mean,  ///< mean over the rays of the reading of sight channel `index`
   see_max,   ///< the largest of them
+  smell,     ///< mean over the noses of what they smell of channel `index`
   relief,    ///< by how much energy came closer to the set point that `gene` is, in shares of the capacity
 };
-inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "relief"};
+inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "smell", "relief"};
 
 constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
+/// Whether an input needs what the agent observes.
+constexpr bool is_sensed(RewardInput input) { return is_sight(input) || input == RewardInput::smell; }
 
 /// How a weight follows from its genes. x is the distance of energy or age from `threshold`, in units of
 /// `threshold_width`.
@@ -89,7 +92,7 @@ inline constexpr const char* REWARD_FAMILY_NAMES[] = {"linear", "sinh", "scaled"
 /// One term of the reward: coef · weight · input.
 struct RewardTerm {
   RewardInput input;
-  int32_t index;        ///< of the food kind or sight channel
+  int32_t index;        ///< of the food kind, or of the channel of sight or smell
   int32_t gene;         ///< index of the gene that weighs it
   int32_t second_gene;  ///< of the other gene, for the families that have two; otherwise as `gene`
   float coef;

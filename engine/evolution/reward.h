@@ -17,6 +17,8 @@ struct RewardInputs {
   const float* ray;         ///< what it acted on: reading + 1 of each ray, 0 where it met nothing (rays)
   const uint8_t* ray_type;  ///< the channel that each ray met (rays)
   int32_t rays;
+  const float* smelled;  ///< by channel, then by nose
+  int32_t noses;
   double energy_before;  ///< before this step's meals and costs
   double energy;         ///< after them
   double capacity;       ///< of energy
@@ -73,6 +75,11 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
     case RewardInput::see_mean:
     case RewardInput::see_max:
       return sight_of(inputs, term.index, term.input == RewardInput::see_mean);
+    case RewardInput::smell: {
+      float sum = 0.0f;
+      for (int32_t n = 0; n < inputs.noses; ++n) sum += inputs.smelled[term.index * inputs.noses + n];
+      return sum / static_cast<float>(inputs.noses);
+    }
     case RewardInput::relief:
       return relief(genome[term.gene], inputs);
     case RewardInput::action:

@@ -47,6 +47,14 @@ HEDON_INLINE ObservationExtra& extra_of(PackedObservation& packed) {
   return *reinterpret_cast<ObservationExtra*>(&packed + 1);
 }
 
+/// Sets dense entry `d`; entries from MAX_DENSE on are there only in a wide layout.
+HEDON_INLINE void set_dense(PackedObservation& packed, int32_t d, float value) {
+  if (d < MAX_DENSE)
+    packed.dense[d] = value;
+  else
+    extra_of(packed).dense[d - MAX_DENSE] = value;
+}
+
 /// Sizes of the observation. Its entries, and the rows of the first layer: rays (type, ray), touch (type, sector),
 /// dense.
 struct ObservationShape {

@@ -47,6 +47,8 @@ constexpr Limit INTEGERS[] = {
     {"species.diet.digestion_steps", 0, 1'000'000},
     {"species.sensor.sees", 0, MAX_TYPES - 1},
     {"species.sensor.collides", 0, MAX_TYPES - 1},
+    {"species.sensor.smells", 0, MAX_TYPES - 1},
+    {"species.sensor.noses", 1, 2},
     {"species.reward.rule", 0, 1},
     {"species.reward.memory", 0, 16},
     {"species.reward.terms.index", 0, MAX_TYPES - 1},
@@ -72,6 +74,7 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "obstacle.min_side",
                                     "species.sensor.ray_length",
                                     "species.sensor.mouth_spread",
+                                    "species.sensor.smell_decay",
                                     "species.energy.capacity",
                                     "species.genome.genes.limit",
                                     "species.genome.genes.mutation_df",
@@ -189,6 +192,8 @@ void check_reward(Complaint& complaint, const std::string& path, const WorldConf
     const bool food = term.input == RewardInput::food;
     const bool sight = is_sight(term.input);
     if (food) complaint.need(term.index < meals_of(config), path + ".index", term.index, "the index of a meal");
+    if (term.input == RewardInput::smell)
+      complaint.need(term.index < species.sensor.smells.count, path + ".index", term.index, "a channel of smell");
     if (sight) complaint.need(term.index < species.sensor.sees.count, path + ".index", term.index, "a sight channel");
   }
 }
@@ -207,6 +212,10 @@ void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
   const int32_t types = config.species.count + config.food.count + (config.obstacle.count > 0 ? 2 : 1);
   check_types(complaint, path + "sensor.sees", own.sensor.sees, types);
   check_types(complaint, path + "sensor.collides", own.sensor.collides, types);
+  check_types(complaint, path + "sensor.smells", own.sensor.smells, config.species.count + config.food.count);
+  const int32_t scents = own.sensor.smells.count * own.sensor.noses;
+  complaint.need(scents <= MAX_SMELLS, path + "sensor.smells", own.sensor.smells.count,
+                 "at most " + std::to_string(MAX_SMELLS / own.sensor.noses));
   check_reward(complaint, path + "reward.terms", config, own);
   check_schedule(complaint, path + "hazard.schedule", own.hazard.schedule, MAX_FACTOR);
   check_genome(complaint, path + "genome.learning", own.genome);

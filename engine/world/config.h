@@ -18,6 +18,7 @@ inline constexpr int MAX_FOOD_KINDS = MAX_CIRCLE_CLASSES;
 inline constexpr int MAX_FOOD_CENTERS = 16;
 inline constexpr int MAX_OBSTACLES = 256;
 inline constexpr int MAX_RAYS = 32;
+inline constexpr int MAX_SMELLS = 12;                               ///< channels times noses
 inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each species, each food kind, wall, obstacle
 
 struct ArenaConfig {
@@ -71,9 +72,13 @@ struct SensorConfig {
   RayInside ray_inside;
   FixedList<int32_t, MAX_TYPES> sees;      ///< types that rays meet, by channel, ascending
   FixedList<int32_t, MAX_TYPES> collides;  ///< types that it collides with and feels by touch, by channel, ascending
+  FixedList<int32_t, MAX_TYPES> smells;    ///< types that it smells, by channel, ascending
+  float smell_decay;                       ///< by how much a smell falls with distance [1/u]
+  int32_t noses;
+  float nose_angle;  ///< between the heading and each of two noses [degree]
 
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, touch_sectors, mouth_spread, scaling, ray_inside, sees,
-               collides)
+               collides, smells, smell_decay, noses, nose_angle)
 };
 
 struct PopulationConfig {

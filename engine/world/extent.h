@@ -40,6 +40,7 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   actions,
+  scents,        ///< what an agent smells: channels times noses
   memory,        ///< numbers that a rule keeps for each agent
   record,        ///< numbers that a rule gets for one agent
   steps,         ///< of a rollout
@@ -132,6 +133,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.pairs;
     case Extent::hidden:
       return HIDDEN;
+    case Extent::scents:
+      return shape.scents;
     case Extent::memory:
       return shape.memory;
     case Extent::record:

@@ -27,6 +27,8 @@ HEDON_FN RewardInputs reward_inputs(const World& world, int32_t slot, int64_t t)
           .ray = seen.ray,
           .ray_type = seen.ray_type,
           .rays = species.config->sensor.ray_count,
+          .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
+          .noses = species.config->sensor.noses,
           .energy_before = world.scratch.energy_before[slot],
           .energy = life.energy,
           .capacity = species.config->energy.capacity,

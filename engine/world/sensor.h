@@ -8,6 +8,7 @@
 #include "base/device.h"
 #include "world/food.h"
 #include "world/ray.h"
+#include "world/smell.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -40,6 +41,11 @@ HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservat
     const float dense[MAX_DENSE] = {vx / 1.5f, vy / 1.5f, sine, cosine, omega / 0.2f, energy / 100.0f};
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   }
+  const SensorConfig& sensor = world.species(slot).config->sensor;
+  if (sensor.smells.count == 0) return;
+  smell(world, slot, {-sine, cosine});
+  for (int32_t i = 0; i < sensor.smells.count * sensor.noses; ++i)
+    set_dense(out, own_entries(sensor) + i, world.scratch.smelled[int64_t{slot} * world.shape->scents + i]);
 }
 
 /// Sine and cosine of an angle from those of a near angle, by rotation with a short series; of a far one, directly.

@@ -56,6 +56,7 @@ struct WorldShape {
   bool ruled;        ///< some species is paid by a rule of the caller
   int32_t memory;    ///< most numbers that a rule keeps for each agent
   int32_t record;    ///< of the longest record that a rule gets
+  int32_t scents;    ///< of the longest row of smells: channels times noses
   bool packed;       ///< some species acts with weights in pairs
   bool hunting;      ///< some species eats another
   int32_t lines;     ///< cache lines of an observation
@@ -114,6 +115,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     const SpeciesConfig& own = config.species[s];
     const Species& species = shape.of[s] = make_species(own, shape.capacity, shape.types());
     shape.capacity = species.last_slot;
+    grow(shape.scents, own.sensor.smells.count * own.sensor.noses);
     grow(shape.genes, own.genome.genes.count);
     grow(shape.params, species.network.size());
     grow(shape.pairs, species.network.pairs());

@@ -32,12 +32,13 @@ struct Species {
   int32_t last_slot;
   NetworkShape network;
   BodyShape body;
-  Channels sight, touch;
+  Channels sight, touch, scent;
   bool learns;                           ///< it has networks, which learn
   bool observes;                         ///< its network, or its reward, reads what its rays meet
   int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
+  float nose_sine, nose_cosine;          ///< of the angle of a nose to the heading
   float mouth_cosine;                    ///< cosine of the mouth's half angle
   alignas(64) float ray_sine[MAX_RAYS];  ///< of each ray's angle to the heading; past the last ray the last repeats
   alignas(64) float ray_cosine[MAX_RAYS];
@@ -73,6 +74,9 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
+/// Entries of an observation for the agent's own motion, heading and energy.
+HEDON_FN int32_t own_entries(const SensorConfig& sensor) { return sensor.scaling == ObservationScaling::raw ? 5 : 6; }
+
 /// types   of a world that senses may tell apart
 HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, int32_t types) {
   Species species{};
@@ -82,18 +86,22 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.body = make_disc(config.body.radius, config.body.density);
   species.sight = make_channels(config.sensor.sees, types);
   species.touch = make_channels(config.sensor.collides, types);
+  species.scent = make_channels(config.sensor.smells, types);
   species.learns = config.learning.policy == Policy::ppo;
   species.observes = species.learns;
   species.observes |= config.reward.rule != 0;
   species.record = config.reward.terms.count + config.genome.genes.count + 8 + config.reward.memory;
-  for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sight(config.reward.terms[i].input);
-  const int32_t dense = config.sensor.scaling == ObservationScaling::raw ? 5 : 6;
+  for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);
+  const int32_t dense = own_entries(config.sensor) + config.sensor.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,
                       config.sensor.collides.count * config.sensor.touch_sectors, dense, NARROW_LINES}};
   double sine, cosine;
   sincos_double(config.motor.angle * (PI / 180.0), &sine, &cosine);
   species.motor_arm = static_cast<float>(config.body.radius * sine);
   species.max_force = config.motor.max_force * sqrtf(2.0f);
+  sincos_double(config.sensor.nose_angle * (PI / 180.0), &sine, &cosine);
+  species.nose_sine = static_cast<float>(sine);
+  species.nose_cosine = static_cast<float>(cosine);
   sincos_double(config.sensor.mouth_spread * (PI / 180.0), &sine, &cosine);
   // A mouth on all sides: rounding must not leave a gap directly behind.
   species.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;

@@ -47,6 +47,7 @@ struct StepScratch {
   Array<double> energy_before, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
   Array<Finding> finding;                ///< of the audit at the end of a window
+  Array<float> smelled;                  ///< at the start of the step, by channel, then by nose
   Array<int32_t> touched;                ///< harmful obstacles that an agent touched
   Array<double> energy_damage;
   Array<int32_t> eater;                    ///< slot of the agent that gets the food, -1 for none
@@ -69,9 +70,9 @@ struct StepScratch {
                (energy_eaten, slots, one, scratch), (energy_basic, slots, one, scratch),
                (energy_action, slots, one, scratch), (energy_forgiven, slots, one, scratch),
                (energy_capped, slots, one, scratch), (starved, slots, one, scratch), (breeds, slots, one, scratch),
-               (dies, slots, one, scratch), (finding, slots, one, scratch), (touched, obstacle_slots, one, scratch),
-               (energy_damage, obstacle_slots, one, scratch), (eater, foods, one, scratch),
-               (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
+               (dies, slots, one, scratch), (finding, slots, one, scratch), (smelled, slots, scents, scratch),
+               (touched, obstacle_slots, one, scratch), (energy_damage, obstacle_slots, one, scratch),
+               (eater, foods, one, scratch), (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
                (record, ruled_slots, record, scratch), (paid, ruled_slots, one, scratch),

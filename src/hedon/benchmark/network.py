@@ -10,7 +10,7 @@ from hedon.benchmark.measure import Row, Table, interleave, median, spread
 from hedon.benchmark.plan import Plan
 from hedon.benchmark.scene import peopled
 from hedon.config.config import Config
-from hedon.config.layout import layouts
+from hedon.config.layout import layouts, observation_columns
 from hedon.config.native import engine_config
 
 FORWARD_ROWS = 10_240
@@ -19,9 +19,10 @@ FORWARD_ROWS = 10_240
 
 def shape(config: Config) -> tuple[int, int, int, int]:
     """Rays, types, touch bits and dense entries of an observation."""
-    layout = next(iter(layouts(config).values()))
-    dense = 5 if config.sensor.scaling == "raw" else 6
-    return config.sensor.ray_count, len(layout.sees), len(layout.touches) * config.sensor.touch_sectors, dense
+    name, layout = next(iter(layouts(config).items()))
+    rays, types = config.sensor.ray_count, len(layout.sees)
+    touches = len(layout.touches) * config.sensor.touch_sectors
+    return rays, types, touches, len(observation_columns(config, name)) - rays * types - touches
 
 
 def measure_forward(plan: Plan, _: Calibration) -> list[Row]:

@@ -86,6 +86,27 @@ class SensorConfig:
             Range(max_items=12),
         ),
     ] = ("*",)
+    smells: Annotated[
+        tuple[str, ...],
+        Doc('species and kinds of food that it smells; "*" for all', "", OURS, Range(max_items=12)),
+    ] = ()
+    smell_decay: Annotated[
+        float,
+        Doc(
+            "how fast smell falls with distance: a source at distance d adds exp(-smell_decay·d)",
+            "1/u",
+            OURS,
+            Range(ge=1e-3, le=10),
+        ),
+    ] = 0.1
+    noses: Annotated[
+        int,
+        Doc("noses on the rim: one ahead, or two, one to each side of the heading", "", OURS, Range(ge=1, le=2)),
+    ] = 1
+    nose_angle: Annotated[
+        float,
+        Doc("angle between the heading and each of two noses", "degree", OURS, Range(ge=0, le=180)),
+    ] = 45.0
     touch_sectors: Annotated[
         int,
         Doc(

@@ -6,13 +6,15 @@ from collections.abc import Iterator, Sequence
 
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, SOLID, chosen, layouts, rule_columns
+from hedon.config.layout import LEARNING_GENES, SOLID, chosen, layouts, rule_columns, smelled
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
 
 MAX_TOUCH_BITS = 128
 """Most types times touch sectors that the engine has room for."""
+MAX_SMELLS = 12
+"""Most smells times noses that the engine has room for, beside inner states."""
 MAX_GENES = 64
 """Most genes that the engine has room for."""
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
@@ -91,6 +93,7 @@ def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
 def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
     everything = [*config.agents, *config.food]
     yield from _known(f"{path}sensor.sees", species.sensor.sees, everything)
+    yield from _known(f"{path}sensor.smells", species.sensor.smells, everything)
     yield from _known(f"{path}body.collides", species.body.collides, everything)
     yield from _known(f"{path}diet.eats", [name for name, _ in species.diet.eats], [*config.food, *config.species])
     for name, share in species.diet.eats:
@@ -122,6 +125,14 @@ def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
         if name not in seen:
             rule = "it does not see this: it sees " + ", ".join(seen)
             yield Problem(f"{path}reward.see.{name}", rule, nearest=nearest(name, seen))
+    smells = smelled(config, species.sensor.smells)
+    for name in species.reward.smell:
+        if name not in smells:
+            rule = "it does not smell this: add it to sensor.smells" + (f" = {', '.join(smells)}" if smells else "")
+            yield Problem(f"{path}reward.smell.{name}", rule, nearest=nearest(name, smells))
+    if len(smells) * species.sensor.noses > MAX_SMELLS:
+        rule = f"must name at most {MAX_SMELLS // species.sensor.noses} with sensor.noses = {species.sensor.noses}"
+        yield Problem(f"{path}sensor.smells", rule, format_value(species.sensor.smells))
     for name, see in species.reward.see.items():
         if see.reads and see.reads not in seen:
             rule = "must be empty or one of " + ", ".join(seen)
@@ -146,6 +157,8 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
         if value in genome.learning and getattr(learning, value) == 0:
             yield Problem(f"{path}learning.{value}", "a gene multiplies it, so it must not be 0", "0.0")
     seen = chosen(config, species.sensor.sees)
+    if not set(species.reward.smell) <= set(smelled(config, species.sensor.smells)):
+        return
     if any(name not in seen or (see.reads and see.reads not in seen) for name, see in species.reward.see.items()):
         return  # that is said already
     names = layouts(config)[name].gene_names

@@ -143,8 +143,19 @@ class SeeConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class SmellConfig:
+    """A reward for smelling a species or a kind of food, by its name: coef·weight·mean over the noses."""
+
+    coef: Annotated[
+        float,
+        Doc("factor of the term", "", OURS, Range(ge=-1e3, le=1e3)),
+    ] = 0.1
+    gene: GeneConfig = field(default_factory=GeneConfig)
+
+
+@dataclass(frozen=True, slots=True)
 class RewardConfig:
-    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·seen + relief.
+    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·(seen, smelled) + relief.
 
     How a weight follows from its genes is the family. With x = (energy or age - threshold) / threshold_width and
     σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `fed` w·σ(x) and `hungry`
@@ -200,3 +211,4 @@ class RewardConfig:
         Doc("numbers that the rule keeps for each agent from step to step", "", OURS, Range(ge=0, le=16)),
     ] = 0
     see: dict[str, SeeConfig] = field(default_factory=dict)
+    smell: dict[str, SmellConfig] = field(default_factory=dict)

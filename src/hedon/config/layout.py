@@ -82,6 +82,7 @@ class SpeciesLayout:
         genes: The genome, in order.
         terms: The reward, in order.
         sees: What its rays tell apart, in the order of their channels.
+        smells: What it smells, in the order of the channels of smell.
         touches: What it collides with and feels, in the order of the channels of touch.
     """
 
@@ -89,6 +90,7 @@ class SpeciesLayout:
     terms: tuple[RewardTerm, ...]
     sees: tuple[str, ...]
     touches: tuple[str, ...]
+    smells: tuple[str, ...]
 
     @property
     def gene_names(self) -> tuple[str, ...]:
@@ -123,6 +125,7 @@ def observation_columns(config: Config, name: str) -> tuple[str, ...]:
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
         *(f"touch_{kind}_{i}" for kind in layout.touches for i in range(species.sensor.touch_sectors)),
         *("velocity_x", "velocity_y", *heading, "angular_velocity", "energy"),
+        *(f"smell_{kind}_{i}" for kind in layout.smells for i in range(species.sensor.noses)),
     )
 
 
@@ -186,6 +189,11 @@ def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
+def smelled(config: Config, names: Sequence[str]) -> tuple[str, ...]:
+    """The sources of smell that a list of names stands for, in order: species and kinds of food."""
+    return tuple(name for name in (*config.agents, *config.food) if name in names or EVERYTHING in names)
+
+
 class _Layout:
     """Collects the genes and reward terms of one species, in order."""
 
@@ -244,6 +252,9 @@ def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     for name, see in reward.see.items():
         read = sees.index(see.reads or name)
         made.add_term(f"see_{see.over_rays}", read, f"see_{name}", f"seeing {name}", see.gene, see.coef)
+    smells = smelled(config, species.sensor.smells)
+    for name, smell in reward.smell.items():
+        made.add_term("smell", smells.index(name), f"smell_{name}", f"smelling {name}", smell.gene, smell.coef)
     if reward.relief_coef:
         made.add_gene(SET_POINT, "reward", "energy that it seeks, as a share of the capacity", genome.set_point)
         made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))
@@ -252,4 +263,4 @@ def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     for i in range(genome.neutral_count):
         made.add_gene(f"neutral_{i + 1}", "neutral", "neutral marker: inherited and mutated, no effect", genome.neutral)
     touches = chosen(config, species.body.collides)
-    return SpeciesLayout(genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches)
+    return SpeciesLayout(genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches, smells=smells)

@@ -71,6 +71,7 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
     number = {name: i for i, name in enumerate(types(config))}
     sensor = _without(asdict(species.sensor), "eaten_food", "mouths")
     sensor["sees"] = [number[name] for name in layout.sees]
+    sensor["smells"] = [number[name] for name in layout.smells]
     sensor["collides"] = [number[name] for name in layout.touches]
     eaten = diet(config, species)
     birth = _without(asdict(species.birth), "distance_unit", "order", "inheritance", "parents", "heading")

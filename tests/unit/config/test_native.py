@@ -17,6 +17,8 @@ CONFIG = load_config(
     "poison",
     overrides=[
         "reward.see.poison.coef=0.1",
+        "sensor.smells=['poison']",
+        "reward.smell.poison.coef=0.1",
         "reward.family=by_age",
         "reward.relief_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
@@ -27,6 +29,7 @@ LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
 OTHER: dict[str, Any] = {
     "body.collides": ("normal",),
     "sensor.sees": ("normal", "poison"),
+    "sensor.smells": ("normal", "poison"),
     "reward.see.poison.reads": "normal",
     "diet.eats": (("normal", 0.5),),
     "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),

@@ -42,7 +42,10 @@ def lines(tables: dict[str, Any]) -> list[str]:
         ({"food": {"normal": True}}, "food.normal = true: must be a table"),
         ({"food": 3}, "food = 3: must be a table"),
         ({"energy": {"inital": 3}}, "energy.inital: unknown name; did you mean initial?"),
-        ({"energy": {"friction": 3}}, "energy.friction: unknown name; did you mean physics.friction or obstacle.friction?"),
+        (
+            {"energy": {"friction": 3}},
+            "energy.friction: unknown name; did you mean physics.friction or obstacle.friction?",
+        ),
         ({"kappa": 3}, "kappa: unknown name; did you mean hazard.kappa or birth.kappa?"),
         ({"zzz": 3}, "zzz: unknown name"),
         ({"genom": {}}, "genom: unknown name; did you mean genome?"),

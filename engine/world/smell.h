@@ -1,0 +1,67 @@
+/// Smell: what of each type lies near an agent's noses. Sources are points that smell by e^(-decay · distance).
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+#include "base/math.h"
+#include "world/scene.h"
+#include "world/world.h"
+
+namespace hedon {
+
+/// Distance from which on all sources of a world together add less than SMELL_ERROR [u].
+inline constexpr double SMELL_ERROR = 1e-4;
+HEDON_FN float smell_reach(const World& world, float decay) {
+  return static_cast<float>(log_double(world.shape->circles / SMELL_ERROR) / decay);
+}
+
+/// Place of nose `n`: of two, the first is to the right. One nose lies ahead.
+HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forward) {
+  const SensorConfig& sensor = species.config->sensor;
+  if (sensor.noses == 1) return center + species.body.radius * forward;
+  const float sine = n == 0 ? -species.nose_sine : species.nose_sine;
+  return center + species.body.radius * (species.nose_cosine * forward + sine * Vec2{-forward.y, forward.x});
+}
+
+/// What one nose smells of each channel: min(1, Σ e^(-decay · d)) over the circles of the scene but its owner's, in the
+/// order of the scene. Needs the scene.
+HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, int32_t own, float* smelled) {
+  const RayScene& scene = world.scene;
+  const RayGrid& grid = world.shape->scene;
+  const float decay = species.config->sensor.smell_decay;
+  const float reach = smell_reach(world, decay);
+  const int32_t channels = species.config->sensor.smells.count;
+  double sum[MAX_TYPES] = {};
+  const int32_t first_column = cell_along(nose.x - reach, grid.inverse_cell, grid.columns);
+  const int32_t last_column = cell_along(nose.x + reach, grid.inverse_cell, grid.columns);
+  const int32_t first_row = cell_along(nose.y - reach, grid.inverse_cell, grid.rows);
+  const int32_t last_row = cell_along(nose.y + reach, grid.inverse_cell, grid.rows);
+  for (int32_t row = first_row; row <= last_row; ++row) {
+    const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
+    for (int32_t i = start[first_column]; i < start[last_column + 1]; ++i) {
+      const int32_t channel = species.scent.of_type[static_cast<int32_t>(scene.type[i])];
+      const Vec2 apart{scene.x[i] - nose.x, scene.y[i] - nose.y};
+      const float squared = squared_length(apart);
+      if (channel < 0 || i == own || !(squared < reach * reach)) continue;
+      sum[channel] += static_cast<double>(exp_float(-decay * sqrtf(squared)));
+    }
+  }
+  for (int32_t c = 0; c < channels; ++c) smelled[c] = sum[c] < 1.0 ? static_cast<float>(sum[c]) : 1.0f;
+}
+
+/// Smells with all noses of the agent in `slot`, into its row of scratch: by channel, then by nose.
+HEDON_FN void smell(const World& world, int32_t slot, Vec2 forward) {
+  const Species& species = world.species(slot);
+  const SensorConfig& sensor = species.config->sensor;
+  const BodyState& body = world.state.physics.bodies;
+  float* out = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
+  for (int32_t n = 0; n < sensor.noses; ++n) {
+    float smelled[MAX_TYPES];
+    const Vec2 nose = nose_at(species, n, {body.x[slot], body.y[slot]}, forward);
+    smell_at(world, species, nose, world.scene.own[slot], smelled);
+    for (int32_t c = 0; c < sensor.smells.count; ++c) out[c * sensor.noses + n] = smelled[c];
+  }
+}
+
+}  // namespace hedon
