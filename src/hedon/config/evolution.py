@@ -155,7 +155,7 @@ class SmellConfig:
 
 @dataclass(frozen=True, slots=True)
 class RewardConfig:
-    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·(seen, smelled) + relief.
+    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·sensed + relief.
 
     How a weight follows from its genes is the family. With x = (energy or age - threshold) / threshold_width and
     σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `fed` w·σ(x) and `hungry`
