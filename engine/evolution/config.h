@@ -69,7 +69,7 @@ enum class RewardInput : int32_t {
   see_mean,  ///< mean over the rays of the reading of sight channel `index`
   see_max,   ///< the largest of them
   smell,     ///< mean over the noses of what they smell of channel `index`
-  relief,    ///< by how much energy came closer to the set point that `gene` is, in shares of the capacity
+  relief,    ///< by how much inner states came closer to their set points, in shares of their capacities
 };
 inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "smell", "relief"};
 
@@ -88,6 +88,9 @@ enum class RewardFamily : int32_t {
   by_age,  ///< w + (w' - w) σ(x) of age, w' the second gene
 };
 inline constexpr const char* REWARD_FAMILY_NAMES[] = {"linear", "sinh", "scaled", "fed", "hungry", "by_age"};
+
+/// What an agent holds, in the order in which relief counts them.
+enum InnerState : int32_t { ENERGY, NUTRIENT, TOXIN, INNER_STATES };
 
 /// One term of the reward: coef · weight · input.
 struct RewardTerm {
@@ -108,9 +111,10 @@ struct RewardConfig {
   float threshold_width;  ///< in the same unit
   int32_t rule;           ///< 1 if a function of the caller pays, and not the terms
   int32_t memory;         ///< numbers that the rule keeps for each agent
+  FixedList<int32_t, INNER_STATES> set_points;  ///< gene of the set point of each inner state; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
 
-  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, rule, memory, terms)
+  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, rule, memory, set_points, terms)
 };
 
 }  // namespace hedon

@@ -19,10 +19,10 @@ struct RewardInputs {
   int32_t rays;
   const float* smelled;  ///< by channel, then by nose
   int32_t noses;
-  double energy_before;  ///< before this step's meals and costs
-  double energy;         ///< after them
-  double capacity;       ///< of energy
-  double age;            ///< steps lived, this one included
+  double before[INNER_STATES];    ///< inner states before this step's meals and costs
+  double now[INNER_STATES];       ///< after them
+  double capacity[INNER_STATES];  ///< of each; for toxin its threshold
+  double age;                     ///< steps lived, this one included
 };
 
 /// Mean or largest reading, in [0, 1], of the rays that met a type; 0 for the others.
@@ -37,10 +37,23 @@ HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) 
   return mean ? sum / static_cast<float>(inputs.rays) : largest;
 }
 
-/// |H - E| / capacity before the step less the same after it; H is `set_point` times the capacity.
-HEDON_FN float relief(float set_point, const RewardInputs& inputs) {
-  const auto need = [&](double energy) { return fabs(static_cast<double>(set_point) - energy / inputs.capacity); };
-  return static_cast<float>(need(inputs.energy_before) - need(inputs.energy));
+/// Distance of inner states from their set points, in shares of their capacities.
+HEDON_FN double need(const RewardConfig& config, const float* genome, const double* states, const double* capacity) {
+  double squared = 0.0, only = 0.0;
+  int32_t count = 0;
+  for (int32_t s = 0; s < INNER_STATES; ++s) {
+    if (config.set_points[s] < 0) continue;
+    only = static_cast<double>(genome[config.set_points[s]]) - states[s] / capacity[s];
+    squared += only * only;
+    ++count;
+  }
+  return count == 1 ? fabs(only) : sqrt(squared);
+}
+
+/// The need before this step's meals and costs less the need after them.
+HEDON_FN float relief(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
+  return static_cast<float>(need(config, genome, inputs.before, inputs.capacity) -
+                            need(config, genome, inputs.now, inputs.capacity));
 }
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
@@ -58,9 +71,9 @@ HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, con
     case RewardFamily::scaled:
       return static_cast<float>(exp_double(second * LOG_10) * w);
     case RewardFamily::fed:
-      return static_cast<float>(w * logistic((inputs.energy - config.threshold) / config.threshold_width));
+      return static_cast<float>(w * logistic((inputs.now[ENERGY] - config.threshold) / config.threshold_width));
     case RewardFamily::hungry:
-      return static_cast<float>(w * logistic((config.threshold - inputs.energy) / config.threshold_width));
+      return static_cast<float>(w * logistic((config.threshold - inputs.now[ENERGY]) / config.threshold_width));
     case RewardFamily::by_age:
       return static_cast<float>(w + (second - w) * logistic((inputs.age - config.threshold) / config.threshold_width));
   }
@@ -81,7 +94,7 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
       return sum / static_cast<float>(inputs.noses);
     }
     case RewardInput::relief:
-      return relief(genome[term.gene], inputs);
+      return relief(config, genome, inputs);
     case RewardInput::action:
       return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
   }

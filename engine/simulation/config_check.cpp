@@ -49,6 +49,11 @@ constexpr Limit INTEGERS[] = {
     {"species.sensor.collides", 0, MAX_TYPES - 1},
     {"species.sensor.smells", 0, MAX_TYPES - 1},
     {"species.sensor.noses", 1, 2},
+    {"species.nutrient.present", 0, 1},
+    {"species.nutrient.observed", 0, 1},
+    {"species.toxin.present", 0, 1},
+    {"species.toxin.observed", 0, 1},
+    {"species.reward.set_points", -1, MAX_GENES - 1},
     {"species.reward.rule", 0, 1},
     {"species.reward.memory", 0, 16},
     {"species.reward.terms.index", 0, MAX_TYPES - 1},
@@ -76,6 +81,8 @@ constexpr const char* POSITIVE[] = {"arena.width",
                                     "species.sensor.mouth_spread",
                                     "species.sensor.smell_decay",
                                     "species.energy.capacity",
+                                    "species.nutrient.capacity",
+                                    "species.toxin.threshold",
                                     "species.genome.genes.limit",
                                     "species.genome.genes.mutation_df",
                                     "species.reward.threshold_width",
@@ -184,6 +191,11 @@ int32_t meals_of(const WorldConfig& config) {
 
 void check_reward(Complaint& complaint, const std::string& path, const WorldConfig& config,
                   const SpeciesConfig& species) {
+  complaint.need(species.reward.set_points.count == INNER_STATES, "reward.set_points", species.reward.set_points.count,
+                 "one for each inner state");
+  for (int32_t s = 0; s < species.reward.set_points.count; ++s)
+    complaint.need(species.reward.set_points[s] < species.genome.genes.count, "reward.set_points",
+                   species.reward.set_points[s], "-1 or the index of a gene");
   for (int32_t i = 0; i < species.reward.terms.count; ++i) {
     const RewardTerm& term = species.reward.terms[i];
     complaint.need(term.gene < species.genome.genes.count, path + ".gene", term.gene, "the index of a gene");

@@ -5,6 +5,7 @@
 
 #include "base/device.h"
 #include "base/random.h"
+#include "world/inner.h"
 #include "world/sensor.h"
 #include "world/world.h"
 
@@ -67,8 +68,13 @@ HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
   const bool rests = species.config->learning.policy == Policy::still;
   const float range = motor.max_force - motor.min_force;
-  const float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
-  const float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
+  float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
+  float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
+  if (species.config->toxin.present != 0) {
+    const float left_over = static_cast<float>(strength(species.config->toxin, world.inner(slot)[1]));
+    left *= left_over;
+    right *= left_over;
+  }
   const float sine = scratch.heading_sine[slot], cosine = scratch.heading_cosine[slot];
   scratch.force_left[slot] = left;
   scratch.force_right[slot] = right;

@@ -132,6 +132,8 @@ struct ScheduleConfig {
 
 struct FoodConfig {
   float energy;
+  float nutrient;
+  float toxin;
   float growth_rate;
   int32_t capacity;
   int32_t initial_count;
@@ -140,8 +142,8 @@ struct FoodConfig {
   ScheduleConfig growth_schedule;
   ScheduleConfig capacity_schedule;
 
-  HEDON_FIELDS(FoodConfig, energy, growth_rate, capacity, initial_count, candidates, placement, growth_schedule,
-               capacity_schedule)
+  HEDON_FIELDS(FoodConfig, energy, nutrient, toxin, growth_rate, capacity, initial_count, candidates, placement,
+               growth_schedule, capacity_schedule)
 };
 
 /// Regular polygons that never move, at places that are drawn for each world.
@@ -170,6 +172,29 @@ struct EnergyConfig {
   Starvation starvation;
 
   HEDON_FIELDS(EnergyConfig, initial, capacity, basic_cost, action_cost, birth_share, starvation)
+};
+
+/// A second store beside energy, filled by some kinds of food; one that is empty raises the hazard.
+struct NutrientConfig {
+  int32_t present;  ///< 1 if the species has it
+  int32_t observed;
+  float initial;
+  float capacity;
+  float basic_cost;
+  float action_cost;
+  float hazard_share;  ///< of the hazard's part by energy, with this store in place of energy
+
+  HEDON_FIELDS(NutrientConfig, present, observed, initial, capacity, basic_cost, action_cost, hazard_share)
+};
+
+/// What some kinds of food leave in an agent, and weakens its motors until it is gone.
+struct ToxinConfig {
+  int32_t present;  ///< 1 if the species has it
+  int32_t observed;
+  float decay;
+  float threshold;
+
+  HEDON_FIELDS(ToxinConfig, present, observed, decay, threshold)
 };
 
 struct HazardConfig {
@@ -226,13 +251,16 @@ struct SpeciesConfig {
   PopulationConfig population;
   DietConfig diet;
   EnergyConfig energy;
+  NutrientConfig nutrient;
+  ToxinConfig toxin;
   HazardConfig hazard;
   BirthConfig birth;
   GenomeConfig genome;
   RewardConfig reward;
   LearningConfig learning;
 
-  HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, hazard, birth, genome, reward, learning)
+  HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, nutrient, toxin, hazard, birth, genome,
+               reward, learning)
 };
 
 /// Rules that all species of a world share.

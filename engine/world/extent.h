@@ -40,6 +40,8 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   actions,
+  inner_slots,   ///< slots, if some species has a nutrient or a toxin
+  inner_states,  ///< nutrient and toxin
   scents,        ///< what an agent smells: channels times noses
   memory,        ///< numbers that a rule keeps for each agent
   record,        ///< numbers that a rule gets for one agent
@@ -66,7 +68,7 @@ HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
          rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
          rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::obstacle_slots ||
-         rows == Extent::hunted_slots;
+         rows == Extent::inner_slots || rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
@@ -133,6 +135,10 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.pairs;
     case Extent::hidden:
       return HIDDEN;
+    case Extent::inner_slots:
+      return shape.inner ? shape.capacity : 0;
+    case Extent::inner_states:
+      return 2;
     case Extent::scents:
       return shape.scents;
     case Extent::memory:

@@ -7,6 +7,7 @@
 #include "base/math.h"
 #include "base/random.h"
 #include "evolution/reward.h"
+#include "world/inner.h"
 #include "world/population.h"
 #include "world/rule.h"
 #include "world/schedule.h"
@@ -14,12 +15,16 @@
 
 namespace hedon {
 
+/// The part of the hazard that depends on how full a store is.
+HEDON_FN double hazard_by_store(const HazardConfig& config, double store) {
+  const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * store);
+  // 1 - 1/(1 + x), in a form without cancellation for small x.
+  return config.kappa * (x / (1.0 + x));
+}
+
 /// Probability of dying in a step at age `age` [step] and energy `energy`.
 HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
-  const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * energy);
-  // 1 - 1/(1 + x), in a form without cancellation for small x.
-  const double by_energy = config.kappa * (x / (1.0 + x));
-  return by_energy + config.alpha_age * exp_double(config.beta_age * age);
+  return hazard_by_store(config, energy) + config.alpha_age * exp_double(config.beta_age * age);
 }
 
 /// Probability of having a child in a step at energy `energy`.
@@ -36,7 +41,11 @@ HEDON_FN void decide_death(const World& world, int32_t slot) {
   const Life& life = world.state.life[slot];
   const HazardConfig& config = world.species(slot).config->hazard;
   const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
-  const double chance = factor_at(config.schedule, world.head().step) * hazard(config, age, life.energy);
+  double hazards = hazard(config, age, life.energy);
+  const NutrientConfig& nutrient = world.species(slot).config->nutrient;
+  if (nutrient.present != 0)
+    hazards += static_cast<double>(nutrient.hazard_share) * hazard_by_store(config, world.inner(slot)[0]);
+  const double chance = factor_at(config.schedule, world.head().step) * hazards;
   world.scratch.dies[slot] =
       world.scratch.starved[slot] != 0 || is_eaten(world, slot) || world.scratch.death_draw[slot] < chance;
 }
@@ -73,6 +82,7 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   life.energy_gained += eaten;
   life.energy_spent += basic + action + damage;
 
+  if (world.shape->inner) update_inner(world, slot, applied_force(world, slot));
   const BodyState& body = state.physics.bodies;
   const Vec2 moved{body.x[slot] - scratch.start_x[slot], body.y[slot] - scratch.start_y[slot]};
   life.distance += length(moved);

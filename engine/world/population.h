@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "evolution/genome.h"
 #include "world/food.h"
+#include "world/inner.h"
 #include "world/newborn.h"
 #include "world/placement.h"
 #include "world/world.h"
@@ -68,6 +69,7 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
 /// The first agents: each with a new network and a genome of its own.
 HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy) {
   const int32_t slot = spawn(world, species, position, angle, energy, 0);
+  if (world.shape->inner) set_inner(world, slot, world.shape->of[species].config->nutrient.initial, 0.0);
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   init_genome(world.shape->of[species].config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
@@ -97,6 +99,11 @@ HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
   const uint32_t id = static_cast<uint32_t>(head.next_agent_id);
   const int32_t slot =
       spawn(world, world.shape->species_of(parent), position, child_heading(world, id), share, head.step + 1);
+  if (world.shape->inner) {
+    const double nutrient = static_cast<double>(species.config->energy.birth_share) * world.inner(parent)[0];
+    set_inner(world, slot, nutrient, 0.0);
+    world.inner(parent)[0] -= nutrient;
+  }
   Life& child = state.life[slot];
   child.parent_id = parent_life.agent_id;
   child.generation = parent_life.generation + 1;

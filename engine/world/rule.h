@@ -21,18 +21,22 @@ HEDON_FN RewardInputs reward_inputs(const World& world, int32_t slot, int64_t t)
   const Species& species = world.species(slot);
   const PackedObservation& seen = world.observation(slot, world.kept(slot, t));
   const Life& life = world.state.life[slot];
-  return {.eaten = world.meal(slot),
-          .force = applied_force(world, slot),
-          .max_force = species.max_force,
-          .ray = seen.ray,
-          .ray_type = seen.ray_type,
-          .rays = species.config->sensor.ray_count,
-          .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
-          .noses = species.config->sensor.noses,
-          .energy_before = world.scratch.energy_before[slot],
-          .energy = life.energy,
-          .capacity = species.config->energy.capacity,
-          .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
+  const double* now = world.inner(slot);
+  const double* before = world.inner_before(slot);
+  const bool inner = world.shape->inner;
+  return {
+      .eaten = world.meal(slot),
+      .force = applied_force(world, slot),
+      .max_force = species.max_force,
+      .ray = seen.ray,
+      .ray_type = seen.ray_type,
+      .rays = species.config->sensor.ray_count,
+      .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
+      .noses = species.config->sensor.noses,
+      .before = {world.scratch.energy_before[slot], inner ? before[0] : 0.0, inner ? before[1] : 0.0},
+      .now = {life.energy, inner ? now[0] : 0.0, inner ? now[1] : 0.0},
+      .capacity = {species.config->energy.capacity, species.config->nutrient.capacity, species.config->toxin.threshold},
+      .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
 }
 
 /// Mean reading of all rays, 0 for those that met nothing.
@@ -53,7 +57,7 @@ HEDON_FN void fill_record(const World& world, int32_t slot, int64_t t, double* r
     *record++ = static_cast<double>(reward_input(config.reward, config.reward.terms[i], world.genome(slot), inputs));
   for (int32_t g = 0; g < config.genome.genes.count; ++g) *record++ = static_cast<double>(world.genome(slot)[g]);
   *record++ = inputs.age;
-  *record++ = inputs.energy_before;
+  *record++ = inputs.before[ENERGY];
   *record++ = life.energy;
   *record++ = static_cast<double>(length(moved));
   *record++ = static_cast<double>(nearness(inputs));

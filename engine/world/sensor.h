@@ -23,6 +23,22 @@ HEDON_FN void note_start(World& world, int32_t slot) {
   scratch.start_y[slot] = body.y[slot];
 }
 
+/// Writes the entries after energy: other inner states, then smells.
+HEDON_FN void observe_more(const World& world, int32_t slot, Vec2 forward, PackedObservation& out) {
+  const SpeciesConfig& config = *world.species(slot).config;
+  const SensorConfig& sensor = config.sensor;
+  const int32_t scents = sensor.smells.count * sensor.noses;
+  int32_t at = own_entries(config);
+  const bool raw = sensor.scaling == ObservationScaling::raw;
+  if (config.toxin.observed != 0) set_dense(out, --at, static_cast<float>(world.inner(slot)[1] * (raw ? 1.0 : 0.1)));
+  if (config.nutrient.observed != 0)
+    set_dense(out, --at, static_cast<float>(world.inner(slot)[0] * (raw ? 1.0 : 0.01)));
+  if (scents == 0) return;
+  smell(world, slot, forward);
+  const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
+  for (int32_t i = 0; i < scents; ++i) set_dense(out, own_entries(config) + i, smelled[i]);
+}
+
 /// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the
 /// scene.
 HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservation& out) {
@@ -41,11 +57,7 @@ HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservat
     const float dense[MAX_DENSE] = {vx / 1.5f, vy / 1.5f, sine, cosine, omega / 0.2f, energy / 100.0f};
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   }
-  const SensorConfig& sensor = world.species(slot).config->sensor;
-  if (sensor.smells.count == 0) return;
-  smell(world, slot, {-sine, cosine});
-  for (int32_t i = 0; i < sensor.smells.count * sensor.noses; ++i)
-    set_dense(out, own_entries(sensor) + i, world.scratch.smelled[int64_t{slot} * world.shape->scents + i]);
+  observe_more(world, slot, {-sine, cosine}, out);
 }
 
 /// Sine and cosine of an angle from those of a near angle, by rotation with a short series; of a far one, directly.

@@ -58,6 +58,7 @@ struct WorldShape {
   int32_t record;    ///< of the longest record that a rule gets
   int32_t scents;    ///< of the longest row of smells: channels times noses
   bool packed;       ///< some species acts with weights in pairs
+  bool inner;        ///< some species has a nutrient or a toxin
   bool hunting;      ///< some species eats another
   int32_t lines;     ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
@@ -115,6 +116,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     const SpeciesConfig& own = config.species[s];
     const Species& species = shape.of[s] = make_species(own, shape.capacity, shape.types());
     shape.capacity = species.last_slot;
+    shape.inner |= own.nutrient.present != 0 || own.toxin.present != 0;
     grow(shape.scents, own.sensor.smells.count * own.sensor.noses);
     grow(shape.genes, own.genome.genes.count);
     grow(shape.params, species.network.size());

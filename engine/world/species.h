@@ -74,8 +74,11 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
-/// Entries of an observation for the agent's own motion, heading and energy.
-HEDON_FN int32_t own_entries(const SensorConfig& sensor) { return sensor.scaling == ObservationScaling::raw ? 5 : 6; }
+/// Entries of an observation for the agent's own motion and heading, its energy and its other inner states.
+HEDON_FN int32_t own_entries(const SpeciesConfig& config) {
+  const int32_t inner = (config.nutrient.observed != 0) + (config.toxin.observed != 0);
+  return (config.sensor.scaling == ObservationScaling::raw ? 5 : 6) + inner;
+}
 
 /// types   of a world that senses may tell apart
 HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, int32_t types) {
@@ -92,7 +95,7 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.observes |= config.reward.rule != 0;
   species.record = config.reward.terms.count + config.genome.genes.count + 8 + config.reward.memory;
   for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);
-  const int32_t dense = own_entries(config.sensor) + config.sensor.smells.count * config.sensor.noses;
+  const int32_t dense = own_entries(config) + config.sensor.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,
                       config.sensor.collides.count * config.sensor.touch_sectors, dense, NARROW_LINES}};
   double sine, cosine;

@@ -145,6 +145,7 @@ struct WorldState {
   Array<HuntCounters> hunt_counters;
   Array<int64_t> eaten_by;  // by species: meals of each kind since the world began
 
+  Array<double> inner;    // (slots, 2) nutrient and toxin
   Array<float> obstacle;  // (obstacles, corners · 2) where their corners are: follows from the config and the seed
   Array<ObstacleCounters> obstacle_counters;
 
@@ -186,18 +187,19 @@ struct WorldState {
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
-               (eaten_by, mixed_species, meals, saved), (obstacle, obstacles, obstacle_corners, derived),
-               (obstacle_counters, harmed, one, saved), (command, external_slots, actions, saved),
-               (memory, ruled_slots, memory, saved), (params, learner_slots, params, saved),
-               (folded_bias, learner_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
-               (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),
-               (updates, learner_slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
-               (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),
-               (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
-               (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
-               (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
-               (event_species, events, one, waiting), (event_cause, events, one, waiting),
-               (event_eaten, events, meals, waiting), (event_genome, events, genes, waiting))
+               (eaten_by, mixed_species, meals, saved), (inner, inner_slots, inner_states, saved),
+               (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
+               (command, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
+               (params, learner_slots, params, saved), (folded_bias, learner_slots, hidden, derived),
+               (packed_weights, packed_slots, pairs, derived), (first_moment, learner_slots, params, saved),
+               (second_moment, learner_slots, params, saved), (updates, learner_slots, one, saved),
+               (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved), (newborn, newborns, one, saved),
+               (newborn_species, mixed_newborns, one, saved), (newborn_genome, newborns, genes, saved),
+               (observation, slots, observations, rollout), (action, slots, step_actions, rollout),
+               (log_prob, slots, steps, rollout), (value, slots, steps, rollout), (reward, slots, steps, rollout),
+               (event, events, one, waiting), (event_species, events, one, waiting),
+               (event_cause, events, one, waiting), (event_eaten, events, meals, waiting),
+               (event_genome, events, genes, waiting))
 };
 
 }  // namespace hedon

@@ -47,6 +47,7 @@ struct StepScratch {
   Array<double> energy_before, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
   Array<Finding> finding;                ///< of the audit at the end of a window
+  Array<double> inner_before;            ///< nutrient and toxin before this step
   Array<float> smelled;                  ///< at the start of the step, by channel, then by nose
   Array<int32_t> touched;                ///< harmful obstacles that an agent touched
   Array<double> energy_damage;
@@ -70,7 +71,8 @@ struct StepScratch {
                (energy_eaten, slots, one, scratch), (energy_basic, slots, one, scratch),
                (energy_action, slots, one, scratch), (energy_forgiven, slots, one, scratch),
                (energy_capped, slots, one, scratch), (starved, slots, one, scratch), (breeds, slots, one, scratch),
-               (dies, slots, one, scratch), (finding, slots, one, scratch), (smelled, slots, scents, scratch),
+               (dies, slots, one, scratch), (finding, slots, one, scratch),
+               (inner_before, inner_slots, inner_states, scratch), (smelled, slots, scents, scratch),
                (touched, obstacle_slots, one, scratch), (energy_damage, obstacle_slots, one, scratch),
                (eater, foods, one, scratch), (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
@@ -114,6 +116,9 @@ struct World {
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genes]; }
+  /// Nutrient and toxin of the agent in `slot`, in worlds that have them.
+  HEDON_FN double* inner(int32_t slot) const { return &state.inner[int64_t{slot} * 2]; }
+  HEDON_FN double* inner_before(int32_t slot) const { return &scratch.inner_before[int64_t{slot} * 2]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->meals()]; }
   /// The row of a rollout that holds step `t` of the window: who does not learn keeps only the present step.
   HEDON_FN int64_t kept(int32_t slot, int64_t t) const { return species(slot).learns ? t : 0; }

@@ -6,7 +6,18 @@ from collections.abc import Iterator, Sequence
 
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, SOLID, chosen, layouts, rule_columns, smelled
+from hedon.config.evolution import GenomeConfig
+from hedon.config.layout import (
+    INNER_STATES,
+    LEARNING_GENES,
+    SOLID,
+    chosen,
+    inner_states,
+    layouts,
+    rule_columns,
+    set_point_of,
+    smelled,
+)
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
@@ -162,6 +173,11 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
     if any(name not in seen or (see.reads and see.reads not in seen) for name, see in species.reward.see.items()):
         return  # that is said already
     names = layouts(config)[name].gene_names
+    for state in set(INNER_STATES) - set(inner_states(config, species)):
+        point = set_point_of(state)
+        if getattr(genome, point) != getattr(GenomeConfig(), point):
+            rule = f"nobody here has {state}: give a kind of food that it eats {state} above 0"
+            yield Problem(f"{path}genome.{point}", rule)
     if len(names) > MAX_GENES:
         yield Problem(f"{path}genome", f"there must be at most {MAX_GENES} genes, not {len(names)}")
     for gene in {each for each in names if names.count(each) > 1}:

@@ -9,6 +9,7 @@ from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, Doc
 from hedon.config.food import FoodConfig
+from hedon.config.inner import NutrientConfig, ToxinConfig
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.obstacle import ObstacleConfig
@@ -49,6 +50,8 @@ class Config:
     obstacle: ObstacleConfig = field(default_factory=ObstacleConfig)
     food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
     energy: EnergyConfig = field(default_factory=EnergyConfig)
+    nutrient: NutrientConfig = field(default_factory=NutrientConfig)
+    toxin: ToxinConfig = field(default_factory=ToxinConfig)
     hazard: HazardConfig = field(default_factory=HazardConfig)
     birth: BirthConfig = field(default_factory=BirthConfig)
     genome: GenomeConfig = field(default_factory=GenomeConfig)

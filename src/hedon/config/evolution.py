@@ -52,7 +52,8 @@ class GenomeConfig:
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
     that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
-    reward has one, `[genome.set_point]` the set point of energy, and `[genome.neutral]` each neutral marker.
+    reward has one, `[genome.set_point]` the set point of energy
+    (`set_point_nutrient`, `set_point_toxin` those of other inner states), and `[genome.neutral]` each neutral marker.
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.mutation.GENE]` gives one gene a mutation of its own.
@@ -115,6 +116,8 @@ class GenomeConfig:
     neutral: GeneConfig = field(default_factory=GeneConfig)
     second: GeneConfig = field(default_factory=GeneConfig)
     set_point: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
+    set_point_nutrient: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
+    set_point_toxin: GeneConfig = field(default_factory=GeneConfig)
     learning: dict[str, GeneConfig] = field(default_factory=dict)
     mutation: dict[str, MutationConfig] = field(default_factory=dict)
 
@@ -181,8 +184,8 @@ class RewardConfig:
     relief_coef: Annotated[
         float,
         Doc(
-            "factor of relief: by how much a step's meals and costs bring energy closer to a set point, which is a "
-            "gene, both in shares of the capacity; 0: there is neither term nor gene",
+            "factor of relief: by how much a step's meals and costs bring energy, nutrient and toxin closer to set "
+            "points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
             "",
             OURS,
             Range(ge=-1e3, le=1e3),

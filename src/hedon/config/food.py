@@ -64,6 +64,14 @@ class FoodConfig:
         float,
         Doc("energy gained by eating one piece", "energy", PAPER, Range(ge=-1e4, le=1e4)),
     ] = 1.0
+    nutrient: Annotated[
+        float,
+        Doc("nutrient gained by eating one piece", "nutrient", OURS, Range(ge=0, le=1e4)),
+    ] = 0.0
+    toxin: Annotated[
+        float,
+        Doc("toxin that one piece leaves", "toxin", OURS + "; the paper's code has 10", Range(ge=0, le=1e4)),
+    ] = 0.0
     growth_rate: Annotated[
         float,
         Doc(

@@ -25,6 +25,8 @@ SCALE, OLD = "_scale", "_old"
 SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
 """Families of rewards whose weights have a second gene: the end of its name, and what it is."""
 SET_POINT = "set_point"
+INNER_STATES = ("energy", "nutrient", "toxin")
+"""What an agent may hold, in the engine's order."""
 LEARNING_GENES = {
     "learning_rate": "power of ten by which the learning rate differs",
     "gamma": "power of ten by which the odds of the discount differ",
@@ -82,6 +84,7 @@ class SpeciesLayout:
         genes: The genome, in order.
         terms: The reward, in order.
         sees: What its rays tell apart, in the order of their channels.
+        inner: Which of `INNER_STATES` it has, in order.
         smells: What it smells, in the order of the channels of smell.
         touches: What it collides with and feels, in the order of the channels of touch.
     """
@@ -91,6 +94,7 @@ class SpeciesLayout:
     sees: tuple[str, ...]
     touches: tuple[str, ...]
     smells: tuple[str, ...]
+    inner: tuple[str, ...]
 
     @property
     def gene_names(self) -> tuple[str, ...]:
@@ -124,9 +128,21 @@ def observation_columns(config: Config, name: str) -> tuple[str, ...]:
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
         *(f"touch_{kind}_{i}" for kind in layout.touches for i in range(species.sensor.touch_sectors)),
-        *("velocity_x", "velocity_y", *heading, "angular_velocity", "energy"),
+        *("velocity_x", "velocity_y", *heading, "angular_velocity", *observed_states(config, species)),
         *(f"smell_{kind}_{i}" for kind in layout.smells for i in range(species.sensor.noses)),
     )
+
+
+def inner_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
+    """Which of `INNER_STATES` a species has: energy, and what its food brings."""
+    kinds = [config.food[name] for name in diet(config, species) if name in config.food]
+    return tuple(name for name in INNER_STATES if name == "energy" or any(getattr(kind, name) > 0 for kind in kinds))
+
+
+def observed_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
+    """Which of its inner states a species observes: energy, and the others unless the config says no."""
+    every = inner_states(config, species)
+    return tuple(name for name in every if name == "energy" or getattr(species, name).observed)
 
 
 RULE_INPUTS = ("age", "energy_before", "energy", "moved", "nearness", "force_left", "force_right", "linear")
@@ -194,6 +210,11 @@ def smelled(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in (*config.agents, *config.food) if name in names or EVERYTHING in names)
 
 
+def set_point_of(state: str) -> str:
+    """The gene of the set point of an inner state."""
+    return SET_POINT if state == "energy" else f"{SET_POINT}_{state}"
+
+
 class _Layout:
     """Collects the genes and reward terms of one species, in order."""
 
@@ -234,7 +255,7 @@ def _mutation(genome: GenomeConfig, name: str) -> MutationConfig:
 
 def _most(family: str, role: str, name: str) -> float:
     """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
-    exponent = family == "sinh" and role == "reward" and name != SET_POINT
+    exponent = family == "sinh" and role == "reward" and not name.startswith(SET_POINT)
     exponent |= name.endswith(SCALE) or role == "learning"
     return MAX_EXPONENT if exponent else math.inf
 
@@ -242,6 +263,7 @@ def _most(family: str, role: str, name: str) -> float:
 def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     made, genome, reward = _Layout(species), species.genome, species.reward
     eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
+    inner = inner_states(config, species)
     for index, (kind, food) in enumerate(config.food.items()):
         if kind in eaten:
             made.add_term("food", index, kind, f"a food of kind {kind}", food.gene, reward.meal_coef)
@@ -256,11 +278,16 @@ def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     for name, smell in reward.smell.items():
         made.add_term("smell", smells.index(name), f"smell_{name}", f"smelling {name}", smell.gene, smell.coef)
     if reward.relief_coef:
-        made.add_gene(SET_POINT, "reward", "energy that it seeks, as a share of the capacity", genome.set_point)
+        for state in inner:
+            name = set_point_of(state)
+            meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
+            made.add_gene(name, "reward", meaning, getattr(genome, name))
         made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))
     for name, law in genome.learning.items():
         made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], law)
     for i in range(genome.neutral_count):
         made.add_gene(f"neutral_{i + 1}", "neutral", "neutral marker: inherited and mutated, no effect", genome.neutral)
     touches = chosen(config, species.body.collides)
-    return SpeciesLayout(genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches, smells=smells)
+    return SpeciesLayout(
+        genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches, smells=smells, inner=inner
+    )

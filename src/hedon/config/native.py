@@ -6,7 +6,7 @@ from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.food import FoodConfig
-from hedon.config.layout import SpeciesLayout, diet, layouts, types
+from hedon.config.layout import INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
@@ -90,12 +90,18 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
             "digestion_steps": species.diet.digestion_steps,
         },
         "energy": asdict(species.energy),
+        **{state: _inner(species, layout, state) for state in INNER_STATES if state != "energy"},
         "hazard": asdict(species.hazard) | {"schedule": _schedule(species.hazard.schedule, HAZARD_SCHEDULE)},
         "birth": birth | {"distance_sd": distance_sd(config, species)},
         "genome": _genome(species, layout),
         "reward": _reward(species, layout),
         "learning": asdict(species.learning),
     }
+
+
+def _inner(species: SpeciesConfig, layout: SpeciesLayout, state: str) -> dict[str, Any]:
+    own, present = getattr(species, state), state in layout.inner
+    return asdict(own) | {"present": int(present), "observed": int(present and own.observed)}
 
 
 def _genome(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
@@ -137,6 +143,7 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
         "threshold_width": reward.threshold_width,
         "rule": int(bool(reward.rule)),
         "memory": reward.memory,
+        "set_points": [place.get(set_point_of(state), -1) for state in INNER_STATES],
         "terms": terms,
     }
 

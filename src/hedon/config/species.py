@@ -7,6 +7,7 @@ from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
 from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, Doc, Range
+from hedon.config.inner import NutrientConfig, ToxinConfig
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.population import PopulationConfig
@@ -57,6 +58,8 @@ class SpeciesConfig:
     population: PopulationConfig = field(default_factory=PopulationConfig)
     diet: DietConfig = field(default_factory=DietConfig)
     energy: EnergyConfig = field(default_factory=EnergyConfig)
+    nutrient: NutrientConfig = field(default_factory=NutrientConfig)
+    toxin: ToxinConfig = field(default_factory=ToxinConfig)
     hazard: HazardConfig = field(default_factory=HazardConfig)
     birth: BirthConfig = field(default_factory=BirthConfig)
     genome: GenomeConfig = field(default_factory=GenomeConfig)

@@ -1,13 +1,14 @@
 """What can be said of a setting before it is run: can it live, can it die, and what will limit it?"""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from hedon.config import Config
-from hedon.config.layout import diet
-from hedon.demography.life import expected_lifetime, reproduction_number
+from hedon.config.layout import diet, inner_states
+from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
 from hedon.demography.schedule import mean_factor
 
@@ -155,4 +156,20 @@ def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tu
             f"It can fill up and stand still: food pays for {many} agents, the capacity is {capacity}, and those who "
             f"eat well live {best.lifetime:,.0f} steps. Then hardly anybody is born or dies, and selection fades."
         )
-    return tuple(found)
+    return (*found, *_beyond(config))
+
+
+def _beyond(config: Config) -> Iterator[str]:
+    """What enters births and deaths, but not this forecast."""
+    species = next(iter(config.agents.values()))
+    inner = inner_states(config, species)
+    if config.obstacle.count and config.obstacle.damage:
+        yield (
+            f"Obstacles cost {config.obstacle.damage:g} energy per step of touch: how often they are touched depends "
+            "on what agents learn, and is not forecast."
+        )
+    if "nutrient" in inner:
+        empty = species.nutrient.hazard_share * float(energy_hazard(config.hazard, 0.0))
+        yield f"Without nutrient the chance of death is {empty:.3g} per step higher; lives here are with enough."
+    if "toxin" in inner:
+        yield "Toxin weakens motors, so agents that eat it move and spend less; this is not forecast."

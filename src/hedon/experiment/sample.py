@@ -102,6 +102,8 @@ class PopulationSampler:
         for name, k in _meals(self.columns).items():
             row[f"eaten_{name}"] = now.eaten[k] - since.eaten[k]
         row["energy_total"] = lives["energy"].sum()
+        for name in self.columns.inner:
+            row[f"{name}_mean"] = lives[name].mean() if len(lives[name]) else np.nan
         return row
 
     def _now(self) -> Sampled:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hedon import _engine
 from hedon.config.config import Config
-from hedon.config.layout import layouts
+from hedon.config.layout import INNER_STATES, layouts
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.native import engine_input
@@ -181,6 +181,10 @@ class World:
         rows["age"] = self.step - rows["birth_step"]
         for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
             rows[name] = self.view(f"physics.bodies.{name}")[living]
+        inner = self.view("inner")
+        for i, name in enumerate(INNER_STATES[1:]):
+            if len(inner):
+                rows[name] = inner[living, i]
         return rows
 
     def deaths(self) -> dict[str, NDArray[Any]]:

@@ -8,7 +8,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts
+from hedon.config.layout import INNER_STATES, LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -29,6 +29,7 @@ class Columns:
         rewards: names of the genes that have an effect on the reward, of all species, in order.
         prey: names of the species that are eaten by others.
         obstacles: whether the worlds have obstacles.
+        inner: names of the inner states beside energy, of all species.
     """
 
     food_kinds: tuple[str, ...]
@@ -37,6 +38,7 @@ class Columns:
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
     obstacles: bool = False
+    inner: tuple[str, ...] = ()
 
     @property
     def reward_names(self) -> tuple[str, ...]:
@@ -71,7 +73,10 @@ def columns_of(config: Config) -> Columns:
     neutral = max(species.genome.neutral_count for species in config.agents.values())
     eaten = {name for species in config.agents.values() for name in diet(config, species)}
     prey = tuple(name for name in config.agents if name in eaten)
-    return Columns(tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey, config.obstacle.count > 0)
+    inner = tuple(name for name in INNER_STATES[1:] if any(name in each.inner for each in made.values()))
+    return Columns(
+        tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey, config.obstacle.count > 0, inner
+    )
 
 
 SPECIES = Column("species", "string", "", "name of the species")
@@ -169,6 +174,7 @@ def population_table(columns: Columns) -> Table:
         Column("energy_lost", "f64", "energy", "held by those who died in the interval"),
         Column("energy_shared", "f64", "energy", "given by parents to children in the interval"),
         Column("energy_total", "f64", "energy", "held by the living at the end"),
+        *(Column(f"{name}_mean", "f32", name, f"mean {name} of the living at the end", True) for name in columns.inner),
     )
 
 

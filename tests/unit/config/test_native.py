@@ -20,6 +20,8 @@ CONFIG = load_config(
         "sensor.smells=['poison']",
         "reward.smell.poison.coef=0.1",
         "reward.family=by_age",
+        "food.poison.nutrient=1.0",
+        "food.normal.toxin=1.0",
         "reward.relief_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
         "genome.mutation.w_action.scale=0.1",
@@ -60,6 +62,8 @@ def other_value(path: str, setting: Setting) -> Any:
     if setting.choices:
         return next(choice for choice in setting.choices if choice != value_of(path))
     value = value_of(path)
+    if isinstance(value, bool):
+        return not value
     if isinstance(value, tuple):
         return tuple(item + 1.0 for item in value)
     return value + "x" if isinstance(value, str) else value + 1

@@ -1,0 +1,168 @@
+"""Inner states beside energy, against their equations in NumPy."""
+
+import math
+
+import numpy as np
+import pytest
+from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
+
+from hedon.config import ConfigError, load_config
+from hedon.config.layout import observation_columns
+
+NUTRIENT = ("food.normal.nutrient=1", "nutrient.basic_cost=0.05", "nutrient.action_cost=1e-3")
+TOXIN = ("food.normal.toxin=10",)
+ALL_EAT = ("sensor.mouth_spread=180",)
+ALONE = (*QUICK, *DEATHLESS, *CHILDLESS, "food.normal.growth_rate=0")
+
+
+def sigmoid(x: float) -> float:
+    return 1 / (1 + math.exp(-x))
+
+
+def test_the_stores_follow_their_equations():
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *ALL_EAT, *NUTRIENT, *TOXIN, "nutrient.capacity=40.5")
+    simulation = make_simulation(
+        *settings, "food.normal.growth_rate=3", "toxin.decay=0.3", "food.normal.initial_count=100"
+    )
+    world = simulation.worlds[0]
+    nutrient, toxin = np.full(world.alive, 40.0), np.zeros(world.alive)
+    before = world.agents()
+    capped = 0
+    for _ in range(150):
+        simulation.run(1)
+        now = world.agents()
+        eaten = now["eaten"][:, 0] - before["eaten"][:, 0]
+        force = np.hypot(now["force_left"] - before["force_left"], now["force_right"] - before["force_right"])
+        wanted = nutrient + eaten - 1e-3 * force - 0.05
+        capped += (wanted > 40.5).sum()
+        nutrient = np.clip(wanted, 0, 40.5)
+        toxin = np.maximum(0, toxin + 10 * eaten - 0.3)
+        before = now
+        assert now["nutrient"] == pytest.approx(nutrient, abs=1e-5)
+        assert now["toxin"] == pytest.approx(toxin, abs=1e-5)
+    assert toxin.max() > 5
+    assert np.ptp(nutrient) > 1
+    assert capped > 0
+    assert (now["nutrient"] >= 0).all()
+
+
+def test_toxin_takes_its_share_of_the_force():
+    simulation = make_simulation(*ALONE, *ALL_EAT, *TOXIN, "learning.policy=external", "toxin.decay=0")
+    set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
+    world = simulation.worlds[0]
+    capacity = len(world.view("alive"))
+    simulation.engine.command(0, np.full((1, capacity, 2), 2.0, np.float32))
+    full = -20 + 100 * sigmoid(2.0)
+    forces = []
+    for _ in range(2):
+        before = world.agents()["force_left"][0]
+        simulation.run(1)
+        forces.append(float(world.agents()["force_left"][0] - before))
+    assert world.agents()["toxin"][0] == 10.0
+    left = (1 - sigmoid(10 - 5)) / (1 - sigmoid(-5))
+    assert forces == pytest.approx([full, full * left], rel=1e-5)
+
+
+def test_an_empty_store_raises_the_hazard():
+    """Deaths in many agents at full energy and no nutrient, against the chance in closed form."""
+
+    def died(share: float) -> int:
+        settings = ("population.capacity=150", "population.initial_count=150", "arena.width=900", "arena.height=900")
+        hazard = ("hazard.alpha_age=0", "hazard.kappa=0.05", "energy.basic_cost=0", "nutrient.initial=0")
+        simulation = make_simulation(
+            *QUICK, *STILL, *CHILDLESS, *settings, *hazard, *NUTRIENT, f"nutrient.hazard_share={share}"
+        )
+        simulation.run(64)
+        return 150 - simulation.worlds[0].alive
+
+    x = 0.02
+    chance = 0.2 * 5 * 0.05 * x / (1 + x)  # a share of 1 of the hazard at an empty store
+    expected = 150 * (1 - (1 - chance) ** 64)
+    assert abs(died(1.0) - expected) < 4 * math.sqrt(expected)
+    assert died(0.0) <= 1  # at 40 energy the hazard is nearly 0
+
+
+def test_a_child_gets_its_share_and_no_toxin():
+    settings = ("birth.kappa=1", "birth.beta=10", *NUTRIENT, *TOXIN, "nutrient.basic_cost=0", "nutrient.action_cost=0")
+    simulation = make_simulation(*QUICK, *STILL, *DEATHLESS, *settings, "food.normal.growth_rate=0")
+    set_scene(simulation, [(200, 200, 0.0)])
+    simulation.run(1)
+    world = simulation.worlds[0]
+    assert world.alive == 2
+    assert world.agents()["nutrient"].tolist() == pytest.approx([24.0, 16.0])
+    assert world.agents()["toxin"].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("scaling", "factors"), [("raw", (1, 1)), ("unit", (0.01, 0.1))])
+def test_what_is_observed(scaling, factors):
+    simulation = make_simulation(
+        *ALONE, *ALL_EAT, *NUTRIENT, *TOXIN, 'sensor.smells=["normal"]', f"sensor.scaling={scaling}"
+    )
+    set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
+    simulation.run(1)
+    world = simulation.worlds[0]
+    columns = observation_columns(world.config, "agent")
+    assert columns[-4:] == ("energy", "nutrient", "toxin", "smell_normal_0")
+    seen = dict(zip(columns, world.observations()[0].tolist(), strict=True))
+    lives = world.agents()
+    assert seen["nutrient"] == pytest.approx(lives["nutrient"][0] * factors[0], rel=1e-6)
+    assert seen["toxin"] == pytest.approx(9.99 * factors[1], rel=1e-6)
+    blind = load_config("baseline", overrides=[*NUTRIENT, *TOXIN, "toxin.observed=false"])
+    assert "toxin" not in observation_columns(blind, "agent")
+    assert "nutrient" in observation_columns(blind, "agent")
+
+
+def test_relief_counts_all_states():
+    """Homeostasis over energy, nutrient and toxin: the need before less the need after, with set points as genes."""
+    settings = ("reward.relief_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
+    points = {"set_point": 0.3, "set_point_nutrient": 0.5, "set_point_toxin": 0.1}
+    genes = [f"genome.{name}.initial_{what}" for name in points for what in ("mean", "sd")]
+    values = [value for mean in points.values() for value in (mean, 0.0)]
+    simulation = make_simulation(
+        *ALONE, *ALL_EAT, *NUTRIENT, *TOXIN, *settings, *(f"{g}={v}" for g, v in zip(genes, values, strict=True))
+    )
+    set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
+    world = simulation.worlds[0]
+
+    def need() -> float:
+        lives = world.agents()
+        held = [
+            lives["energy"][0] / 400,
+            lives["nutrient"][0] / 400 if "nutrient" in lives else 0,
+            lives["toxin"][0] / 5,
+        ]
+        return math.dist(list(points.values()), held)
+
+    before = need()
+    simulation.run(1)
+    paid = world.view("life.reward")[world.living[0]]
+    assert paid == pytest.approx(before - need(), rel=1e-5)
+    assert abs(paid) > 0.5  # it has eaten toxin
+
+
+def test_records_and_checkpoints_hold_the_stores(tmp_path):
+    from hedon.record.schema import columns_of
+
+    config = load_config("baseline", overrides=[*NUTRIENT, *TOXIN])
+    assert columns_of(config).inner == ("nutrient", "toxin")
+    assert columns_of(load_config("baseline")).inner == ()
+    one, two = (make_simulation(*QUICK, *ALL_EAT, *NUTRIENT, *TOXIN, threads=threads) for threads in (1, 2))
+    one.run(192)
+    two.run(100)
+    two.engine.restore(0, two.engine.save(0))
+    two.run(92)
+    assert one.worlds[0].digest() == two.worlds[0].digest()
+    assert one.worlds[0].agents()["toxin"].max() > 0
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("genome.set_point_nutrient.initial_mean=0.2", "nobody here has nutrient"),
+        ("toxin.threshold=0", "toxin.threshold"),
+        ("food.normal.toxin=-1", "food.normal.toxin"),
+    ],
+)
+def test_contradictions_are_refused_by_name(setting, message):
+    with pytest.raises(ConfigError, match=message):
+        load_config("baseline", overrides=[setting])
