@@ -49,6 +49,8 @@ enum class Purpose : uint32_t {
   vacant_genome = 15,
   hunt = 16,
   obstacle = 17,
+  inherited_network = 18,
+  recombination = 19,
 };
 
 /// The draws of one world for one purpose, one id (agent, food kind) and one step, counted by `index`.

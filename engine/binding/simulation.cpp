@@ -82,6 +82,9 @@ nb::dict take_rows(PythonSimulation& self, int index) {
       std::vector<int32_t>(from.state.event_species.data, from.state.event_species.data + rows.size()), {rows.size()});
   out["cause"] = copy_array(
       std::vector<int32_t>(from.state.event_cause.data, from.state.event_cause.data + rows.size()), {rows.size()});
+  if (from.shape->mating)
+    out["mate_id"] = copy_array(
+        std::vector<int32_t>(from.state.event_mate.data, from.state.event_mate.data + rows.size()), {rows.size()});
   from.head().event_count = 0;
   return out;
 }
@@ -95,6 +98,10 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   for (const int64_t slot : rows) species.push_back(from.shape->species_of(static_cast<int32_t>(slot)));
   out["species"] = copy_array(std::move(species), {rows.size()});
   out["cause"] = copy_array(std::vector<int32_t>(rows.size(), -1), {rows.size()});
+  if (!from.shape->mating) return out;
+  std::vector<int32_t> mates;
+  for (const int64_t slot : rows) mates.push_back(from.state.mate_id[slot]);
+  out["mate_id"] = copy_array(std::move(mates), {rows.size()});
   return out;
 }
 

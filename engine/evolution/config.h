@@ -107,14 +107,17 @@ struct RewardTerm {
 struct RewardConfig {
   ActionNorm action_norm;
   RewardFamily family;
-  float threshold;        ///< of energy [energy] or age [step], for the families that depend on them
-  float threshold_width;  ///< in the same unit
-  int32_t rule;           ///< 1 if a function of the caller pays, and not the terms
-  int32_t memory;         ///< numbers that the rule keeps for each agent
+  float threshold;               ///< of energy [energy] or age [step], for the families that depend on them
+  float threshold_width;         ///< in the same unit
+  int32_t rule;                  ///< 1 if a function of the caller pays, and not the terms
+  int32_t threshold_gene;        ///< multiplies `threshold` by ten to its power; -1 for none
+  int32_t threshold_width_gene;  ///< the same for `threshold_width`
+  int32_t memory;                ///< numbers that the rule keeps for each agent
   FixedList<int32_t, INNER_STATES> set_points;  ///< gene of the set point of each inner state; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
 
-  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, rule, memory, set_points, terms)
+  HEDON_FIELDS(RewardConfig, action_norm, family, threshold, threshold_width, rule, threshold_gene,
+               threshold_width_gene, memory, set_points, terms)
 };
 
 }  // namespace hedon

@@ -58,6 +58,17 @@ HEDON_FN float relief(const RewardConfig& config, const float* genome, const Rew
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
 
+/// A setting, multiplied by ten to the power of a gene where there is one.
+HEDON_FN double by_gene(float setting, int32_t gene, const float* genome) {
+  return gene < 0 ? setting : setting * exp_double(genome[gene] * LOG_10);
+}
+
+/// By how much a value is above the threshold of a family, in units of its width.
+HEDON_FN double beyond(const RewardConfig& config, const float* genome, double value) {
+  return (value - by_gene(config.threshold, config.threshold_gene, genome)) /
+         by_gene(config.threshold_width, config.threshold_width_gene, genome);
+}
+
 /// The weight of a term, from its genes.
 HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, const float* genome,
                          const RewardInputs& inputs) {
@@ -71,11 +82,11 @@ HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, con
     case RewardFamily::scaled:
       return static_cast<float>(exp_double(second * LOG_10) * w);
     case RewardFamily::fed:
-      return static_cast<float>(w * logistic((inputs.now[ENERGY] - config.threshold) / config.threshold_width));
+      return static_cast<float>(w * logistic(beyond(config, genome, inputs.now[ENERGY])));
     case RewardFamily::hungry:
-      return static_cast<float>(w * logistic((config.threshold - inputs.now[ENERGY]) / config.threshold_width));
+      return static_cast<float>(w * logistic(-beyond(config, genome, inputs.now[ENERGY])));
     case RewardFamily::by_age:
-      return static_cast<float>(w + (second - w) * logistic((inputs.age - config.threshold) / config.threshold_width));
+      return static_cast<float>(w + (second - w) * logistic(beyond(config, genome, inputs.age)));
   }
   return w;
 }

@@ -44,6 +44,9 @@ constexpr Limit INTEGERS[] = {
     {"species.hazard.schedule.period", 0, 1'000'000'000},
     {"species.hazard.schedule.points.step", 0, 1'000'000'000},
     {"species.birth.attempts", 1, 1000},
+    {"species.birth.mating_window", 0, 1'000'000},
+    {"species.reward.threshold_gene", -1, MAX_GENES - 1},
+    {"species.reward.threshold_width_gene", -1, MAX_GENES - 1},
     {"species.diet.digestion_steps", 0, 1'000'000},
     {"species.sensor.sees", 0, MAX_TYPES - 1},
     {"species.sensor.collides", 0, MAX_TYPES - 1},
@@ -247,6 +250,13 @@ void check_species(Complaint& complaint, const WorldConfig& config, int32_t s) {
                  "equal in all species");
   complaint.need(own.motor.min_force < own.motor.max_force, path + "motor.min_force", own.motor.min_force,
                  "below motor.max_force");
+  for (const int32_t gene : {own.reward.threshold_gene, own.reward.threshold_width_gene})
+    complaint.need(gene < own.genome.genes.count, path + "reward.threshold_gene", gene, "-1 or the index of a gene");
+  const bool plain = own.birth.network == ChildNetwork::none && own.birth.mating == Mating::none;
+  complaint.need(plain || config.rules.inheritance == Inheritance::at_birth, path + "birth.network", 0,
+                 "none, as mating, where newborns inherit when the window ends");
+  complaint.need(own.birth.mating_range >= 0.0f && own.birth.network_noise >= 0.0f, path + "birth.mating_range",
+                 own.birth.mating_range, "at least 0, as network_noise");
   complaint.need(own.energy.initial <= own.energy.capacity, path + "energy.initial", own.energy.initial,
                  "at most energy.capacity");
 }

@@ -224,14 +224,32 @@ inline constexpr const char* PARENTS_NAMES[] = {"all", "old_slots"};
 enum class ChildHeading : int32_t { own, shared };
 inline constexpr const char* CHILD_HEADING_NAMES[] = {"own", "shared"};
 
+/// What a child gets of its parent's network.
+enum class ChildNetwork : int32_t {
+  none,     ///< nothing: it gets a fresh one
+  initial,  ///< what its parent was born with, with noise
+  learned,  ///< what its parent has learned, with noise
+};
+inline constexpr const char* CHILD_NETWORK_NAMES[] = {"none", "initial", "learned"};
+
+/// How many parents a child has.
+enum class Mating : int32_t { none, pairs };
+inline constexpr const char* MATING_NAMES[] = {"none", "pairs"};
+
 struct BirthConfig {
   float kappa;
   float beta;
   float delay;
   int32_t attempts;
   Vec2 distance_sd;
+  ChildNetwork network;
+  float network_noise;  ///< standard deviation of what is added to each parameter
+  Mating mating;
+  int32_t mating_window;  ///< steps for which an agent whose draw made it a parent waits for another
+  float mating_range;     ///< between their surfaces [u]
 
-  HEDON_FIELDS(BirthConfig, kappa, beta, delay, attempts, distance_sd)
+  HEDON_FIELDS(BirthConfig, kappa, beta, delay, attempts, distance_sd, network, network_noise, mating, mating_window,
+               mating_range)
 };
 
 /// What a species eats.

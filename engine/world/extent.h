@@ -40,18 +40,21 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   actions,
-  inner_slots,   ///< slots, if some species has a nutrient or a toxin
-  inner_states,  ///< nutrient and toxin
-  scents,        ///< what an agent smells: channels times noses
-  memory,        ///< numbers that a rule keeps for each agent
-  record,        ///< numbers that a rule gets for one agent
-  steps,         ///< of a rollout
-  step_actions,  ///< actions of a rollout
-  observations,  ///< cache lines of the observations of a rollout, and of the one after it
-  wide_slots,    ///< slots, if some observations are wide
-  hunted_slots,  ///< slots, if some species eats another
-  hunts,         ///< species, if some species eats another
-  meals,         ///< what an agent can eat: food kinds, and species if some species eats another
+  instinct_slots,  ///< slots, if some species passes on the networks that it was born with
+  mating_slots,    ///< slots, if some species has two parents
+  mating_events,   ///< events, if some species has two parents
+  inner_slots,     ///< slots, if some species has a nutrient or a toxin
+  inner_states,    ///< nutrient and toxin
+  scents,          ///< what an agent smells: channels times noses
+  memory,          ///< numbers that a rule keeps for each agent
+  record,          ///< numbers that a rule gets for one agent
+  steps,           ///< of a rollout
+  step_actions,    ///< actions of a rollout
+  observations,    ///< cache lines of the observations of a rollout, and of the one after it
+  wide_slots,      ///< slots, if some observations are wide
+  hunted_slots,    ///< slots, if some species eats another
+  hunts,           ///< species, if some species eats another
+  meals,           ///< what an agent can eat: food kinds, and species if some species eats another
 };
 
 /// How long the contents of an array last.
@@ -68,7 +71,8 @@ HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
          rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
          rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::obstacle_slots ||
-         rows == Extent::inner_slots || rows == Extent::hunted_slots;
+         rows == Extent::inner_slots || rows == Extent::instinct_slots || rows == Extent::mating_slots ||
+         rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
@@ -135,6 +139,12 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.pairs;
     case Extent::hidden:
       return HIDDEN;
+    case Extent::instinct_slots:
+      return shape.instinct ? shape.capacity : 0;
+    case Extent::mating_slots:
+      return shape.mating ? shape.capacity : 0;
+    case Extent::mating_events:
+      return shape.mating ? shape.events : 0;
     case Extent::inner_slots:
       return shape.inner ? shape.capacity : 0;
     case Extent::inner_states:

@@ -158,7 +158,26 @@ HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* posi
   return false;
 }
 
-/// Each agent whose draw made it a parent has a child, in random order, if there is a free slot and a free place.
+/// A child of `parent`, and of `mate` unless that is -1, if there is a free slot and a free place.
+HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
+  Counters& counters = world.counters(parent);
+  Vec2 position;
+  if (world.state.free_count[world.shape->species_of(parent)] == 0) {
+    counters.births_failed_full += 1;
+  } else if (!find_child_position(world, parent, &position)) {
+    counters.births_failed_space += 1;
+  } else {
+    spawn_child(world, parent, mate, position);
+    // Again, since the parents gave energy to the child.
+    decide_death(world, parent);
+    if (mate < 0) return;
+    decide_death(world, mate);
+    end_waiting(world, parent, mate);
+  }
+}
+
+/// Each agent whose draw made it a parent has a child, in random order; in species with two parents, together with
+/// one that waits near it, or else it waits itself.
 HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
@@ -180,16 +199,10 @@ HEDON_FN void breed(World& world) {
   }
   for (int32_t p = 0; p < parents; ++p) {
     const int32_t parent = scratch.parent[p];
-    Counters& counters = world.counters(parent);
-    Vec2 position;
-    if (world.state.free_count[world.shape->species_of(parent)] == 0) {
-      counters.births_failed_full += 1;
-    } else if (!find_child_position(world, parent, &position)) {
-      counters.births_failed_space += 1;
-    } else {
-      spawn_child(world, parent, position);
-      decide_death(world, parent);  // again, since the parent gave energy to the child
-    }
+    const bool pairs = needs_mate(world, parent);
+    const int32_t mate = pairs ? find_mate(world, parent) : -1;
+    if (pairs) await_mate(world, parent);
+    if (!pairs || mate >= 0) try_birth(world, parent, mate);
   }
 }
 

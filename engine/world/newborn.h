@@ -32,10 +32,38 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
   forget_updates(world, slot);
 }
 
+/// Keeps the network of a newcomer, where it will be passed on.
+HEDON_FN void keep_initial(const World& world, int32_t slot) {
+  const Species& species = world.species(slot);
+  if (!species.learns || species.config->birth.network != ChildNetwork::initial) return;
+  for (int32_t p = 0; p < species.network.size(); ++p) world.initial_params(slot)[p] = world.params(slot)[p];
+}
+
 /// The network of an agent that has learned nothing.
 HEDON_FN void give_own_network(World& world, int32_t slot) {
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   give_network(world, slot, RandomStream{world.seed, Purpose::network, id, 0});
+  keep_initial(world, slot);
+}
+
+/// The network of a child: a new one, or one of its parent's with noise.
+HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
+  const Species& species = world.species(slot);
+  const BirthConfig& birth = species.config->birth;
+  if (!species.learns || birth.network == ChildNetwork::none) return give_own_network(world, slot);
+  const float* from = birth.network == ChildNetwork::learned ? world.params(parent) : world.initial_params(parent);
+  const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
+  DrawSequence draws{RandomStream{world.seed, Purpose::inherited_network, id, 0}, 0};
+  const int32_t size = species.network.size();
+  for (int32_t p = 0; p < size; p += 4) {
+    float noise[4];
+    draws.normal(4, noise);
+    for (int32_t i = 0; i < 4 && p + i < size; ++i)
+      world.params(slot)[p + i] = from[p + i] + birth.network_noise * noise[i];
+  }
+  world.kernel->pack_weights(species.network, world.network(slot));
+  forget_updates(world, slot);
+  keep_initial(world, slot);
 }
 
 HEDON_FN bool inherits_late(const World& world) {

@@ -8,6 +8,7 @@
 #include "evolution/genome.h"
 #include "world/food.h"
 #include "world/inner.h"
+#include "world/mating.h"
 #include "world/newborn.h"
 #include "world/placement.h"
 #include "world/world.h"
@@ -52,6 +53,7 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   if (state.species.count > 0) state.species[slot] = species;
   for (int64_t m = 0; m < world.shape->memory; ++m) state.memory[int64_t{slot} * world.shape->memory + m] = 0.0;
   for (int64_t a = 0; a < ACTIONS && state.command.count > 0; ++a) state.command[int64_t{slot} * ACTIONS + a] = 0.0f;
+  if (world.shape->mating) state.ready_until[slot] = state.mate_id[slot] = -1;
   world.scratch.dies[slot] = 0;
 
   BodyState& body = state.physics.bodies;
@@ -87,39 +89,58 @@ HEDON_FN float child_heading(const World& world, uint32_t id) {
   return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
 }
 
-/// A child of `parent` at `position`: part of its energy, its genome with mutation, and nothing that it learned.
-HEDON_FN void spawn_child(World& world, int32_t parent, Vec2 position) {
+/// Takes from a parent what it gives to a child of `parents` parents; returns the energy.
+HEDON_FN double give_birth_share(World& world, int32_t parent, int32_t parents, double* nutrient) {
+  const double share = static_cast<double>(world.species(parent).config->energy.birth_share) / parents;
+  Life& life = world.state.life[parent];
+  const double energy = share * life.energy;
+  life.energy -= energy;
+  life.children += 1;
+  world.counters(parent).energy_shared += energy;
+  if (!world.shape->inner) return energy;
+  const double stored = share * world.inner(parent)[0];
+  world.inner(parent)[0] -= stored;
+  *nutrient += stored;
+  return energy;
+}
+
+/// A child of `parent`, and of `mate` unless that is -1, at `position`: part of their energy, a genome with mutation,
+/// and a network, by default a new one that has learned nothing.
+HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 position) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
-  Life& parent_life = state.life[parent];
   const Species& species = world.species(parent);
-  const double share = static_cast<double>(species.config->energy.birth_share) * parent_life.energy;
-  parent_life.energy -= share;
-  parent_life.children += 1;
+  double nutrient = 0.0;
+  const int32_t parents = mate < 0 ? 1 : 2;
+  double energy = give_birth_share(world, parent, parents, &nutrient);
+  if (mate >= 0) energy += give_birth_share(world, mate, parents, &nutrient);
   const uint32_t id = static_cast<uint32_t>(head.next_agent_id);
   const int32_t slot =
-      spawn(world, world.shape->species_of(parent), position, child_heading(world, id), share, head.step + 1);
-  if (world.shape->inner) {
-    const double nutrient = static_cast<double>(species.config->energy.birth_share) * world.inner(parent)[0];
-    set_inner(world, slot, nutrient, 0.0);
-    world.inner(parent)[0] -= nutrient;
-  }
+      spawn(world, world.shape->species_of(parent), position, child_heading(world, id), energy, head.step + 1);
+  if (world.shape->inner) set_inner(world, slot, nutrient, 0.0);
   Life& child = state.life[slot];
-  child.parent_id = parent_life.agent_id;
-  child.generation = parent_life.generation + 1;
+  child.parent_id = state.life[parent].agent_id;
+  child.generation = state.life[parent].generation + 1;
+  const float* genome = world.genome(parent);
+  if (mate >= 0) {
+    state.mate_id[slot] = state.life[mate].agent_id;
+    const int32_t other = state.life[mate].generation + 1;
+    child.generation = other > child.generation ? other : child.generation;
+    recombine(world, id, parent, mate, world.genome(slot));
+    genome = world.genome(slot);
+  }
   if (inherits_late(world)) {
     note_newborn(world, parent, child.agent_id);
     forget_updates(world, slot);  // it never learns with them, and a checkpoint does not hold those of free slots
   } else {
-    give_own_network(world, slot);
+    give_child_network(world, parent, slot);
     inherit(species.config->genome, world.seed, id,
-            {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)},
-            world.genome(parent), world.genome(slot));
+            {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)}, genome,
+            world.genome(slot));
     express_genes(world, slot);
   }
   head.births_in_window += 1;
   world.counters(parent).births += 1;
-  world.counters(parent).energy_shared += share;
 }
 
 HEDON_FN Cause cause_of_death(const World& world, int32_t slot) {
@@ -157,6 +178,7 @@ HEDON_FN void kill(World& world, int32_t slot) {
   const int64_t event = head.event_count++;
   state.event[event] = life;
   state.event_species[event] = world.shape->species_of(slot);
+  if (world.shape->mating) state.event_mate[event] = state.mate_id[slot];
   const int32_t meals = world.shape->meals(), genes = world.shape->genes;
   state.event_cause[event] = static_cast<int32_t>(cause_of_death(world, slot));
   for (int32_t m = 0; m < meals; ++m) state.event_eaten[event * meals + m] = state.eaten[int64_t{slot} * meals + m];

@@ -58,6 +58,8 @@ struct WorldShape {
   int32_t record;    ///< of the longest record that a rule gets
   int32_t scents;    ///< of the longest row of smells: channels times noses
   bool packed;       ///< some species acts with weights in pairs
+  bool instinct;     ///< some species passes on the networks that it was born with
+  bool mating;       ///< some species has two parents
   bool inner;        ///< some species has a nutrient or a toxin
   bool hunting;      ///< some species eats another
   int32_t lines;     ///< cache lines of an observation
@@ -116,6 +118,8 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     const SpeciesConfig& own = config.species[s];
     const Species& species = shape.of[s] = make_species(own, shape.capacity, shape.types());
     shape.capacity = species.last_slot;
+    shape.instinct |= species.learns && own.birth.network == ChildNetwork::initial;
+    shape.mating |= own.birth.mating == Mating::pairs;
     shape.inner |= own.nutrient.present != 0 || own.toxin.present != 0;
     grow(shape.scents, own.sensor.smells.count * own.sensor.noses);
     grow(shape.genes, own.genome.genes.count);

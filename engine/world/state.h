@@ -145,8 +145,10 @@ struct WorldState {
   Array<HuntCounters> hunt_counters;
   Array<int64_t> eaten_by;  // by species: meals of each kind since the world began
 
-  Array<double> inner;    // (slots, 2) nutrient and toxin
-  Array<float> obstacle;  // (obstacles, corners · 2) where their corners are: follows from the config and the seed
+  Array<int64_t> ready_until;  // step until which an agent waits for a second parent
+  Array<int32_t> mate_id;      // the second parent; -1 for founders
+  Array<double> inner;         // (slots, 2) nutrient and toxin
+  Array<float> obstacle;       // (obstacles, corners · 2) where their corners are: follows from the config and the seed
   Array<ObstacleCounters> obstacle_counters;
 
   Array<float> command;  // (slots, 2) what the caller told agents to do, before the sigmoid
@@ -154,6 +156,7 @@ struct WorldState {
 
   // Learners, by slot.
   Array<float> params;
+  Array<float> initial_params;  // what an agent was born with
   Array<float> folded_bias;     // derived from params
   Array<float> packed_weights;  // derived from params; not used where agents act with params themselves
   Array<float> first_moment;
@@ -178,6 +181,7 @@ struct WorldState {
   Array<Life> event;
   Array<int32_t> event_species;
   Array<int32_t> event_cause;
+  Array<int32_t> event_mate;
   Array<int32_t> event_eaten;
   Array<float> event_genome;
 
@@ -187,18 +191,20 @@ struct WorldState {
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
-               (eaten_by, mixed_species, meals, saved), (inner, inner_slots, inner_states, saved),
+               (eaten_by, mixed_species, meals, saved), (ready_until, mating_slots, one, saved),
+               (mate_id, mating_slots, one, saved), (inner, inner_slots, inner_states, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
                (command, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
-               (params, learner_slots, params, saved), (folded_bias, learner_slots, hidden, derived),
-               (packed_weights, packed_slots, pairs, derived), (first_moment, learner_slots, params, saved),
-               (second_moment, learner_slots, params, saved), (updates, learner_slots, one, saved),
-               (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved), (newborn, newborns, one, saved),
-               (newborn_species, mixed_newborns, one, saved), (newborn_genome, newborns, genes, saved),
-               (observation, slots, observations, rollout), (action, slots, step_actions, rollout),
-               (log_prob, slots, steps, rollout), (value, slots, steps, rollout), (reward, slots, steps, rollout),
-               (event, events, one, waiting), (event_species, events, one, waiting),
-               (event_cause, events, one, waiting), (event_eaten, events, meals, waiting),
+               (params, learner_slots, params, saved), (initial_params, instinct_slots, params, saved),
+               (folded_bias, learner_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
+               (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),
+               (updates, learner_slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
+               (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),
+               (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
+               (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
+               (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
+               (event_species, events, one, waiting), (event_cause, events, one, waiting),
+               (event_mate, mating_events, one, waiting), (event_eaten, events, meals, waiting),
                (event_genome, events, genes, waiting))
 };
 

@@ -109,6 +109,8 @@ struct World {
   }
 
   HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->params]; }
+  /// What the agent in `slot` was born with, in worlds that keep it.
+  HEDON_FN float* initial_params(int32_t slot) const { return &state.initial_params[int64_t{slot} * shape->params]; }
   /// What the agent in `slot` acts with.
   HEDON_FN ActingNetwork network(int32_t slot) const {
     const bool rounded = species(slot).config->learning.acting_weights == ActingWeights::bfloat16;

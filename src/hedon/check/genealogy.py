@@ -63,10 +63,16 @@ def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
     counted, begun = pl.col("counted"), first_step(manifest)
     rules = {
         "its parent is itself or a younger agent": pl.col("parent_id") >= pl.col("agent_id"),
-        "its generation is not one more than its parent's": pl.col("generation") != pl.col("parent_generation") + 1,
+        "its generation is not one more than its parents'": pl.col("generation")
+        != pl.max_horizontal("parent_generation", "mate_generation") + 1,
         "was born before its parent or in the same step": pl.col("birth_step") <= pl.col("parent_birth"),
         "was born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
+        "its two parents are one": pl.col("mate_id") == pl.col("parent_id"),
+        "was born when its second parent did not live": (pl.col("birth_step") > pl.col("mate_death"))
+        | (pl.col("birth_step") <= pl.col("mate_birth")),
     }
+    if manifest.mating:
+        rules["has a parent but no second one"] = child & pl.col("mate_id").is_null()
     if complete:
         rules["its parent is missing"] = child & ~known & (pl.col("birth_step") > begun)
         fewer = pl.col("children") < counted
@@ -78,15 +84,22 @@ def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
 
 
 def _with_parents(agents: pl.DataFrame) -> pl.DataFrame:
-    parents = agents.select(
-        "world",
-        parent_id="agent_id",
-        parent_generation="generation",
-        parent_birth="birth_step",
-        parent_death="death_step",
+    """Each agent with what is known of its parents, and how many agents name it as one."""
+    family = agents if "mate_id" in agents.columns else agents.with_columns(mate_id=pl.lit(None, pl.Int64))
+    ids = pl.concat(
+        family.drop_nulls(column).select("world", agent_id=column).cast({"agent_id": pl.Int64})
+        for column in ("parent_id", "mate_id")
     )
-    counts = agents.drop_nulls("parent_id").group_by("world", agent_id="parent_id").agg(counted=pl.len())
-    family = agents.join(parents, on=["world", "parent_id"], how="left", maintain_order="left")
+    for which in ("parent", "mate"):
+        known = agents.select(
+            "world",
+            pl.col("agent_id").alias(f"{which}_id"),
+            pl.col("generation").alias(f"{which}_generation"),
+            pl.col("birth_step").alias(f"{which}_birth"),
+            pl.col("death_step").alias(f"{which}_death"),
+        )
+        family = family.join(known, on=["world", f"{which}_id"], how="left", maintain_order="left")
+    counts = ids.group_by("world", "agent_id").agg(counted=pl.len())
     family = family.join(counts, on=list(_KEYS), how="left", maintain_order="left")
     return family.with_columns(pl.col("counted").fill_null(0).cast(pl.Int64))
 

@@ -8,6 +8,7 @@ from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
 from hedon.config.evolution import GenomeConfig
 from hedon.config.layout import (
+    FAMILY_GENES,
     INNER_STATES,
     LEARNING_GENES,
     SOLID,
@@ -30,6 +31,8 @@ MAX_GENES = 64
 """Most genes that the engine has room for."""
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
 """A rule: its file, its function and, once a run has it, the digest of the file."""
+THRESHOLDS = ("fed", "hungry", "by_age")
+"""Families of rewards that have a threshold."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -93,6 +96,17 @@ def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
     if birth.distance_unit == "arena_width" and birth.distance_sd > 1:
         rule = 'must be at most 1 with birth.distance_unit = "arena_width"'
         yield Problem(f"{path}birth.distance_sd", rule, format_value(birth.distance_sd))
+    if birth.inheritance == "at_window_end":
+        for setting, plain in (("network", "none"), ("mating", "none")):
+            if getattr(birth, setting) != plain:
+                rule = f'must be "{plain}" with birth.inheritance = "at_window_end"'
+                yield Problem(f"{path}birth.{setting}", rule, format_value(getattr(birth, setting)))
+    if birth.network != "none" and learning.policy != "ppo":
+        rule = f'learning.policy = "{learning.policy}": there is no network to inherit'
+        yield Problem(f"{path}birth.network", rule, format_value(birth.network))
+    if birth.mating == "pairs" and capacity < 2:
+        rule = 'must be at least 2 with birth.mating = "pairs": nobody mates alone'
+        yield Problem(f"{path}population.capacity", rule, format_value(capacity))
     if energy.initial > energy.capacity:
         rule = f"must be at most energy.capacity = {energy.capacity:g}"
         yield Problem(f"{path}energy.initial", rule, format_value(energy.initial))
@@ -158,6 +172,14 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
             rule = "no gene can set this: there are " + ", ".join(LEARNING_GENES)
             yield Problem(f"{path}genome.learning.{gene}", rule, nearest=nearest(gene, tuple(LEARNING_GENES)))
             return
+    for gene in genome.family:
+        if gene not in FAMILY_GENES:
+            rule = "no gene can set this: there are " + ", ".join(FAMILY_GENES)
+            yield Problem(f"{path}genome.family.{gene}", rule, nearest=nearest(gene, tuple(FAMILY_GENES)))
+            return
+    if genome.family and species.reward.family not in THRESHOLDS:
+        rule = f'reward.family = "{species.reward.family}" has no threshold: ' + ", ".join(THRESHOLDS) + " have one"
+        yield Problem(f"{path}genome.family", rule)
     if genome.learning and learning.policy != "ppo":
         rule = f'learning.policy = "{learning.policy}": there is no learning that genes could set'
         yield Problem(f"{path}genome.learning", rule)

@@ -56,7 +56,8 @@ class GenomeConfig:
     (`set_point_nutrient`, `set_point_toxin` those of other inner states), and `[genome.neutral]` each neutral marker.
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
-    actions, by 10^g. `[genome.mutation.GENE]` gives one gene a mutation of its own.
+    actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
+    `[genome.mutation.GENE]` gives one gene a mutation of its own.
     """
 
     neutral_count: Annotated[
@@ -119,6 +120,7 @@ class GenomeConfig:
     set_point_nutrient: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
     set_point_toxin: GeneConfig = field(default_factory=GeneConfig)
     learning: dict[str, GeneConfig] = field(default_factory=dict)
+    family: dict[str, GeneConfig] = field(default_factory=dict)
     mutation: dict[str, MutationConfig] = field(default_factory=dict)
 
 

@@ -34,6 +34,11 @@ LEARNING_GENES = {
     "action_sd": "power of ten of the standard deviation of a newborn's actions",
 }
 """What of learning a gene may set, with what the gene is."""
+FAMILY_GENES = {
+    "threshold": "power of ten by which the threshold of the reward differs",
+    "threshold_width": "power of ten by which the width of that threshold differs",
+}
+"""What of the family of a reward a gene may set, with what the gene is."""
 MAX_EXPONENT = 2.0
 """Limit of genes that are exponents."""
 
@@ -256,7 +261,7 @@ def _mutation(genome: GenomeConfig, name: str) -> MutationConfig:
 def _most(family: str, role: str, name: str) -> float:
     """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
     exponent = family == "sinh" and role == "reward" and not name.startswith(SET_POINT)
-    exponent |= name.endswith(SCALE) or role == "learning"
+    exponent |= name.endswith(SCALE) or role == "learning" or name.removeprefix("g_") in FAMILY_GENES
     return MAX_EXPONENT if exponent else math.inf
 
 
@@ -283,6 +288,8 @@ def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
             meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
             made.add_gene(name, "reward", meaning, getattr(genome, name))
         made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))
+    for name, law in genome.family.items():
+        made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], law)
     for name, law in genome.learning.items():
         made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], law)
     for i in range(genome.neutral_count):

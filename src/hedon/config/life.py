@@ -109,3 +109,42 @@ class BirthConfig:
             OURS + '; the code has "shared"',
         ),
     ] = "own"
+    network: Annotated[
+        Literal["none", "initial", "learned"],
+        Doc(
+            "what a child gets of its parent's network: nothing, what its parent was born with, or what its parent has "
+            "learned",
+            "",
+            PAPER + "; the others are ours",
+        ),
+    ] = "none"
+    network_noise: Annotated[
+        float,
+        Doc(
+            "standard deviation of what is added to each parameter of an inherited network",
+            "",
+            OURS,
+            Range(ge=0, le=10),
+        ),
+    ] = 0.01
+    mating: Annotated[
+        Literal["none", "pairs"],
+        Doc(
+            "how many parents a child has: one, or two, each of whose genes it has by a draw",
+            "",
+            PAPER + "; pairs is ours",
+        ),
+    ] = "none"
+    mating_window: Annotated[
+        int,
+        Doc(
+            "how long an agent whose draw made it a parent waits for another one",
+            "step",
+            OURS,
+            Range(ge=0, le=1_000_000),
+        ),
+    ] = 1000
+    mating_range: Annotated[
+        float,
+        Doc("how far the surfaces of two parents may be apart; 0: they touch", "u", OURS, Range(ge=0, le=1e4)),
+    ] = 20.0

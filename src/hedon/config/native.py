@@ -6,7 +6,7 @@ from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.food import FoodConfig
-from hedon.config.layout import INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
+from hedon.config.layout import FAMILY_GENES, INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
@@ -142,6 +142,7 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
         "threshold": reward.threshold,
         "threshold_width": reward.threshold_width,
         "rule": int(bool(reward.rule)),
+        **{f"{name}_gene": place.get(f"g_{name}", -1) for name in FAMILY_GENES},
         "memory": reward.memory,
         "set_points": [place.get(set_point_of(state), -1) for state in INNER_STATES],
         "terms": terms,

@@ -171,5 +171,10 @@ def _beyond(config: Config) -> Iterator[str]:
     if "nutrient" in inner:
         empty = species.nutrient.hazard_share * float(energy_hazard(config.hazard, 0.0))
         yield f"Without nutrient the chance of death is {empty:.3g} per step higher; lives here are with enough."
+    if species.birth.mating == "pairs":
+        yield (
+            "Children need two parents that wait near one another: R0 counts draws, of which two make one child, and "
+            "the chance to meet is not forecast."
+        )
     if "toxin" in inner:
         yield "Toxin weakens motors, so agents that eat it move and spend less; this is not forecast."

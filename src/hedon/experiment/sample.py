@@ -22,7 +22,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
     steps = np.maximum(end - lives["birth_step"], 1)
     direct = ("agent_id", "parent_id", "generation", "birth_step", "death_step", "birth_energy", "energy")
-    direct += ("energy_gained", "energy_spent", "children", "distance")
+    direct += ("energy_gained", "energy_spent", "children", "distance", *(("mate_id",) if columns.mating else ()))
     rows = {
         "world": world.index,
         "seed": world.seed,

@@ -58,10 +58,13 @@ def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     """The pedigree in the ALife data standard for phylogenies (Lalejini et al. 2019).
 
     Returns:
-        `id`; `ancestor_list`, "[NONE]" for founders; `origin_time` and `destruction_time` [step], "inf" for who lives;
-        then the species, where there are several, and the genes.
+        `id`; `ancestor_list`, "[NONE]" for founders, with both parents where there are two; `origin_time` and
+        `destruction_time` [step], "inf" for who lives; then the species, where there are several, and the genes.
     """
     parent = pl.col("parent_id").cast(pl.String).fill_null("NONE")
+    if "mate_id" in agents.columns:
+        both = pl.concat_str("parent_id", "mate_id", separator=",")
+        parent = pl.when(pl.col("mate_id").is_null()).then(parent).otherwise(both)
     return agents.select(
         pl.col("agent_id").alias("id"),
         pl.concat_str(pl.lit("["), parent, pl.lit("]")).alias("ancestor_list"),
@@ -81,7 +84,12 @@ def newick(agents: pl.DataFrame, now: int) -> str:
     Args:
         agents: table `agents` of one world, by agent_id, without gaps.
         now: the last step.
+
+    Raises:
+        ExportError: children have two parents, so that there is no tree.
     """
+    if "mate_id" in agents.columns and agents["mate_id"].is_not_null().any():
+        raise ExportError("children of this run have two parents: there is no tree; --format alife has both parents")
     tree = genealogy(agents)
     ids = agents["agent_id"].to_numpy()
     kept = ancestry(tree, np.flatnonzero(tree.alive))

@@ -120,6 +120,7 @@ class Manifest:
         fault: the engine's message if the run stopped at a fault; None otherwise.
         obstacles: whether the worlds have obstacles; fixes the columns of the tables.
         obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
+        mating: whether some species has two parents.
         inner: names of the inner states beside energy, of all species.
         rules: the rules in Python that pay agents, with their texts.
         format_version: of the run folder.
@@ -160,6 +161,7 @@ class Manifest:
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
     obstacles: bool = False
+    mating: bool = False
     inner: tuple[str, ...] = ()
     obstacle_places: tuple[tuple[tuple[tuple[float, float], ...], ...], ...] = ()
     rules: tuple[RuleSource, ...] = ()
@@ -176,9 +178,7 @@ class Manifest:
     @property
     def columns(self) -> Columns:
         """What the columns of the tables follow from."""
-        return Columns(
-            self.food_kinds, self.neutral_count, self.species, self.rewards, self.prey, self.obstacles, self.inner
-        )
+        return Columns(**{field.name: getattr(self, field.name) for field in fields(Columns)})
 
     def _problems(self) -> Iterator[str]:
         """What no run can have been, and what tables and figures could not be made with."""

@@ -29,6 +29,7 @@ class Columns:
         rewards: names of the genes that have an effect on the reward, of all species, in order.
         prey: names of the species that are eaten by others.
         obstacles: whether the worlds have obstacles.
+        mating: whether some species has two parents.
         inner: names of the inner states beside energy, of all species.
     """
 
@@ -38,6 +39,7 @@ class Columns:
     rewards: tuple[str, ...] = ()
     prey: tuple[str, ...] = ()
     obstacles: bool = False
+    mating: bool = False
     inner: tuple[str, ...] = ()
 
     @property
@@ -75,7 +77,14 @@ def columns_of(config: Config) -> Columns:
     prey = tuple(name for name in config.agents if name in eaten)
     inner = tuple(name for name in INNER_STATES[1:] if any(name in each.inner for each in made.values()))
     return Columns(
-        tuple(config.food), neutral, tuple(config.agents), tuple(rewards), prey, config.obstacle.count > 0, inner
+        food_kinds=tuple(config.food),
+        neutral_count=neutral,
+        species=tuple(config.agents),
+        rewards=tuple(rewards),
+        prey=prey,
+        obstacles=config.obstacle.count > 0,
+        mating=any(species.birth.mating == "pairs" for species in config.agents.values()),
+        inner=inner,
     )
 
 
@@ -89,6 +98,7 @@ _HUNTING = (
     Column("energy_hunted", "f64", "energy", "gained by eating agents in the interval"),
     Column("energy_prey", "f64", "energy", "held by those that were eaten in the interval; part of energy_lost"),
 )
+_MATE = Column("mate_id", "i64", "1", "agent_id of the second parent; missing for founders", nullable=True)
 _HARM = (
     Column("obstacles_touched", "i64", "1", "harmful obstacles touched, summed over agents and steps of the interval"),
     Column("energy_damage", "f64", "energy", "charged for touching them in the interval"),
@@ -105,6 +115,7 @@ def agent_table(columns: Columns) -> Table:
         *([SPECIES] if columns.several else []),
         Column("agent_id", "i64", "1", "unique within the world, never used again"),
         Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
+        *([_MATE] if columns.mating else []),
         Column("generation", "i32", "1", "generations since the founders; 0 for founders"),
         Column("birth_step", "i64", "step", "steps completed when the agent was born; 0 for founders"),
         Column("death_step", "i64", "step", "steps completed when it died; missing while it lives", nullable=True),

@@ -50,7 +50,16 @@ def choose_topics(names: str | None) -> tuple[str, ...]:
     return tuple(name for name in TOPICS if name in wanted)
 
 
+ONE_PARENT = ("genealogy", "price", "drift", "reversion", "mutation")
+"""Topics that follow genes along pedigrees, from one parent to its child."""
+
+
 def run_topics(conditions: Conditions, names: Sequence[str] = tuple(TOPICS)) -> list[ResultTable]:
-    """The tables of some topics; those without rows are left out."""
-    tables = [table for name in names for table in TOPICS[name](conditions)]
+    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed."""
+    trees = {
+        condition: alone
+        for condition, worlds in conditions.items()
+        if (alone := [world for world in worlds if world.config.birth.mating == "none"])
+    }
+    tables = [table for name in names for table in TOPICS[name](trees if name in ONE_PARENT else conditions)]
     return [table for table in tables if not table.rows.is_empty()]

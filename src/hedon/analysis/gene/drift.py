@@ -92,10 +92,10 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
 
     Returns:
         None at all where there is no pedigree, or one with gaps, whose walks would have no beginning; nor where the
-        founders come from a table, whose law the walks do not know.
+        founders come from a table, whose law the walks do not know, or where children have two parents.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.genome.founders:
+    if tree.gaps or not tree.size or world.config.genome.founders or world.config.birth.mating == "pairs":
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
     laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}
