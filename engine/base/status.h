@@ -24,6 +24,8 @@ enum class Status : int32_t {
   counts_inconsistent,
   ledger_open,
   rule_not_finite,
+  rule_no_chance,
+  rule_wrote,
   count,
 };
 
@@ -62,6 +64,11 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"rule_not_finite", "A rule paid an agent, or kept for it, a number that is not finite.",
      "Check the species' reward.rule for this agent: an exception, a division by 0, or a memory that grows without "
      "end."},
+    {"rule_no_chance", "A rule gave a chance of death or birth that is not between 0 and 1.",
+     "Check the species' hazard.rule and birth.rule for this agent: an exception, or a formula without a limit, say "
+     "min(chance, 1.0)."},
+    {"rule_wrote", "A rule of hazard or birth changed an agent's memory.",
+     "Only the species' reward.rule may write to memories: let it do so."},
 };
 static_assert(sizeof(STATUS_TEXT) / sizeof(StatusText) == static_cast<int>(Status::count));
 

@@ -122,8 +122,8 @@ World& PythonSimulation::slotted(int index) {
 void PythonSimulation::run(int64_t steps) {
   using Clock = std::chrono::steady_clock;
   Simulation& simulation = get();
-  if (simulation.unruled() >= 0)
-    throw EngineError("species " + std::to_string(simulation.unruled()) + " is paid by a rule, which was not given");
+  const std::string missing = simulation.missing_rule();
+  if (!missing.empty()) throw EngineError(missing);
   if (steps < 0) throw EngineError("steps = " + std::to_string(steps) + ": must be at least 0");
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};

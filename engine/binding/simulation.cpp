@@ -182,10 +182,15 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
     throw nb::value_error("arrays must have a row for each slot of the species in each world");
 }
 
-/// The address of a function `RewardRule`. It must stay as long as the simulation: the caller holds it.
-void set_rule(PythonSimulation& self, int32_t species, uint64_t address) {
+/// The address of a function `Rule`. It must stay as long as the simulation: the caller holds it.
+void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address) {
   if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");
-  self.get().set_rule(species, reinterpret_cast<RewardRule>(static_cast<uintptr_t>(address)));
+  for (int32_t u = 0; u < RULE_USES; ++u) {
+    if (use != RULE_USE_NAMES[u]) continue;
+    self.get().set_rule(species, static_cast<RuleUse>(u), reinterpret_cast<Rule>(static_cast<uintptr_t>(address)));
+    return;
+  }
+  throw nb::value_error("a rule is for reward, hazard or birth");
 }
 
 void command(PythonSimulation& self, int32_t species, TableIn actions) {
@@ -266,9 +271,9 @@ void bind_simulation(nb::module_& module) {
       .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
-      .def("set_rule", &set_rule, nb::arg("species"), nb::arg("address"),
-           "Gives a species the function that pays it, by its address: void(int64 count, double *records, double "
-           "*paid).")
+      .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"),
+           "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
+           "*records, double *answers).")
       .def("command", &command, nb::arg("species"), nb::arg("actions"),
            nb::sig("def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
            "Tells the agents of an external species what to do from now on: (worlds, slots, 2).")

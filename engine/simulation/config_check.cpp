@@ -43,6 +43,8 @@ constexpr Limit INTEGERS[] = {
     {"food.capacity_schedule.points.step", 0, 1'000'000'000},
     {"species.hazard.schedule.period", 0, 1'000'000'000},
     {"species.hazard.schedule.points.step", 0, 1'000'000'000},
+    {"species.hazard.rule", 0, 1},
+    {"species.birth.rule", 0, 1},
     {"species.birth.attempts", 1, 1000},
     {"species.birth.mating_window", 0, 1'000'000},
     {"species.reward.threshold_gene", -1, MAX_GENES - 1},

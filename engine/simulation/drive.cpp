@@ -1,4 +1,4 @@
-/// What a caller adds to worlds: rules that pay agents, what agents are told, and what they sense and earn.
+/// What a caller adds to worlds: rules, what agents are told, and what they sense and earn.
 #include <atomic>
 #include <cstring>
 
@@ -32,15 +32,18 @@ void show_agent(World& world, int32_t slot, int rank, const Shown& out, int64_t 
 
 }  // namespace
 
-void Simulation::set_rule(int32_t species, RewardRule rule) {
-  for (World& world : worlds_) world.rule[species] = rule;
+void Simulation::set_rule(int32_t species, RuleUse use, Rule rule) {
+  for (World& world : worlds_) world.rule[species][static_cast<int32_t>(use)] = rule;
 }
 
-int32_t Simulation::unruled() const {
+std::string Simulation::missing_rule() const {
   for (int32_t s = 0; s < shape_.species; ++s) {
-    if (config_.species[s].reward.rule != 0 && worlds_[0].rule[s] == nullptr) return s;
+    for (int32_t u = 0; u < RULE_USES; ++u) {
+      if (has_rule(config_.species[s], static_cast<RuleUse>(u)) && worlds_[0].rule[s][u] == nullptr)
+        return "species " + std::to_string(s) + " has a rule for its " + RULE_USE_NAMES[u] + ", which was not given";
+    }
   }
-  return -1;
+  return "";
 }
 
 void Simulation::command(int32_t species, const float* actions) {

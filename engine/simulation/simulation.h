@@ -78,11 +78,11 @@ class Simulation {
   /// Advances every world that is not over by `steps` steps. The results do not depend on threads.
   void run(int64_t steps);
 
-  /// Gives a species the rule that pays it; must be there before a step if its config asks for one.
-  void set_rule(int32_t species, RewardRule rule);
+  /// Gives a species a rule; must be there before a step if its config asks for one.
+  void set_rule(int32_t species, RuleUse use, Rule rule);
 
-  /// The first species that waits for its rule; -1 if none does.
-  int32_t unruled() const;
+  /// "", or which rule is asked for and not there.
+  std::string missing_rule() const;
 
   /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2), before the
   /// sigmoid.

@@ -119,7 +119,7 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   const std::string setting = check_config(input.config);
   if (!setting.empty()) return fail(setting);
   for (int32_t s = 0; s < input.config.species.count; ++s) {
-    if (input.config.species[s].reward.rule != 0) return fail("a page cannot pay agents by a rule in Python");
+    if (has_rule(input.config.species[s])) return fail("a page cannot have rules in Python");
   }
   const std::string company = check_company(input.config, input.walls, input.outer_walls, 1, 1, {});
   return company.empty() ? 0 : fail(company);

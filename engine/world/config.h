@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/array.h"
+#include "base/device.h"
 #include "base/fields.h"
 #include "base/vec2.h"
 #include "evolution/config.h"
@@ -203,9 +204,10 @@ struct HazardConfig {
   float beta_energy;
   float alpha_age;
   float beta_age;
+  int32_t rule;             ///< 1 if a function of the caller says it, and not the formula
   ScheduleConfig schedule;  ///< of the whole hazard
 
-  HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age, schedule)
+  HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age, rule, schedule)
 };
 
 /// Which of the two comes first in a step.
@@ -240,6 +242,7 @@ struct BirthConfig {
   float kappa;
   float beta;
   float delay;
+  int32_t rule;  ///< 1 if a function of the caller says the chance, and not the formula
   int32_t attempts;
   Vec2 distance_sd;
   ChildNetwork network;
@@ -248,8 +251,8 @@ struct BirthConfig {
   int32_t mating_window;  ///< steps for which an agent whose draw made it a parent waits for another
   float mating_range;     ///< between their surfaces [u]
 
-  HEDON_FIELDS(BirthConfig, kappa, beta, delay, attempts, distance_sd, network, network_noise, mating, mating_window,
-               mating_range)
+  HEDON_FIELDS(BirthConfig, kappa, beta, delay, rule, attempts, distance_sd, network, network_noise, mating,
+               mating_window, mating_range)
 };
 
 /// What a species eats.
@@ -280,6 +283,28 @@ struct SpeciesConfig {
   HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, nutrient, toxin, hazard, birth, genome,
                reward, learning)
 };
+
+/// What a rule of the caller decides.
+enum class RuleUse : int32_t { reward, hazard, birth };
+inline constexpr const char* RULE_USE_NAMES[] = {"reward", "hazard", "birth"};
+inline constexpr int RULE_USES = 3;
+
+/// Whether a rule of the caller decides this for a species.
+HEDON_FN bool has_rule(const SpeciesConfig& species, RuleUse use) {
+  switch (use) {
+    case RuleUse::reward:
+      return species.reward.rule != 0;
+    case RuleUse::hazard:
+      return species.hazard.rule != 0;
+    case RuleUse::birth:
+      return species.birth.rule != 0;
+  }
+  return false;
+}
+
+HEDON_FN bool has_rule(const SpeciesConfig& species) {
+  return has_rule(species, RuleUse::reward) || has_rule(species, RuleUse::hazard) || has_rule(species, RuleUse::birth);
+}
 
 /// Rules that all species of a world share.
 struct RuleConfig {

@@ -17,7 +17,7 @@ enum class Extent : uint8_t {
   old_slots,       ///< slots, if only agents in old slots have children
   learner_slots,   ///< slots, if some species learns; of other species they are not used
   external_slots,  ///< slots, if some species is told what to do
-  ruled_slots,     ///< slots, if some species is paid by a rule of the caller
+  ruled_slots,     ///< slots, if some species has a rule of the caller
   packed_slots,    ///< slots, if some act with weights in pairs
   species,
   mixed_species,  ///< the same, if there are several

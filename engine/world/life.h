@@ -4,50 +4,29 @@
 #include <cstdint>
 
 #include "base/device.h"
-#include "base/math.h"
 #include "base/random.h"
 #include "evolution/reward.h"
+#include "world/chance.h"
 #include "world/inner.h"
 #include "world/population.h"
 #include "world/rule.h"
-#include "world/schedule.h"
 #include "world/world.h"
 
 namespace hedon {
-
-/// The part of the hazard that depends on how full a store is.
-HEDON_FN double hazard_by_store(const HazardConfig& config, double store) {
-  const double x = config.alpha_energy * exp_double(-static_cast<double>(config.beta_energy) * store);
-  // 1 - 1/(1 + x), in a form without cancellation for small x.
-  return config.kappa * (x / (1.0 + x));
-}
-
-/// Probability of dying in a step at age `age` [step] and energy `energy`.
-HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
-  return hazard_by_store(config, energy) + config.alpha_age * exp_double(config.beta_age * age);
-}
-
-/// Probability of having a child in a step at energy `energy`.
-HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
-  return config.kappa / (1.0 + exp_double(config.delay - static_cast<double>(config.beta) * energy));
-}
 
 HEDON_FN bool is_eaten(const World& world, int32_t slot) {
   return world.shape->hunting && world.scratch.eaten[slot] != 0;
 }
 
-/// Decides whether an agent dies at the end of this step, from its draw and its age and energy then.
-HEDON_FN void decide_death(const World& world, int32_t slot) {
-  const Life& life = world.state.life[slot];
-  const HazardConfig& config = world.species(slot).config->hazard;
-  const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
-  double hazards = hazard(config, age, life.energy);
-  const NutrientConfig& nutrient = world.species(slot).config->nutrient;
-  if (nutrient.present != 0)
-    hazards += static_cast<double>(nutrient.hazard_share) * hazard_by_store(config, world.inner(slot)[0]);
-  const double chance = factor_at(config.schedule, world.head().step) * hazards;
+/// Decides whether an agent dies at the end of this step, from its draw and its chance.
+HEDON_FN void decide_death(const World& world, int32_t slot, double chance) {
   world.scratch.dies[slot] =
       world.scratch.starved[slot] != 0 || is_eaten(world, slot) || world.scratch.death_draw[slot] < chance;
+}
+
+/// Decides whether an agent has a child at the end of this step, from its draw and its chance.
+HEDON_FN void decide_birth(const World& world, int32_t slot, double draw, double chance) {
+  world.scratch.breeds[slot] = world.scratch.starved[slot] == 0 && !is_eaten(world, slot) && draw < chance;
 }
 
 /// Pays one agent its meals and charges it for living and for its motors.
@@ -94,24 +73,57 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
   const int64_t row = world.kept(slot, t);
-  if (species.config->reward.rule != 0) return;
+  if (world.ruled(slot, RuleUse::reward)) return;
   const float r = reward(species.config->reward, world.genome(slot), reward_inputs(world, slot, t));
   world.state.reward[slot * int64_t{world.shape->rollout} + row] = r;
   world.state.life[slot].reward += r;
 }
 
-/// Draws whether an agent has a child and whether it dies.
-HEDON_FN void draw_fates(World& world, int32_t slot) {
-  const Life& life = world.state.life[slot];
-  StepScratch& scratch = world.scratch;
-  const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(life.agent_id),
+/// An agent's draws for having a child, from the first two words, and for dying, from the others.
+HEDON_FN Random4 fate_bits(const World& world, int32_t slot) {
+  const RandomStream random{world.seed, Purpose::life_and_death, static_cast<uint32_t>(world.state.life[slot].agent_id),
                             static_cast<uint32_t>(world.head().step)};
-  const Random4 bits = random.draw(0);
-  scratch.breeds[slot] =
-      scratch.starved[slot] == 0 && !is_eaten(world, slot) &&
-      to_fine_uniform(bits.word[0], bits.word[1]) < birth_rate(world.species(slot).config->birth, life.energy);
-  scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
-  decide_death(world, slot);
+  return random.draw(0);
+}
+
+/// Draws whether an agent has a child and whether it dies; where a rule says its chances, it decides later.
+HEDON_FN void draw_fates(World& world, int32_t slot) {
+  const Random4 bits = fate_bits(world, slot);
+  world.scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
+  if (!world.ruled(slot, RuleUse::birth))
+    decide_birth(world, slot, to_fine_uniform(bits.word[0], bits.word[1]), birth_chance(world, slot));
+  if (!world.ruled(slot, RuleUse::hazard)) decide_death(world, slot, death_chance(world, slot));
+}
+
+/// Decides by the rule of a species which of its agents die, or have a child.
+HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
+  const int32_t count = ask_all(world, s, use);
+  for (int32_t i = 0; i < count; ++i) {
+    const int32_t slot = world.scratch.asked[i];
+    const double chance = answered_chance(world, s, i);
+    if (use == RuleUse::hazard) {
+      decide_death(world, slot, chance);
+    } else {
+      const Random4 bits = fate_bits(world, slot);
+      decide_birth(world, slot, to_fine_uniform(bits.word[0], bits.word[1]), chance);
+    }
+  }
+}
+
+/// Asks all rules: first what agents are paid, then, with the memories that this leaves, their chances.
+HEDON_FN void apply_rules(World& world) {
+  for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
+    const SpeciesConfig& config = *world.shape->of[s].config;
+    if (has_rule(config, RuleUse::reward)) pay_by_rule(world, s);
+    if (has_rule(config, RuleUse::hazard)) decide_by_rule(world, s, RuleUse::hazard);
+    if (has_rule(config, RuleUse::birth)) decide_by_rule(world, s, RuleUse::birth);
+  }
+}
+
+/// Decides again whether a parent dies, since it gave energy to a child.
+HEDON_FN void decide_death_again(World& world, int32_t slot) {
+  const bool ruled = world.ruled(slot, RuleUse::hazard);
+  decide_death(world, slot, ruled ? ask_chance(world, slot, RuleUse::hazard) : death_chance(world, slot));
 }
 
 /// Adds an agent's meals of this step to those of its species.
@@ -169,9 +181,9 @@ HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
   } else {
     spawn_child(world, parent, mate, position);
     // Again, since the parents gave energy to the child.
-    decide_death(world, parent);
+    decide_death_again(world, parent);
     if (mate < 0) return;
-    decide_death(world, mate);
+    decide_death_again(world, mate);
     end_waiting(world, parent, mate);
   }
 }

@@ -1,4 +1,5 @@
-/// Rewards by a rule of the caller: a function that pays all agents of a species at once.
+/// Rules of the caller: functions that say for all agents of a species at once what they are paid, or how likely they
+/// die or breed.
 #pragma once
 
 #include <cmath>
@@ -6,6 +7,7 @@
 
 #include "base/device.h"
 #include "evolution/reward.h"
+#include "world/chance.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -46,10 +48,25 @@ HEDON_FN float nearness(const RewardInputs& inputs) {
   return sum / static_cast<float>(inputs.rays);
 }
 
+/// What the config itself would say where a rule is asked.
+HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use, const RewardInputs& inputs) {
+  switch (use) {
+    case RuleUse::reward:
+      return static_cast<double>(reward(world.species(slot).config->reward, world.genome(slot), inputs));
+    case RuleUse::hazard:
+      return death_chance(world, slot);
+    case RuleUse::birth:
+      return birth_chance(world, slot);
+  }
+  return 0.0;
+}
+
 /// Fills the record of one agent: see `rule_columns` in `hedon.config.layout`.
-HEDON_FN void fill_record(const World& world, int32_t slot, int64_t t, double* record) {
-  const SpeciesConfig& config = *world.species(slot).config;
-  const RewardInputs inputs = reward_inputs(world, slot, t);
+HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double* record) {
+  const int32_t s = world.shape->species_of(slot);
+  const Species& species = world.shape->of[s];
+  const SpeciesConfig& config = *species.config;
+  const RewardInputs inputs = reward_inputs(world, slot, world.window_step());
   const Life& life = world.state.life[slot];
   const BodyState& body = world.state.physics.bodies;
   const Vec2 moved{body.x[slot] - world.scratch.start_x[slot], body.y[slot] - world.scratch.start_y[slot]};
@@ -63,43 +80,80 @@ HEDON_FN void fill_record(const World& world, int32_t slot, int64_t t, double* r
   *record++ = static_cast<double>(nearness(inputs));
   *record++ = static_cast<double>(world.scratch.force_left[slot]);
   *record++ = static_cast<double>(world.scratch.force_right[slot]);
-  *record++ = static_cast<double>(reward(config.reward, world.genome(slot), inputs));
+  *record++ = static_cast<double>(body.x[slot]);
+  *record++ = static_cast<double>(body.y[slot]);
+  *record++ = static_cast<double>(world.head().step);
+  *record++ = static_cast<double>(species.capacity() - world.state.free_count[s]);
+  *record++ = own_answer(world, slot, use, inputs);
   const double* memory = &world.state.memory[int64_t{slot} * world.shape->memory];
   for (int32_t m = 0; m < config.reward.memory; ++m) *record++ = memory[m];
 }
 
-/// Pays the agents of a species by its rule, in the order of their ids.
-HEDON_FN void pay_by_rule(World& world, int32_t s, int64_t t) {
-  const WorldState& state = world.state;
+/// Asks the rule of a species about the first `count` agents of `scratch.asked`.
+HEDON_FN void ask(World& world, int32_t s, RuleUse use, int32_t count) {
   const StepScratch& scratch = world.scratch;
+  for (int32_t i = 0; i < count; ++i) {
+    fill_record(world, scratch.asked[i], use, &scratch.record[int64_t{i} * world.shape->of[s].record]);
+    scratch.answer[i] = static_cast<double>(NAN);  // stays where the rule fails half-way
+  }
+  world.rule[s][static_cast<int32_t>(use)](count, scratch.record.data, scratch.answer.data);
+}
+
+/// Asks the rule of a species about all of its agents, in the order of their ids. Returns how many there are.
+HEDON_FN int32_t ask_all(World& world, int32_t s, RuleUse use) {
   const Species& species = world.shape->of[s];
-  const int32_t memory = species.config->reward.memory, width = species.record;
   int32_t count = 0;
   for (int32_t i = 0; i < world.head().living_count; ++i) {
-    const int32_t slot = state.living[i];
-    if (slot < species.first_slot || slot >= species.last_slot) continue;
-    fill_record(world, slot, t, &scratch.record[int64_t{count} * width]);
-    scratch.paid[count] = static_cast<double>(NAN);  // stays where the rule fails half-way
-    scratch.paid_slot[count++] = slot;
+    const int32_t slot = world.state.living[i];
+    if (slot >= species.first_slot && slot < species.last_slot) world.scratch.asked[count++] = slot;
   }
-  world.rule[s](count, scratch.record.data, scratch.paid.data);
+  ask(world, s, use, count);
+  return count;
+}
+
+/// What a rule has left in the memory of the agent that it was asked about as number `i`.
+HEDON_FN const double* memory_after(const World& world, int32_t s, int32_t i) {
+  const Species& species = world.shape->of[s];
+  return &world.scratch.record[int64_t{i + 1} * species.record - species.config->reward.memory];
+}
+
+/// Pays the agents of a species by its rule.
+HEDON_FN void pay_by_rule(World& world, int32_t s) {
+  const WorldState& state = world.state;
+  const int32_t memory = world.shape->of[s].config->reward.memory;
+  const int32_t count = ask_all(world, s, RuleUse::reward);
   for (int32_t i = 0; i < count; ++i) {
-    const int32_t slot = scratch.paid_slot[i];
-    const double paid = scratch.paid[i];
-    const double* kept = &scratch.record[int64_t{i + 1} * width - memory];
+    const int32_t slot = world.scratch.asked[i];
+    const double paid = world.scratch.answer[i];
+    const double* kept = memory_after(world, s, i);
     double sum = paid;
     for (int32_t m = 0; m < memory; ++m) sum += state.memory[int64_t{slot} * world.shape->memory + m] = kept[m];
     if (!(sum - sum == 0.0)) return world.fail(Status::rule_not_finite, state.life[slot].agent_id, sum);
-    state.reward[slot * int64_t{world.shape->rollout} + world.kept(slot, t)] = static_cast<float>(paid);
+    const int64_t row = slot * int64_t{world.shape->rollout} + world.kept(slot, world.window_step());
+    state.reward[row] = static_cast<float>(paid);
     state.life[slot].reward += static_cast<double>(static_cast<float>(paid));
   }
 }
 
-/// Pays the agents of all species that have a rule.
-HEDON_FN void pay_by_rules(World& world, int64_t t) {
-  for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
-    if (world.shape->of[s].config->reward.rule != 0) pay_by_rule(world, s, t);
+/// The chance that a rule gave as its answer `i`, which must be one; a rule of chances leaves memories as they are.
+HEDON_FN double answered_chance(const World& world, int32_t s, int32_t i) {
+  const int32_t slot = world.scratch.asked[i], id = world.state.life[slot].agent_id;
+  const double chance = world.scratch.answer[i];
+  if (!(chance >= 0.0 && chance <= 1.0)) world.fail(Status::rule_no_chance, id, chance);
+  const double* kept = memory_after(world, s, i);
+  for (int32_t m = 0; m < world.shape->of[s].config->reward.memory; ++m) {
+    if (kept[m] != world.state.memory[int64_t{slot} * world.shape->memory + m])
+      world.fail(Status::rule_wrote, id, kept[m]);
   }
+  return chance;
+}
+
+/// Asks the rule of its species for a chance of the agent in `slot` alone.
+HEDON_FN double ask_chance(World& world, int32_t slot, RuleUse use) {
+  const int32_t s = world.shape->species_of(slot);
+  world.scratch.asked[0] = slot;
+  ask(world, s, use, 1);
+  return answered_chance(world, s, 0);
 }
 
 }  // namespace hedon

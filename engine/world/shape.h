@@ -53,7 +53,7 @@ struct WorldShape {
   bool old_slots;    ///< only agents in slots that were taken when the window began have children
   bool learning;     ///< some species learns
   bool external;     ///< some species is told what to do
-  bool ruled;        ///< some species is paid by a rule of the caller
+  bool ruled;        ///< rules of the caller pay some species, or say when it dies or breeds
   int32_t memory;    ///< most numbers that a rule keeps for each agent
   int32_t record;    ///< of the longest record that a rule gets
   int32_t scents;    ///< of the longest row of smells: channels times noses
@@ -127,7 +127,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     grow(shape.pairs, species.network.pairs());
     grow(shape.lines, species.network.observation.wide() ? WIDE_LINES : NARROW_LINES);
     for (int32_t prey = 0; prey < own.diet.prey.count; ++prey) shape.hunting |= own.diet.prey[prey] > 0.0f;
-    if (own.reward.rule != 0) {
+    if (has_rule(own)) {
       shape.ruled = true;
       grow(shape.memory, own.reward.memory);
       grow(shape.record, species.record);

@@ -92,8 +92,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.scent = make_channels(config.sensor.smells, types);
   species.learns = config.learning.policy == Policy::ppo;
   species.observes = species.learns;
-  species.observes |= config.reward.rule != 0;
-  species.record = config.reward.terms.count + config.genome.genes.count + 8 + config.reward.memory;
+  species.observes |= has_rule(config);
+  species.record = config.reward.terms.count + config.genome.genes.count + 12 + config.reward.memory;
   for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);
   const int32_t dense = own_entries(config) + config.sensor.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,

@@ -94,7 +94,7 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     group.for_each(head.living_count, [&](int32_t i) { reward_and_fates(scratch.by_slot[i]); });
   }
   group.once([&] {
-    pay_by_rules(world, t);
+    apply_rules(world);
     keep_ledger(world);
     if (world.shape->hunting) apply_deaths(world, scratch.eaten);
     if (world.config->rules.birth_order == BirthOrder::before_deaths) breed(world);

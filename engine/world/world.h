@@ -57,8 +57,8 @@ struct StepScratch {
   Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
   Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
   Array<float> claim_distance;             ///< squared
-  Array<double> record, paid;              ///< of the agents that a rule pays, one after another
-  Array<int32_t> paid_slot;                ///< their slots
+  Array<double> record, answer;            ///< of the agents that a rule is asked about, one after another
+  Array<int32_t> asked;                    ///< their slots
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 
@@ -77,15 +77,15 @@ struct StepScratch {
                (eater, foods, one, scratch), (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
-               (record, ruled_slots, record, scratch), (paid, ruled_slots, one, scratch),
-               (paid_slot, ruled_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
+               (record, ruled_slots, record, scratch), (answer, ruled_slots, one, scratch),
+               (asked, ruled_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };
 
-/// Pays `count` agents: reads and may change their records, one after another, and writes what each is paid.
-using RewardRule = void (*)(int64_t count, double* records, double* paid);
+/// Answers for `count` agents: reads and may change their records, one after another, and writes a number for each.
+using Rule = void (*)(int64_t count, double* records, double* answers);
 
 struct World {
-  RewardRule rule[MAX_SPECIES];  ///< of each species; null for none
+  Rule rule[MAX_SPECIES][RULE_USES];  ///< of each species; null for none
   const WorldConfig* config;
   const WorldShape* shape;
   const Kernel* kernel;
@@ -96,11 +96,14 @@ struct World {
   RayScene scene;
 
   HEDON_FN WorldHead& head() const { return state.head[0]; }
+  HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && has_rule(*species(slot).config, use); }
   HEDON_FN const Species& species(int32_t slot) const { return shape->of[shape->species_of(slot)]; }
   HEDON_FN Counters& counters(int32_t slot) const { return state.counters[shape->species_of(slot)]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
   /// The step at which the window of the current step began.
   HEDON_FN int64_t window_start() const { return head().step - head().step % shape->steps; }
+  /// The step within its window.
+  HEDON_FN int64_t window_step() const { return head().step % shape->steps; }
   HEDON_FN bool over() const { return head().extinct_step >= 0 || fault().status != Status::ok; }
 
   /// Keeps the first error; later ones are usually its consequences.

@@ -61,9 +61,9 @@ class Simulation:
         Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
-    def set_rule(self, species: int, address: int) -> None:
+    def set_rule(self, species: int, use: str, address: int) -> None:
         """
-        Gives a species the function that pays it, by its address: void(int64 count, double *records, double *paid).
+        Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers).
         """
 
     def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:

@@ -39,7 +39,7 @@ PARTS = {
     "world": Part("whole worlds with learning, by threads, worlds and instruction sets", world.measure, world.table),
     "records": Part("writing a run's tables", records.measure, records.table),
     "startup": Part("from the start of a process to its first step", startup.measure, startup.table),
-    "rule": Part("a reward in Python, beside the terms of a config", rule.measure, rule.table),
+    "rule": Part("rules in Python, beside the formulas of a config", rule.measure, rule.table),
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
 }
 DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("growth", "rule"))

@@ -1,4 +1,4 @@
-"""What a reward as a rule in Python costs: a world that is paid by its terms, beside one that is paid by a rule."""
+"""What rules in Python cost: a world that lives by its config's formulas, beside one that asks rules for the same."""
 
 import tempfile
 from functools import partial
@@ -16,14 +16,25 @@ STEPS = 1000
 UNCHANGING = ("hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0", "learning.update_epochs=0")
 """The same agents throughout, which see and act but do not learn: learning would hide the cost."""
 TEXT = """
-def same(agent):
+def paid(agent):
     return agent.linear
+
+def chance(agent):
+    return agent.chance
 """
-"""A rule that pays what the terms pay, so that both worlds stay the same."""
+"""Rules that answer what the formulas give, so that all worlds stay the same."""
+RULES = {
+    "formulas": {},
+    "reward": {"reward": "paid"},
+    "hazard": {"hazard": "chance"},
+    "birth": {"birth": "chance"},
+    "all": {"reward": "paid", "hazard": "chance", "birth": "chance"},
+}
+"""The worlds: which of their formulas a rule replaces."""
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row: seconds of the same steps, paid by terms and by the rule, a list each.
+    """One row for each world: seconds of the same steps, a list.
 
     Raises:
         PlanError: Numba is not installed.
@@ -33,27 +44,39 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     with tempfile.TemporaryDirectory(prefix="hedon-rule-") as folder:
         file = Path(folder) / "rule.py"
         file.write_text(TEXT, encoding="utf-8")
-        terms = Simulation(plan.config(*UNCHANGING), [1], 1, plan.kernel)
-        ruled = Simulation(plan.config(*UNCHANGING, f'reward.rule="{file}:same"'), [1], 1, plan.kernel)
-    agents, steps = terms.worlds[0].alive, 10 if plan.quick else STEPS
-    times = interleave({"terms": partial(terms.run, steps), "rule": partial(ruled.run, steps)}, plan.repeats)
-    rewards = [simulation.worlds[0].agents()["reward"].sum() for simulation in (terms, ruled)]
-    require(rewards[0] == rewards[1], f"rule: it paid {rewards[1]}, and the terms {rewards[0]}")
-    return [{"agents": agents, "steps": steps, **{f"{name}_seconds": values for name, values in times.items()}}]
+        worlds = {
+            name: Simulation(
+                plan.config(*UNCHANGING, *(f'{use}.rule="{file}:{rule}"' for use, rule in chosen.items())),
+                [1],
+                1,
+                plan.kernel,
+            )
+            for name, chosen in RULES.items()
+        }
+    steps = 10 if plan.quick else STEPS
+    times = interleave({name: partial(each.run, steps) for name, each in worlds.items()}, plan.repeats)
+    ends = {name: each.worlds[0].agents()["reward"].sum() for name, each in worlds.items()}
+    for name, reward in ends.items():
+        require(reward == ends["formulas"], f"rule: with rules for {name}, agents got {reward}, not {ends['formulas']}")
+    agents = worlds["formulas"].worlds[0].alive
+    return [{"rules": name, "agents": agents, "steps": steps, "seconds": times[name]} for name in RULES]
 
 
 def table(rows: list[Row], _: Calibration) -> Table:
-    """Nanoseconds of an agent's step with terms and with the rule, and what the rule costs."""
-    (row,) = rows
-    factor = 1e9 / (row["agents"] * row["steps"])
-    cost = (median(row["rule_seconds"]) - median(row["terms_seconds"])) * factor
-    line = (
-        str(row["agents"]),
-        *(spread(row[f"{name}_seconds"], 0, factor) for name in ("terms", "rule")),
-        f"{cost:.0f}",
-    )
+    """Nanoseconds of an agent's step, and how much of it is the rule's."""
+    factor = 1e9 / (rows[0]["agents"] * rows[0]["steps"])
+    none = median(rows[0]["seconds"])
+    lines = [
+        (
+            row["rules"],
+            str(row["agents"]),
+            spread(row["seconds"], 0, factor),
+            f"{(median(row['seconds']) - none) * factor:.0f}",
+        )
+        for row in rows
+    ]
     return Table(
-        "rule: a reward in Python, on one thread, without learning",
-        ("agents", "paid by terms [ns per agent and step]", "by a rule", "cost of the rule"),
-        [line],
+        "rule: rules in Python, on one thread, without learning",
+        ("rules for", "agents", "time [ns per agent and step]", "cost of the rules"),
+        lines,
     )

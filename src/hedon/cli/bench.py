@@ -50,7 +50,7 @@ def bench(
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step
-      rule      a reward in Python, beside the terms of a config; needs hedon[rules]
+      rule      rules in Python, beside the formulas of a config; needs hedon[rules]
       growth    one world without learning, up to 500 times as large; takes minutes and 21 GB
 
     Other programs may use the machine too. So the cases are measured in turn, several times, and times are

@@ -21,7 +21,7 @@ from hedon.config.layout import (
 )
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schedule import MAX_FACTOR
-from hedon.config.species import EVERYTHING, MAX_SPECIES, RULES, SpeciesConfig
+from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, RULES, SpeciesConfig
 
 MAX_TOUCH_BITS = 128
 """Most types times touch sectors that the engine has room for."""
@@ -130,15 +130,14 @@ def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
 
 def _rule(config: Config, name: str, path: str) -> Iterator[Problem]:
     species = config.agents[name]
-    rule = species.reward.rule
-    if rule and not re.fullmatch(RULE_PATTERN, rule):
-        yield Problem(
-            f"{path}reward.rule", "must be FILE.py:NAME, a Python file and a function in it", format_value(rule)
-        )
-    columns = rule_columns(config, name) if rule else ()
-    for column in {each for each in columns if columns.count(each) > 1}:
-        yield Problem(f"{path}reward.rule", f"two things that it reads are called {column}: rename a food")
-    if species.reward.memory and not rule:
+    for use in RULE_USES:
+        place, rule = f"{path}{use}.rule", getattr(species, use).rule
+        if rule and not re.fullmatch(RULE_PATTERN, rule):
+            yield Problem(place, "must be FILE.py:NAME, a Python file and a function in it", format_value(rule))
+        columns = rule_columns(config, name, use) if rule else ()
+        for column in {each for each in columns if columns.count(each) > 1}:
+            yield Problem(place, f"two things that it reads are called {column}: rename a food")
+    if species.reward.memory and not species.reward.rule:
         yield Problem(
             f"{path}reward.memory", "is kept by a rule: give reward.rule too", format_value(species.reward.memory)
         )

@@ -15,6 +15,8 @@ from hedon.config.problem import format_value
 EARLIER = {
     "learning.policy": "ppo",
     "reward.rule": "",
+    "hazard.rule": "",
+    "birth.rule": "",
     "reward.memory": 0,
     "learning.acting_weights": "float32",
     "physics.solver": "sequential",

@@ -150,18 +150,23 @@ def observed_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
     return tuple(name for name in every if name == "energy" or getattr(species, name).observed)
 
 
-RULE_INPUTS = ("age", "energy_before", "energy", "moved", "nearness", "force_left", "force_right", "linear")
+RULE_INPUTS = (
+    *("age", "energy_before", "energy", "moved", "nearness", "force_left", "force_right"),
+    *("x", "y", "step", "alive"),
+)
 """What a rule gets of every agent beside its reward's inputs, its genes and its memory, in the engine's order."""
 
 
-def rule_columns(config: Config, name: str) -> tuple[str, ...]:
+def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, ...]:
     """Names of the fields of the record that a rule of a species gets of each agent, in order.
 
     An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `relief`.
+    What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
     """
     layout, memory = layouts(config)[name], config.agents[name].reward.memory
     inputs = ("relief" if term.input == "relief" else term.gene.removeprefix("w_") for term in layout.terms)
-    return (*inputs, *layout.gene_names, *RULE_INPUTS, *(f"memory_{i + 1}" for i in range(memory)))
+    own = "linear" if use == "reward" else "chance"
+    return (*inputs, *layout.gene_names, *RULE_INPUTS, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
 def choose_species(name: str | None, config: Config) -> str | None:

@@ -34,6 +34,15 @@ class HazardConfig:
         float,
         Doc("how fast age raises the probability", "1/step", EITHER, Range(ge=0, le=1)),
     ] = 4e-6
+    rule: Annotated[
+        str,
+        Doc(
+            "a Python function that says the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
+            "file. Empty for the formula above (guide/rule.md)",
+            "",
+            OURS,
+        ),
+    ] = ""
     schedule: dict[str, ScheduleConfig] = field(default_factory=dict)
 
 
@@ -58,6 +67,15 @@ class BirthConfig:
         float,
         Doc("how much energy, times beta, half of that probability takes", "", OURS, Range(ge=-1e3, le=1e3)),
     ] = 0.0
+    rule: Annotated[
+        str,
+        Doc(
+            "a Python function that says the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
+            "file. Empty for the formula above (guide/rule.md)",
+            "",
+            OURS,
+        ),
+    ] = ""
     attempts: Annotated[
         int,
         Doc("random places tried for the child; if none is free, the birth fails", "", EITHER, Range(ge=1, le=1000)),

@@ -7,6 +7,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.food import FoodConfig
 from hedon.config.layout import FAMILY_GENES, INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
+from hedon.config.life import HazardConfig
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
@@ -91,12 +92,16 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
         },
         "energy": asdict(species.energy),
         **{state: _inner(species, layout, state) for state in INNER_STATES if state != "energy"},
-        "hazard": asdict(species.hazard) | {"schedule": _schedule(species.hazard.schedule, HAZARD_SCHEDULE)},
-        "birth": birth | {"distance_sd": distance_sd(config, species)},
+        "hazard": _hazard(species.hazard),
+        "birth": birth | {"rule": _ruled(species.birth.rule), "distance_sd": distance_sd(config, species)},
         "genome": _genome(species, layout),
         "reward": _reward(species, layout),
         "learning": asdict(species.learning),
     }
+
+
+def _hazard(hazard: HazardConfig) -> dict[str, Any]:
+    return asdict(hazard) | {"rule": _ruled(hazard.rule), "schedule": _schedule(hazard.schedule, HAZARD_SCHEDULE)}
 
 
 def _inner(species: SpeciesConfig, layout: SpeciesLayout, state: str) -> dict[str, Any]:
@@ -141,12 +146,16 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
         "family": reward.family,
         "threshold": reward.threshold,
         "threshold_width": reward.threshold_width,
-        "rule": int(bool(reward.rule)),
+        "rule": _ruled(reward.rule),
         **{f"{name}_gene": place.get(f"g_{name}", -1) for name in FAMILY_GENES},
         "memory": reward.memory,
         "set_points": [place.get(set_point_of(state), -1) for state in INNER_STATES],
         "terms": terms,
     }
+
+
+def _ruled(place: str) -> int:
+    return int(bool(place))
 
 
 def _without(table: dict[str, Any], *names: str) -> dict[str, Any]:

@@ -70,6 +70,8 @@ class SpeciesConfig:
 PER_SPECIES = tuple(each.name for each in fields(SpeciesConfig))
 """The sections of a config that describe every species."""
 
+RULE_USES = ("reward", "hazard", "birth")
+"""The sections of a species that may have a rule in Python."""
 RULES = (
     "body.food_radius",
     "sensor.eaten_food",

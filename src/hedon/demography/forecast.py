@@ -134,7 +134,7 @@ def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tu
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
     capacity, founders = config.population.capacity, config.population.initial_count
     floor = config.energy.starvation == "floor"
-    found = []
+    found = list(_rule_warnings(config))
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
     if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime):
@@ -178,3 +178,12 @@ def _beyond(config: Config) -> Iterator[str]:
         )
     if "toxin" in inner:
         yield "Toxin weakens motors, so agents that eat it move and spend less; this is not forecast."
+
+
+def _rule_warnings(config: Config) -> Iterator[str]:
+    for what, rule in (("death", config.hazard.rule), ("birth", config.birth.rule)):
+        if rule:
+            yield (
+                f"The chance of {what} comes from a rule, {rule}: what it answers is not known before a run. The "
+                "numbers here are those of the formula that it replaces."
+            )

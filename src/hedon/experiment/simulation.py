@@ -64,7 +64,8 @@ class Simulation:
         )
         self.rules = rules(self.config)
         for rule in self.rules:
-            self.engine.set_rule(list(self.config.agents).index(rule.species), rule.compiled.address)
+            species = list(self.config.agents).index(rule.species)
+            self.engine.set_rule(species, rule.use, rule.compiled.address)
         self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
 
     def run(self, steps: int) -> None:

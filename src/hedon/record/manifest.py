@@ -49,7 +49,7 @@ class Session:
 
 @dataclass(frozen=True)
 class RuleSource:
-    """The text of a rule in Python that pays agents.
+    """The text of a rule in Python.
 
     Attributes:
         file: path as the config gives it.
@@ -122,7 +122,7 @@ class Manifest:
         obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
         mating: whether some species has two parents.
         inner: names of the inner states beside energy, of all species.
-        rules: the rules in Python that pay agents, with their texts.
+        rules: the rules in Python, with their texts.
         format_version: of the run folder.
     """
 
