@@ -6,10 +6,12 @@ RUN := $(UV) run --no-progress
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # Rules in Python are compiled by Numba, some 190 MB: only the tests install it.
 EXTRA := --extra rules
+# What the site is made with.
+SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
 
-.PHONY: run test test-long static sanitized sync stubs viewer clean
+.PHONY: run test test-long static sanitized sync stubs viewer docs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
@@ -17,7 +19,7 @@ run: sync
 
 test: sync
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
-	$(RUN) $(BROWSER) $(EXTRA) pytest --numprocesses auto --dist loadfile
+	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile
 
 # Side by side, since each keeps one processor busy.
 static: sync
@@ -68,6 +70,10 @@ stubs: sync
 # The page and the WebAssembly of `hedon view`, after a change in web/ or engine/. Needs Node 20 or newer with npm.
 viewer: sync
 	$(RUN) --group viewer python web/build.py
+
+# The site of the documentation, in build/docs: python3 -m http.server --directory build/docs
+docs: sync
+	$(RUN) $(SITE) sphinx-build --quiet --fail-on-warning --conf-dir docs/site . build/docs
 
 clean:
 	rm -rf build web/node_modules .venv .uv .pytest_cache .ruff_cache

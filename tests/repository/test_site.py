@@ -1,0 +1,65 @@
+"""The site is made without a warning, holds every page of the documentation, and its links lead somewhere."""
+
+import re
+import subprocess
+import sys
+from html import unescape
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+from project_files import ROOT, project_files
+
+pytest.importorskip("furo", reason="needs Sphinx and its theme: uv sync --group docs")
+
+NO_PAGES = {"web", "docs/site/contents.md"}
+"""Where there is Markdown that is no page: a part that is read by its folder, and what is a part of another page."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "--quiet", "--fail-on-warning", "--conf-dir", "docs/site", ".", str(out)]
+    made = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    assert made.returncode == 0, made.stderr
+    return out
+
+
+def test_every_page_is_in_it(site: Path) -> None:
+    pages = [page.relative_to(ROOT) for page in project_files(".md")]
+    wanted = [page for page in pages if not NO_PAGES & {page.parts[0], page.as_posix()}]
+    assert len(wanted) > 60
+    assert [page for page in wanted if not (site / page).with_suffix(".html").is_file()] == []
+
+
+def test_its_links_lead_somewhere(site: Path) -> None:
+    names: dict[Path, set[str]] = {}
+    broken = []
+    for page in sorted(site.rglob("*.html")):
+        for link in re.findall(r'(?:href|src)="([^"]*)"', page.read_text(encoding="utf-8")):
+            path, _, anchor = unquote(unescape(link)).partition("#")
+            if re.match(r"[a-z]+:|//", path):
+                continue
+            target = (page.parent / path.partition("?")[0]).resolve() if path else page
+            if not target.is_file():
+                broken.append((page.name, link))
+            elif anchor and target.suffix == ".html":
+                if target not in names:
+                    names[target] = set(re.findall(r'\bid="([^"]*)"', target.read_text(encoding="utf-8")))
+                if anchor not in names[target]:
+                    broken.append((page.name, link))
+    assert broken == []
+    assert len(names) > 40
+
+
+def test_docstrings_and_equations_are_shown(site: Path) -> None:
+    runs = (site / "docs/site/api/run.html").read_text(encoding="utf-8")
+    assert "All agents of one moment" in runs
+    model = (site / "docs/model.html").read_text(encoding="utf-8")
+    assert model.count("<math") > 50
+    assert "$" not in re.sub(r"<(script|style|pre|code)\b.*?</\1>|<[^>]*>", "", model, flags=re.DOTALL)
+
+
+def test_the_live_page_is_in_it(site: Path) -> None:
+    for name in ("index.html", "hedon.wasm", "data/page.json"):
+        assert (site / "docs/live" / name).read_bytes() == (ROOT / "docs/live" / name).read_bytes()
