@@ -4,6 +4,7 @@ import difflib
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal, overload
 
 import polars as pl
 
@@ -21,11 +22,18 @@ from hedon.record.folder import (
 )
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.schema import Columns, run_tables
+from hedon.record.sketch import run_html, status_line
+from hedon.record.tool_frame import FrameName, require_frame, to_pandas
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A run on disk. Every call reads the tables again, so that a run that is still running shows its newest rows.
+
+    In a notebook it shows itself: its worlds, and how many lived over time.
 
     Attributes:
         path: the folder.
@@ -62,27 +70,56 @@ class Run:
         """Names of the neutral markers."""
         return self.columns.neutral_names
 
-    def agents(self, *, skip_damaged: bool = False) -> pl.DataFrame:
+    def __repr__(self) -> str:
+        return f"<Run {self.path}: {status_line(self.manifest)}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows; damaged parts are left out."""
+        return run_html(str(self.path), self.manifest, self.population(skip_damaged=True))
+
+    @overload
+    def agents(self, *, skip_damaged: bool = False, frame: Literal["polars"] = "polars") -> pl.DataFrame: ...
+    @overload
+    def agents(self, *, skip_damaged: bool = False, frame: Literal["pandas"]) -> "pd.DataFrame": ...
+    def agents(self, *, skip_damaged: bool = False, frame: FrameName = "polars") -> "pl.DataFrame | pd.DataFrame":
         """All agents of one moment: the dead, in the order in which they were written, then the living.
 
         Before a run has ended, this is the moment when the living were last written; agents that died later count as
         alive.
 
+        Args:
+            skip_damaged: leave out parts that cannot be read.
+            frame: "polars", or "pandas" for a copy as pandas has it, where integers with missing values are floats.
+
         Raises:
             RecordError: a part is damaged, and `skip_damaged` is false.
+            ArgumentError: `frame` is none of these, or pandas is not installed.
         """
+        require_frame(frame)
         living, parts = self._living(skip_damaged)
         dead = _read(part_paths(self.path, "agents")[:parts], self._tables["agents"], skip_damaged)
-        return pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
+        rows = pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
+        return to_pandas(rows) if frame == "pandas" else rows
 
-    def population(self, *, skip_damaged: bool = False) -> pl.DataFrame:
+    @overload
+    def population(self, *, skip_damaged: bool = False, frame: Literal["polars"] = "polars") -> pl.DataFrame: ...
+    @overload
+    def population(self, *, skip_damaged: bool = False, frame: Literal["pandas"]) -> "pd.DataFrame": ...
+    def population(self, *, skip_damaged: bool = False, frame: FrameName = "polars") -> "pl.DataFrame | pd.DataFrame":
         """One row per world and interval, by world and step.
+
+        Args:
+            skip_damaged: as for `agents`.
+            frame: as for `agents`.
 
         Raises:
             RecordError: a part is damaged, and `skip_damaged` is false.
+            ArgumentError: `frame` is none of these, or pandas is not installed.
         """
+        require_frame(frame)
         rows = _read(part_paths(self.path, "population"), self._tables["population"], skip_damaged)
-        return rows.sort("world", "step", maintain_order=True)
+        rows = rows.sort("world", "step", maintain_order=True)
+        return to_pandas(rows) if frame == "pandas" else rows
 
     def frames(self) -> pl.LazyFrame:
         """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded."""

@@ -1,0 +1,43 @@
+"""Tables of a run as data frames of the library that a reader prefers."""
+
+import difflib
+from typing import TYPE_CHECKING, Any, Literal
+
+import polars as pl
+
+from hedon.error import ArgumentError
+from hedon.text import brief
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FrameName = Literal["polars", "pandas"]
+FRAMES: tuple[FrameName, ...] = ("polars", "pandas")
+
+
+def require_frame(name: Any) -> None:
+    """Refuses a library that is not known or not installed, before anything is read.
+
+    Raises:
+        ArgumentError: the name is not one of `FRAMES`, or pandas is not installed.
+    """
+    if name not in FRAMES:
+        close = difflib.get_close_matches(str(name), FRAMES, n=1)
+        hint = f"; did you mean {close[0]!r}?" if close else ""
+        raise ArgumentError(f"frame = {brief(repr(name), 60)}: must be one of {', '.join(FRAMES)}{hint}")
+    if name == "pandas":
+        try:
+            import pandas  # noqa: F401
+        except ModuleNotFoundError as error:
+            raise ArgumentError(f"frame = 'pandas' needs {error.name}: pip install \"hedon[pandas]\"") from error
+
+
+def to_pandas(table: pl.DataFrame) -> "pd.DataFrame":
+    """The same rows for pandas, as copies.
+
+    Numbers keep their types, but integers with missing values become 64-bit floats, in which these are NaN. Missing
+    texts are None.
+    """
+    import pandas as pd
+
+    return pd.DataFrame({column.name: column.to_numpy(writable=True) for column in table})
