@@ -4,8 +4,8 @@ UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
-# Rules in Python are compiled by Numba, some 190 MB: only the tests install it.
-EXTRA := --extra rules
+# Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB: only the tests install them.
+EXTRA := --extra rules --extra video
 # What the site is made with.
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.

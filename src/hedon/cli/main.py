@@ -20,6 +20,7 @@ from hedon.cli.report import report
 from hedon.cli.reproduce import reproduce
 from hedon.cli.resume import resume
 from hedon.cli.run import run
+from hedon.cli.video import video
 from hedon.cli.view import view
 from hedon.error import HedonError
 from hedon.text import printable
@@ -44,6 +45,7 @@ app.command()(run)
 app.command()(resume)
 app.command()(branch)
 app.command()(view)
+app.command()(video)
 app.command()(report)
 app.command()(reproduce)
 app.command()(analyze)

@@ -157,6 +157,13 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
     return discs
 
 
+def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
+    """Draws a ring around the agent at this index of the snapshot."""
+    center = np.array([[snapshot.x[index], snapshot.y[index]]])
+    radius = float(snapshot.radius[snapshot.species[index]]) + 1.5
+    _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
+
+
 def species_color(index: int) -> str:
     """The color of a species' outline."""
     return _SPECIES_COLORS[index]
@@ -176,9 +183,7 @@ def _draw_energy_bar(figure: Figure, axes: Axes, snapshot: Snapshot, discs: Elli
 
 def _draw_rings(axes: Axes, snapshot: Snapshot, rays_of: Sequence[int]) -> None:
     for index in rays_of:
-        center = np.array([[snapshot.x[index], snapshot.y[index]]])
-        radius = float(snapshot.radius[snapshot.species[index]]) + 1.5
-        _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
+        draw_ring(axes, snapshot, index)
 
 
 def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, str]) -> None:

@@ -1,0 +1,109 @@
+"""What does a world look like, picture after picture? As the figure of the world, but drawn anew in each place."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hedon.figure.style import DOTS_PER_INCH, MUTED, styled
+from hedon.figure.world import draw_agents, draw_foods, draw_obstacles, draw_ring, draw_walls, species_color
+from hedon.record.snapshot import Snapshot
+
+CAPTION = 34
+"""Height of the line of text above the world [pixel]."""
+CLOSE = 2.0
+"""Width of the part of the arena that is seen beside a followed agent, in lengths of its rays."""
+
+
+class Film:
+    """Draws moments of one world as pictures of one size.
+
+    Args:
+        snapshot: any moment of the world.
+        colors: per food kind.
+        width: of the pictures [pixel]; made even, as video formats want it.
+        top: the energy from which on an agent has the darkest color.
+        follow: the agent that the view follows within the arena; None to show the whole arena.
+    """
+
+    def __init__(
+        self, snapshot: Snapshot, colors: Mapping[str, str], width: int, top: float, follow: int | None = None
+    ) -> None:
+        low = snapshot.walls.reshape(-1, 2).min(axis=0)
+        high = snapshot.walls.reshape(-1, 2).max(axis=0)
+        self._colors, self._top, self._follow = colors, top, follow
+        self._low, self._high, self._middle = low, high, (low + high) / 2
+        self._rim = 0.015 * (high - low)
+        self._span = high - low + 2 * self._rim
+        if follow is not None:
+            self._span = self._span * min(1.0, CLOSE * float(snapshot.ray_length.max()) / self._span[0])
+        self.width = width // 2 * 2
+        self.height = int(self.width * self._span[1] / self._span[0]) // 2 * 2 + CAPTION
+        with styled():
+            self._figure = Figure(figsize=(self.width / DOTS_PER_INCH, self.height / DOTS_PER_INCH), dpi=DOTS_PER_INCH)
+            self._canvas = FigureCanvasAgg(self._figure)
+            self._axes = self._figure.add_axes((0, 0, 1, 1 - CAPTION / self.height))
+            self._axes.axis("off")
+            draw_walls(self._axes, snapshot.walls)
+            draw_obstacles(self._axes, snapshot.obstacles)
+            middle = 1 - CAPTION / 2 / self.height
+            self._caption = self._figure.text(0.012, middle, "", va="center", fontsize=8)
+            self._legend(snapshot, middle)
+        self._fixed = len(self._axes.collections)
+
+    def draw(self, snapshot: Snapshot) -> memoryview:
+        """One picture: four bytes for each pixel (red, green, blue, opacity), row by row from the top.
+
+        Valid until the next call.
+        """
+        for artist in list(self._axes.collections)[self._fixed :]:
+            artist.remove()
+        with styled():
+            draw_foods(self._axes, snapshot, self._colors)
+            if len(snapshot.x):
+                draw_agents(self._axes, snapshot, self._top)
+            followed = np.flatnonzero(snapshot.agent_id == self._follow) if self._follow is not None else []
+            if len(followed):  # else it is not yet born, or has died: the view stays
+                self._look_at(np.array([snapshot.x[followed[0]], snapshot.y[followed[0]]]))
+                draw_ring(self._axes, snapshot, followed[0])
+            (left, bottom), (right, top) = self._middle - self._span / 2, self._middle + self._span / 2
+            self._axes.set(xlim=(left, right), ylim=(bottom, top))
+            self._caption.set_text(self._words(snapshot))
+            self._canvas.draw()
+        return self._canvas.buffer_rgba()
+
+    def pixel(self, x: float, y: float) -> tuple[int, int]:
+        """The column and the row of a place in the world [u], in the picture drawn last."""
+        column, above = self._axes.transData.transform((x, y))
+        return int(column), self.height - 1 - int(above)
+
+    def _look_at(self, place: np.ndarray) -> None:
+        """Moves the view there, as far as it stays within the arena."""
+        half = self._span / 2 - self._rim
+        self._middle = np.clip(place, self._low + half, self._high - half)
+
+    def _words(self, snapshot: Snapshot) -> str:
+        agent = "" if self._follow is None else f", agent {self._follow}"
+        return f"seed {snapshot.seed}{agent}, step {snapshot.step:,}: {len(snapshot.x)} agents"
+
+    def _legend(self, snapshot: Snapshot, middle: float) -> None:
+        dot = {"marker": "o", "linestyle": "", "markersize": 5}
+        marks = [Line2D([], [], color=self._colors[kind], label=kind, **dot) for kind in snapshot.food_kinds]
+        if len(snapshot.species_names) > 1:
+            ring = {**dot, "markerfacecolor": "none", "markeredgewidth": 1.8}
+            marks += [
+                Line2D([], [], markeredgecolor=species_color(i), label=name, **ring)
+                for i, name in enumerate(snapshot.species_names)
+            ]
+        self._figure.legend(
+            handles=marks,
+            loc="center right",
+            bbox_to_anchor=(1, middle),
+            ncols=len(marks),
+            fontsize=8,
+            borderaxespad=0.4,
+        ).set_in_layout(False)
+        self._figure.set_facecolor("white")
+        self._caption.set_color(MUTED)

@@ -1,0 +1,107 @@
+"""Hands pictures to ffmpeg, one by one, which makes a video of them."""
+
+import os
+import secrets
+import subprocess
+import tempfile
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from hedon.text import brief
+from hedon.video.error import VideoError
+
+FORMATS = {
+    ".mp4": ("-c:v", "libx264", "-preset", "medium", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"),
+    # Each picture has a palette of its own: one for all would need all of them at once.
+    ".gif": ("-vf", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"),
+}
+"""What ffmpeg is told, by the ending of the file."""
+
+
+def find_ffmpeg() -> str:
+    """The path of the program.
+
+    Raises:
+        VideoError: it is not installed.
+    """
+    try:
+        return import_module("imageio_ffmpeg").get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        raise VideoError('a video needs ffmpeg: pip install "hedon[video]", or `uv sync --extra video` here') from None
+
+
+def check_target(out: Path) -> None:
+    """Refuses a file that cannot become a video.
+
+    Raises:
+        VideoError: it has another ending, is there already, or has no folder.
+    """
+    name = brief(str(out))
+    if out.suffix.lower() not in FORMATS:
+        raise VideoError(f"{name}: a video ends in " + " or ".join(FORMATS))
+    if out.exists() or out.is_symlink():
+        raise VideoError(f"{name} is there already: choose another file, or remove it")
+    if not out.parent.is_dir():
+        raise VideoError(f"cannot write {name}: there is no folder {brief(str(out.parent))}")
+
+
+class Encoder:
+    """A video that is being written. The file gets its name when the last picture is in it.
+
+    Args:
+        out: the new file, which ends in one of `FORMATS`.
+        width: of a picture [pixel], even.
+        height: of a picture [pixel], even.
+        rate: pictures per second.
+
+    Raises:
+        VideoError: `out` cannot be written, or ffmpeg is not there, or it fails.
+    """
+
+    def __init__(self, out: Path, width: int, height: int, rate: int) -> None:
+        check_target(out)
+        self.out = out
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115
+        self._draft = out.with_name(f".{secrets.token_hex(6)}-{os.getpid()}{out.suffix.lower()}")
+        given = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-")
+        command = (find_ffmpeg(), "-hide_banner", "-loglevel", "error", *given, *FORMATS[out.suffix.lower()])
+        # In a session of its own, so that Ctrl-C reaches this program alone, which then removes the draft.
+        self._program = subprocess.Popen(
+            [*command, str(self._draft)], stdin=subprocess.PIPE, stderr=self._log, start_new_session=True
+        )
+
+    def add(self, picture: memoryview) -> None:
+        """Appends a picture: four bytes for each pixel, red, green, blue and opacity, row by row from the top."""
+        assert self._program.stdin is not None
+        try:
+            self._program.stdin.write(picture)
+        except BrokenPipeError:
+            raise self._failure() from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        try:
+            if kind is not None:
+                self._program.kill()
+            with suppress(BrokenPipeError):
+                self._program.communicate()
+            if kind is None and self._program.returncode != 0:
+                raise self._failure()
+            if kind is None:
+                self._draft.replace(self.out)
+        finally:
+            self._draft.unlink(missing_ok=True)
+            self._log.close()
+
+    def _failure(self) -> VideoError:
+        self._program.wait()
+        self._log.seek(0)
+        said = self._log.read().decode(errors="replace").strip().splitlines()
+        return VideoError(
+            f"cannot write {brief(str(self.out))}: ffmpeg says: " + brief(said[-1] if said else "nothing")
+        )

@@ -1,0 +1,80 @@
+"""Draws and encodes the pictures of a video, one at a time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+
+from hedon.figure.film import Film
+from hedon.figure.style import food_colors
+from hedon.video.encoder import Encoder, check_target, find_ffmpeg
+from hedon.video.error import VideoError
+from hedon.video.moment import Footage
+
+Progress = Callable[[int, int, int], None]
+"""Called after each picture with its number, the number of all pictures, and its step."""
+
+
+@dataclass(frozen=True)
+class Take:
+    """What of a world a video shows.
+
+    Attributes:
+        first: the step of the first picture.
+        last: the step that the last picture does not pass.
+        speed: steps from one picture to the next.
+        follow: the agent in the middle; None for the whole arena.
+    """
+
+    first: int
+    last: int
+    speed: int
+    follow: int | None = None
+
+    @property
+    def pictures(self) -> int:
+        """Their number."""
+        return (self.last - self.first) // self.speed + 1
+
+
+def choose_take(footage: Footage, first: int | None, last: int | None, speed: int, follow: int | None = None) -> Take:
+    """What to show; by default all that was recorded, or all of the life of the followed agent.
+
+    Raises:
+        VideoError: there are no frames of these steps or of this agent.
+    """
+    begin, end = (footage.first, footage.last) if follow is None else footage.lifetime(follow)
+    what = "the frames reach" if follow is None else f"agent {follow} is in the frames"
+    take = Take(begin if first is None else first, end if last is None else last, speed, follow)
+    for option, step in (("--from", take.first), ("--to", take.last)):
+        if not begin <= step <= end:
+            raise VideoError(f"{option} {step}: {what} from step {begin} to {end}")
+    if take.first > take.last:
+        raise VideoError(f"--from {take.first} is later than --to {take.last}")
+    return take
+
+
+def make_video(footage: Footage, take: Take, out: Path, width: int, rate: int, progress: Progress) -> None:
+    """Writes a video.
+
+    Args:
+        footage: the world.
+        take: what to show of it.
+        out: the new file, .mp4 or .gif.
+        width: of a picture [pixel].
+        rate: pictures per second.
+        progress: called after each picture.
+
+    Raises:
+        VideoError: ffmpeg is not there, or the file cannot be written.
+    """
+    check_target(out)
+    find_ffmpeg()
+    moments = footage.moments(take.first, take.last, take.speed)
+    opening = next(moments)
+    colors = food_colors(opening.food_kinds, [food.color for food in footage.config.food.values()])
+    film = Film(opening, colors, width, footage.usual_energy(), take.follow)
+    with Encoder(out, film.width, film.height, rate) as encoder:
+        for number, moment in enumerate(chain((opening,), moments), 1):
+            encoder.add(film.draw(moment))
+            progress(number, take.pictures, moment.step)

@@ -1,0 +1,163 @@
+"""Moments of a world from the frames of its run: those recorded, and between two of them by even motion."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hedon.config.arena import walls
+from hedon.config.config import Config
+from hedon.config.load import parse_config
+from hedon.record.folder import part_paths
+from hedon.record.reader import Run, open_run
+from hedon.record.snapshot import Snapshot
+from hedon.video.error import VideoError
+
+EVEN_STEPS = 128
+"""Agents are moved evenly between frames that are at most so far apart; in longer times they turn too often [step]."""
+
+
+@dataclass(frozen=True)
+class Footage:
+    """The frames of one world.
+
+    Attributes:
+        run: with frames.
+        config: of the run.
+        world: the world's index in the run.
+        first: the first recorded step.
+        last: the last one.
+    """
+
+    run: Run
+    config: Config
+    world: int
+    first: int
+    last: int
+
+    def moments(self, first: int, last: int, speed: int) -> Iterator[Snapshot]:
+        """The world at `first`, `first + speed`, … up to `last`, one after the other.
+
+        Frames are read part by part, so a long run needs no more memory than a short one.
+
+        Raises:
+            VideoError: a frame is damaged.
+        """
+        recorded = self._recorded(first - self.run.manifest.frames, last + self.run.manifest.frames)
+        before, after = next(recorded, None), next(recorded, None)
+        for step in range(first, last + 1, speed):
+            while after is not None and after.step <= step:
+                before, after = after, next(recorded, None)
+            if before is None:
+                return
+            yield blend(before, after, step)
+
+    def lifetime(self, agent: int) -> tuple[int, int]:
+        """The first and the last recorded step of an agent.
+
+        Raises:
+            VideoError: no frame has this agent.
+        """
+        rows = self.run.frames().filter((pl.col("world") == self.world) & (pl.col("id") == agent))
+        first, last = rows.select(pl.col("step").min(), last=pl.col("step").max()).collect().row(0)
+        if first is None:
+            raise VideoError(f"--follow {agent}: no frame has this agent; `hedon export agents` lists them all")
+        return first, last
+
+    def usual_energy(self) -> float:
+        """The energy that one in twenty agents exceeds: the end of the scale of colors."""
+        found = self.run.frames().filter(pl.col("world") == self.world)
+        quantile = found.select(pl.col("energy").quantile(0.95)).collect().item()
+        return 40.0 if quantile is None else max(float(quantile), 40.0)
+
+    def _recorded(self, first: int, last: int) -> Iterator[Snapshot]:
+        kept = pl.DataFrame()
+        for path in part_paths(self.run.path, "frames"):
+            rows = pl.scan_parquet(path, glob=False).filter(
+                (pl.col("world") == self.world) & pl.col("step").is_between(first, last)
+            )
+            try:
+                kept = pl.concat([kept, rows.collect()]) if len(kept) else rows.collect()
+            except (pl.exceptions.PolarsError, OSError) as error:
+                raise VideoError(f"damaged part {path}: {error}") from error
+            *whole, kept = kept.partition_by("step", maintain_order=True) or [kept]
+            yield from map(self._snapshot, whole)  # the rest of the last frame may be in the next part
+        if len(kept):
+            yield self._snapshot(kept)
+
+    def _snapshot(self, rows: pl.DataFrame) -> Snapshot:
+        config, manifest = self.config, self.run.manifest
+        species, foods = list(config.agents), list(config.food)
+        agents = rows.filter(pl.col("id").is_not_null()).sort("id")
+        food = rows.filter(pl.col("id").is_null())
+        bodies = list(config.agents.values())
+        obstacles = manifest.obstacle_places[self.world] if manifest.obstacle_places else np.zeros((0, 3, 2))
+        return Snapshot(
+            world=self.world,
+            seed=manifest.seeds[self.world],
+            step=rows["step"][0],
+            agent_id=agents["id"].to_numpy(),
+            **{name: agents[name].to_numpy() for name in ("x", "y", "angle", "energy")},
+            rays=np.zeros((len(agents), 0, 0)),
+            species=np.array([species.index(kind) for kind in agents["kind"]], np.int32),
+            food_kind=np.array([foods.index(kind) for kind in food["kind"]], np.int32),
+            food_x=food["x"].to_numpy(),
+            food_y=food["y"].to_numpy(),
+            walls=np.asarray(walls(config.arena), np.float32).reshape(-1, 4),
+            obstacles=np.asarray(obstacles, np.float32),
+            radius=np.array([each.body.radius for each in bodies]),
+            ray_count=np.array([each.sensor.ray_count for each in bodies]),
+            ray_length=np.array([each.sensor.ray_length for each in bodies]),
+            ray_spread=np.array([each.sensor.ray_spread for each in bodies]),
+            mouth_spread=np.array([each.sensor.mouth_spread for each in bodies]),
+            food_kinds=tuple(foods),
+            species_names=tuple(species),
+            food_radius=config.body.food_radius,
+        )
+
+
+def open_footage(folder: Path, seed: int | None = None) -> Footage:
+    """The frames of one world of a run.
+
+    Args:
+        folder: of the run.
+        seed: of the world; None for the first one.
+
+    Raises:
+        VideoError: the run has no frames, or no such world.
+        RecordError: it is no run.
+    """
+    run = open_run(folder)
+    seeds = run.manifest.seeds
+    if seed is not None and seed not in seeds:
+        raise VideoError(f"--world {seed}: there is no such world; the run has seeds " + ", ".join(map(str, seeds)))
+    world = 0 if seed is None else seeds.index(seed)
+    rows = run.frames().filter(pl.col("world") == world)
+    first, last = rows.select(pl.col("step").min(), last=pl.col("step").max()).collect().row(0)
+    if first is None:
+        raise VideoError(f"{run.path} has no frames of this world: record them with `hedon run --frames 64`")
+    return Footage(run, parse_config(run.config_text, str(folder)), world, first, last)
+
+
+def blend(before: Snapshot, after: Snapshot | None, step: int) -> Snapshot:
+    """The world at a step between two frames: agents that are in both move evenly, all else stays as it was.
+
+    Args:
+        before: the last frame that is not later than `step`, or the first one of all.
+        after: the next frame; None at the end.
+        step: the moment.
+    """
+    if after is None or step <= before.step or after.step - before.step > EVEN_STEPS:
+        return replace(before, step=step)
+    share = (step - before.step) / (after.step - before.step)
+    _, here, there = np.intersect1d(before.agent_id, after.agent_id, assume_unique=True, return_indices=True)
+    moved = {}
+    for name in ("x", "y", "angle"):
+        change = getattr(after, name)[there] - getattr(before, name)[here]
+        if name == "angle":
+            change -= 2 * np.pi * np.round(change / (2 * np.pi))
+        moved[name] = getattr(before, name).copy()
+        moved[name][here] += share * change
+    return replace(before, step=step, **moved)
