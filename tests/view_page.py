@@ -11,7 +11,7 @@ from hedon import load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
 from hedon.view.index import RunIndex
-from hedon.view.live import live_worlds
+from hedon.view.live import live_world
 from hedon.view.server import Server
 
 CHROMIUM = Path("/usr/bin/chromium")
@@ -41,13 +41,13 @@ def serving(server: Any) -> Iterator[Any]:
 def run_server(folder: Path) -> Server:
     """What `hedon view RUN` serves."""
     index = RunIndex(folder)
-    page = {"run": True, "worlds": live_worlds("poison")[:1]}
+    page = {"run": True, "worlds": [live_world(load_config("poison"), "poison")]}
     return Server({"page": lambda: page, "run": index.describe}, index.files)
 
 
 def live_server(source: str) -> Server:
-    """What `hedon view --live SOURCE` serves."""
-    page = {"run": False, "worlds": live_worlds(source)}
+    """What `hedon view --live SOURCE` serves, without the presets after it, which take seconds to describe."""
+    page = {"run": False, "worlds": [live_world(load_config(source), source)]}
     return Server({"page": lambda: page}, dict)
 
 

@@ -99,6 +99,8 @@ class Simulation {
   const Kernel& kernel() const { return *kernel_; }
   const Pool& pool() const { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
+  /// The block that holds all of a world, `bytes_per_world` long: who puts a copy of it back has the world as it was.
+  char* memory(int index) { return memory_[static_cast<size_t>(index)].data(); }
   int64_t bytes_per_world() const { return memory_.empty() ? 0 : memory_.front().size(); }
 
  private:

@@ -4,6 +4,7 @@
 /// `hedon_bytes_needed` says what the world would take; `hedon_make` makes it. Then `hedon_run`, `hedon_learn` and the
 /// views, as often as you like. A function that can fail returns 0 for success; `hedon_message` says what was wrong.
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -14,6 +15,7 @@
 #include "simulation/memory.h"
 #include "simulation/simulation.h"
 #include "simulation/window.h"
+#include "web/hand.h"
 #include "web/input.h"
 #include "web/portion.h"
 
@@ -46,6 +48,9 @@ std::vector<float> scratch;
 int32_t learned;  ///< learners of the present window that have learned, while the window is being learned
 bool learning;
 int32_t learners;
+bool by_hand;                                                 ///< whether the world has been changed by hand
+std::unique_ptr<char, decltype(&free)> kept(nullptr, &free);  ///< a copy of the world's memory; null for none
+bool kept_by_hand;
 View view;
 Mind mind;
 
@@ -67,6 +72,15 @@ int report_fault() {
   if (fault.status == Status::ok) return 0;
   const StatusText& known = STATUS_TEXT[static_cast<int>(fault.status)];
   return fail(std::string(known.name) + ": " + known.sentence + " " + known.remedy);
+}
+
+/// Between two windows a world can be changed and kept; while its agents learn it cannot.
+int need_rest() { return learning ? fail("the agents are learning: wait until the window has ended") : 0; }
+
+int change(const std::string& refused) {
+  if (!refused.empty()) return fail(refused);
+  by_hand = true;
+  return report_fault();
 }
 
 template <class T>
@@ -134,7 +148,8 @@ HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed() {
 /// Makes the world of the input; the world before is gone.
 HEDON_EXPORT(hedon_make) int hedon_make() {
   simulation.reset();
-  learning = false;
+  learning = by_hand = false;
+  kept.reset();
   simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
                                             std::vector<uint64_t>{input.seed}, 1, find_kernel("portable"),
                                             std::vector<int32_t>{});
@@ -181,6 +196,39 @@ HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
 
 /// Status of the world: 0 while nothing is wrong.
 HEDON_EXPORT(hedon_fault) int hedon_fault() { return report_fault(); }
+
+/// Adds a thing by hand: see `add_by_hand`.
+HEDON_EXPORT(hedon_add) int hedon_add(int32_t type, float x, float y) {
+  return need_rest() != 0 ? 1 : change(add_by_hand(world(), type, {x, y}));
+}
+
+/// Takes out by hand what is at a place: see `remove_by_hand`.
+HEDON_EXPORT(hedon_remove) int hedon_remove(float x, float y, float slack) {
+  return need_rest() != 0 ? 1 : change(remove_by_hand(world(), {x, y}, slack));
+}
+
+/// Whether the world has been changed by hand: 1 if no config and seed give it.
+HEDON_EXPORT(hedon_by_hand) int hedon_by_hand() { return by_hand ? 1 : 0; }
+
+/// Keeps the world as it is now, instead of the one kept before.
+HEDON_EXPORT(hedon_keep) int hedon_keep() {
+  if (need_rest() != 0) return 1;
+  const size_t bytes = static_cast<size_t>(simulation->bytes_per_world());
+  if (!kept) kept.reset(static_cast<char*>(malloc(bytes)));
+  if (!kept) return fail("there is no memory left to keep the world");
+  memcpy(kept.get(), simulation->memory(0), bytes);
+  kept_by_hand = by_hand;
+  return 0;
+}
+
+/// Makes the world as it was when it was kept: it goes on with the same bits.
+HEDON_EXPORT(hedon_return) int hedon_return() {
+  if (!kept) return fail("no world was kept");
+  memcpy(simulation->memory(0), kept.get(), static_cast<size_t>(simulation->bytes_per_world()));
+  learning = false;
+  by_hand = kept_by_hand;
+  return report_fault();
+}
 
 /// The digest that `hedon run` gives for the same state. Not while a window is being learned.
 HEDON_EXPORT(hedon_digest) uint64_t hedon_digest() { return simulation->digest(0); }

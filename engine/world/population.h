@@ -68,9 +68,10 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   return slot;
 }
 
-/// The first agents: each with a new network and a genome of its own.
-HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy) {
-  const int32_t slot = spawn(world, species, position, angle, energy, 0);
+/// An agent without parents: with a new network and a genome of its own. Those of a new world are born at step 0.
+HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy,
+                               int64_t birth_step = 0) {
+  const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
   if (world.shape->inner) set_inner(world, slot, world.shape->of[species].config->nutrient.initial, 0.0);
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);

@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 import pytest
 from matplotlib.image import imread
-from view_page import CHROMIUM, FLAGS, SIZE, Watched, live_server, record, run_server, serving
+from view_page import live_server, record, run_server, serving
 
 from hedon import ConfigError, Simulation, _engine, load_config
 from hedon.experiment.resume import resume
@@ -19,39 +19,8 @@ from hedon.record.reader import open_run
 from hedon.view.export import export
 from hedon.view.index import RunIndex
 
-playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group browser")
-pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=f"needs {CHROMIUM}: apt-get install chromium")
-
+pytest_plugins = ("view_fixture",)
 STEP = 640
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with playwright.sync_playwright() as tool:
-        opened = tool.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        yield opened
-        opened.close()
-
-
-@pytest.fixture(scope="module")
-def run_folder(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("view") / "run", 2048)
-
-
-@pytest.fixture
-def watch(browser):
-    """Opens links; at the end no page may have complained or asked another host for anything."""
-    opened = []
-
-    def open_link(link: str) -> Watched:
-        context = browser.new_context(viewport=SIZE)
-        opened.append((context, Watched(context.new_page(), link)))
-        return opened[-1][1]
-
-    yield open_link
-    for context, watched in opened:
-        context.close()
-        assert watched.faults == []
 
 
 def agents_at(folder, step):
@@ -162,13 +131,14 @@ def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
         watched.until("document.querySelector('#agent').textContent.includes('value of now')")
 
 
-def test_rays_are_drawn_as_the_engine_casts_them(watch):
-    with serving(live_server("poison")) as server:
+@pytest.mark.parametrize("preset", ["poison", "pitfall"])
+def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
+    with serving(live_server(preset)) as server:
         watched = watch(server.link)
         watched.get("hedon.play(false)")
         watched.until("!hedon.source.busy")
-        watched.get("hedon.source.advance(200, 20000)")
-        watched.until("hedon.source.last >= 200 && !hedon.source.busy")
+        watched.get("hedon.source.advance(100, 20000)")
+        watched.until("hedon.source.last >= 100 && !hedon.source.busy")
         watched.get("hedon.seek(hedon.source.last)")
         watched.until("hedon.frame.step === hedon.source.last")
         seen = 0
@@ -202,8 +172,8 @@ def test_a_setting_is_refused_in_the_words_of_the_command(path, value, watch):
         watched.get("hedon.tab('settings')")
         watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
         watched.page.locator(f"[data-path='{path}']").fill(value)
-        watched.until("document.querySelector('.problem').textContent !== ''")
-        assert watched.page.locator(".problem").inner_text() == f"{path} = {value}: {message}"
+        watched.until("document.querySelector('#settings .problem').textContent !== ''")
+        assert watched.page.locator("#settings .problem").inner_text() == f"{path} = {value}: {message}"
         assert watched.page.locator("#restart").is_disabled()
 
 

@@ -19,7 +19,9 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
     layout = describe(config)
     assert [gene["name"] for gene in layout["genes"]] == list(columns_of(config).gene_names)
     assert [gene["role"] for gene in layout["genes"]].count("neutral") == config.genome.neutral_count
-    assert layout["types"] == [*config.agents, *config.food, "wall"]
+    obstacles = ["obstacle"] if config.obstacle.count else []
+    assert layout["types"] == [*config.agents, *config.food, "wall", *obstacles]
+    assert (layout["obstacle_corners"] > 0) == bool(obstacles)
     for species, own in zip(layout["species"], layouts(config).values(), strict=True):
         assert [layout["genes"][gene]["name"] for gene in species["genes"]] == list(own.gene_names)
         assert [layout["types"][seen] for seen in species["sees"]] == list(own.sees)

@@ -141,7 +141,7 @@ function answer(source: Source): HTMLElement {
 function drawSight(canvas: HTMLCanvasElement, source: Source, frame: Frame, at: number): void {
   const { layout } = source;
   const pen = sized(canvas);
-  const rays = castRays(layout, frame, at).reverse();
+  const rays = castRays(layout, frame, at, source.obstacles).reverse();
   const [width, height] = [canvas.clientWidth / rays.length, canvas.clientHeight];
   const first = layout.species.length;
   rays.forEach((ray, i) => {

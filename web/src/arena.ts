@@ -35,6 +35,7 @@ export class Arena {
     if (this.scene.resize() || !this.fitted) this.fit(source);
     const [background, ink] = [parse(styleColor("--ground")), pack(parse(styleColor("--wall")))];
     this.scene.begin();
+    for (const corners of source.obstacles) this.scene.polygon(corners, pack(parse(styleColor("--obstacle"))));
     for (const [ax, ay, bx, by] of source.layout.arena.walls) this.scene.line(ax, ay, bx, by, ink);
     const legend = frame ? this.drawFrame(source, frame, coloring, chosen) : undefined;
     this.scene.end([background[0] / 255, background[1] / 255, background[2] / 255]);
@@ -102,7 +103,7 @@ export class Arena {
     const { layout } = source;
     const first = layout.species.length;
     const [nothing, thing] = [pack(parse(styleColor("--quiet")), 110), pack(parse(styleColor("--mark")))];
-    for (const ray of castRays(layout, frame, at)) {
+    for (const ray of castRays(layout, frame, at, source.obstacles)) {
       const food = layout.foods[ray.type - first];
       const color = ray.type < 0 ? nothing : food ? pack(parse(food.color)) : thing;
       this.scene.line(ray.x0, ray.y0, ray.x1, ray.y1, color);

@@ -42,6 +42,8 @@ export function colorings(source: Source): Coloring[] {
     return life && most > 0 ? life.eaten.indexOf(most) : NaN;
   };
   const species: Coloring = { name: "species", label: "species", scale: "distinct", value: (_, frame, i) => frame.species[i]! };
+  // Records count the meals of a life and not their order.
+  const lastMeal: Coloring = { name: "last", label: "ate last", scale: "food", value: (life) => (life && life.lastMeal >= 0 ? life.lastMeal : NaN) };
   return [
     { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! },
     { name: "age", label: "age [steps]", scale: "ramp", low: 0, value: (life, frame) => (life ? frame.step - life.birth : NaN) },
@@ -51,6 +53,7 @@ export function colorings(source: Source): Coloring[] {
     { name: "family", label: "family (founder)", scale: "distinct", value: (life) => (life ? lives.founder(life.id) : NaN) },
     ...(layout.species.length > 1 ? [species] : []),
     { name: "eats", label: "eats most", scale: "food", value: mostEaten },
+    ...(source.live ? [lastMeal] : []),
     ...layout.genes.map((gene, g): Coloring => ({
       name: gene.name,
       label: `gene ${gene.name}${gene.role === "neutral" ? " (neutral)" : ""}`,
@@ -79,18 +82,25 @@ export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uin
   if (coloring.scale === "diverging") [low, high] = [-Math.max(-low, high, 1e-6), Math.max(-low, high, 1e-6)];
   const stops = coloring.scale === "diverging" ? DIVERGING : RAMP;
   const table = Uint32Array.from({ length: 256 }, (_, i) => pack(along(stops, i / 255)));
-  const foods = source.layout.foods.map((food) => pack(parse(food.color)));
   const distinct = DISTINCT.map((color) => pack(color));
+  const meals = source.layout.meals.map((meal) => pack(parse(mealColor(source.layout, meal))));
   const scale = 255 / (high - low || 1);
   const unknown = pack([140, 140, 140]);
   for (let i = 0; i < count; i++) {
     const value = values[i]!;
     if (Number.isNaN(value)) out[i] = unknown;
     else if (coloring.scale === "distinct") out[i] = distinct[(value * 7) % distinct.length]!;
-    else if (coloring.scale === "food") out[i] = foods[value] ?? unknown;
+    else if (coloring.scale === "food") out[i] = meals[value] ?? unknown;
     else out[i] = table[Math.min(Math.max(Math.round((value - low) * scale), 0), 255)]!;
   }
   return { colors: out, legend: { low, high, stops: stops.map(css) } };
+}
+
+/** The color of a food, or that of the species that is eaten. */
+export function mealColor(layout: Layout, meal: string): string {
+  const food = layout.foods.find((each) => each.name === meal);
+  const [r, g, b] = DISTINCT[Math.max(layout.species.findIndex((each) => each.name === meal), 0) % DISTINCT.length]!;
+  return food?.color ?? `#${[r, g, b].map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 }
 
 /** The color of the rim of a species; the first one has none. */

@@ -6,7 +6,7 @@ export const HELP = [
   "Click an agent to inspect it. Drag to move, turn the wheel to zoom, 0 shows the whole arena.",
   "Space plays and pauses. ← and → step, with Shift ten at a time. Home and End go to the ends.",
   "+ and − change the speed. F follows the chosen agent, R shows its rays, T its trail. Tab or N chooses the next agent.",
-  "A, P and S open the panels: agent, plots, settings. Esc chooses none.",
+  "A, P, S and W open the panels: agent, plots, settings, world. Esc chooses none.",
 ];
 
 export function bindKeys(app: App): void {
@@ -25,6 +25,7 @@ export function bindKeys(app: App): void {
     a: () => app.tab("agent"),
     p: () => app.tab("plots"),
     s: () => app.tab("settings"),
+    w: () => app.tab("world-panel"),
     "0": () => app.arena.fit(app.source),
     "?": () => app.help(),
     Escape: () => app.choose(-1),
@@ -68,7 +69,7 @@ export function bindMouse(app: App): void {
   canvas.addEventListener("pointerup", (event) => {
     const clicked = from !== undefined && from.moved < 4;
     from = undefined;
-    if (clicked && app.frame) app.choose(app.arena.pick(app.source, app.frame, ...scene.toWorld(event.clientX, event.clientY)));
+    if (clicked) app.click(...scene.toWorld(event.clientX, event.clientY));
   });
   canvas.addEventListener(
     "wheel",

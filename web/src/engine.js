@@ -96,6 +96,32 @@ export class Engine {
     return BigInt.asUintN(64, this.exports.hedon_digest()).toString(16).padStart(16, "0");
   }
 
+  /** Adds a thing by hand: a species by its index, or a food by its index after the species.
+   * @param {number} type @param {number} x @param {number} y */
+  add(type, x, y) {
+    this.#need(this.exports.hedon_add(type, x, y));
+  }
+
+  /** Takes out by hand what is at a place, or at most `slack` beside it. @param {number} x @param {number} y @param {number} slack */
+  remove(x, y, slack) {
+    this.#need(this.exports.hedon_remove(x, y, slack));
+  }
+
+  /** Whether the world has been changed by hand. */
+  get byHand() {
+    return this.exports.hedon_by_hand() === 1;
+  }
+
+  /** Keeps the world as it is now, instead of the one kept before. */
+  keep() {
+    this.#need(this.exports.hedon_keep());
+  }
+
+  /** Makes the world as it was when it was kept. */
+  goBack() {
+    this.#need(this.exports.hedon_return());
+  }
+
   takeDeaths() {
     this.exports.hedon_take_deaths();
   }

@@ -1,8 +1,8 @@
 // A world that the engine runs in this page, as a source of moments.
 import { Lives } from "./lives";
-import type { Moment, Order, Report } from "./live.worker";
+import type { Deed, Moment, Order, Report } from "./live.worker";
 import { Series } from "./series";
-import type { Frame, LiveWorld, Mind, Source } from "./types";
+import type { Frame, LiveWorld, Mind, Place, Source } from "./types";
 
 const SAMPLE_STEPS = 256; // between two points of the plots
 const KEPT_FRAMES = 2000; // that can be looked back at
@@ -31,6 +31,10 @@ export class Live implements Source {
   stepsPerSecond = 0;
   error = "";
   over = false;
+  obstacles: Place[][] = [];
+  byHand = false;
+  kept = -1; // step of the snapshot
+  refused = ""; // why the last deed was not done
   private ready = false;
   private busy = false;
   private learning = 0;
@@ -83,6 +87,14 @@ export class Live implements Source {
     this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0 });
   }
 
+  /** Changes the world by hand, keeps it, or goes back to what was kept. */
+  act(deed: Deed): void {
+    if (!this.ready || this.error) return;
+    this.refused = "";
+    this.busy = true;
+    this.send({ type: "do", deed, chosen: this.chosen, digest: true });
+  }
+
   /** Looks again without a step: for another chosen agent, or for the digest. */
   look(): void {
     if (this.known === "" || (this.chosen >= 0 && this.seen?.id !== this.chosen)) this.advance(0, 5);
@@ -104,6 +116,7 @@ export class Live implements Source {
       this.ready = true;
       this.fused = report.fused;
       this.megabytes = report.bytes / 1e6;
+      this.obstacles = report.obstacles;
       this.advance(0, 1);
     } else this.add(report.moment);
   }
@@ -114,15 +127,25 @@ export class Live implements Source {
     this.known = moment.digest;
     this.over = moment.over;
     this.seen = moment.mind;
+    this.byHand = moment.byHand;
+    this.kept = moment.kept;
+    if (moment.refused) this.refused = moment.refused;
+    if (moment.back) this.rewind(frame.step, moment.counts);
     for (const life of moment.dead) this.lives.put(life);
     for (const life of moment.lives) this.lives.put(life);
-    if (frame.step > this.last || this.frames.length === 0) {
-      this.frames.push(frame);
-      if (this.frames.length > KEPT_FRAMES) this.frames.shift();
-    }
+    if (this.frames[this.frames.length - 1]?.step === frame.step) this.frames.pop(); // it may have been changed by hand
+    this.frames.push(frame);
+    if (this.frames.length > KEPT_FRAMES) this.frames.shift();
     this.last = frame.step;
     this.measure(moment.done);
     if (frame.step >= this.sampled.step + SAMPLE_STEPS || moment.over) this.sample(moment);
+  }
+
+  private rewind(step: number, counts: Record<string, number>): void {
+    this.lives.rewind(step);
+    this.series.rewind(step);
+    this.frames.length = this.frames.findLastIndex((frame) => frame.step < step) + 1;
+    this.sampled = { step, births: counts.births!, deaths: counts.deaths! };
   }
 
   private measure(steps: number): void {

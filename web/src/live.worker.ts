@@ -1,9 +1,17 @@
 // Runs a world away from the page's thread, a little at a time, and answers with what is to be drawn.
-import { Engine } from "./engine.js";
-import type { Frame, Layout, Life, Mind } from "./types";
+import { Engine, EngineError } from "./engine.js";
+import { LastMeals } from "./meals";
+import type { Frame, Layout, Life, Mind, Place } from "./types";
 
+/** What a person does to a world by hand. A type is a species, or a food after all species. */
+export type Deed =
+  | { type: "add"; kind: number; x: number; y: number }
+  | { type: "remove"; x: number; y: number; slack: number }
+  | { type: "keep" }
+  | { type: "back" };
 export type Order =
   | { type: "make"; text: string; layout: Layout }
+  | { type: "do"; deed: Deed; chosen: number; digest: boolean }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean };
 
 export interface Moment {
@@ -16,12 +24,18 @@ export interface Moment {
   done: number; // steps of this order
   over: boolean;
   digest: string; // "" unless it was asked for and no window is being learned
+  byHand: boolean; // whether the world has been changed by hand
+  kept: number; // step of the snapshot, -1 for none
+  back: boolean; // whether the world has just gone back to its snapshot
+  refused: string; // why the deed was not done
 }
-export type Report = { type: "made"; fused: boolean; bytes: number } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
+export type Report = { type: "made"; fused: boolean; bytes: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
 
 const PIECE = 4; // learners between two looks at the clock
 let engine: Engine | undefined;
 let layout: Layout | undefined;
+let meals = new LastMeals();
+let kept: { step: number; meals: LastMeals } | undefined;
 
 async function module(name: string): Promise<WebAssembly.Module | undefined> {
   const bytes = await (await fetch(new URL(`../${name}`, self.location.href))).arrayBuffer();
@@ -46,7 +60,17 @@ async function make(order: Order & { type: "make" }): Promise<Report> {
   const bytes = fresh.make(order.text);
   engine = fresh;
   layout = order.layout;
-  return { type: "made", fused: fresh.fuses, bytes };
+  meals = new LastMeals();
+  kept = undefined;
+  return { type: "made", fused: fresh.fuses, bytes, obstacles: obstacles(fresh) };
+}
+
+/** The corners of each obstacle. */
+function obstacles(world: Engine): Place[][] {
+  const corners = layout!.obstacle_corners;
+  const places = corners > 0 ? (world.view("obstacle") as Float32Array) : new Float32Array();
+  const corner = (i: number): Place => [places[2 * i]!, places[2 * i + 1]!];
+  return Array.from({ length: places.length / 2 / (corners || 1) }, (_, o) => Array.from({ length: corners }, (_, c) => corner(o * corners + c)));
 }
 
 /** The species of a slot: each owns as many slots as it has capacity, one after the other. */
@@ -71,7 +95,7 @@ function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
   const eaten = world.view(prefix === "life" ? "eaten" : "event_eaten") as Int32Array;
   const genomes = world.view(prefix === "life" ? "genome" : "event_genome") as Float32Array;
   const species = prefix === "life" ? undefined : world.view("event_species")!;
-  const [meals, genes] = [layout!.meals.length, Math.max(...layout!.species.map((each) => each.genes.length))];
+  const [kinds, genes] = [layout!.meals.length, Math.max(...layout!.species.map((each) => each.genes.length))];
   return Array.from(rows, (row) => ({
     id: Number(id[row]),
     parent: Number(parent[row]),
@@ -81,7 +105,9 @@ function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
     energy: Number(energy[row]),
     children: Number(children[row]),
     reward: Number(reward[row]),
-    eaten: Array.from(eaten.subarray(row * meals, (row + 1) * meals)),
+    eaten: Array.from(eaten.subarray(row * kinds, (row + 1) * kinds)),
+    lastMeal: prefix === "life" ? meals.of(row) : -1,
+    species: species ? Number(species[row]) : speciesOf(row),
     genome: genome(genomes.subarray(row * genes, (row + 1) * genes), species ? Number(species[row]) : speciesOf(row)),
   }));
 }
@@ -126,13 +152,40 @@ function advance(world: Engine, steps: number, milliseconds: number): number {
       const stepped = world.run(1);
       if (stepped === 0) break;
       done += stepped;
+      meals.note(world.view("eaten") as Int32Array, layout!.meals.length);
     }
     if (performance.now() >= end) break;
   }
   return done;
 }
 
-function moment(world: Engine, done: number, { chosen, digest }: Order & { type: "advance" }): Moment {
+/** Does it; returns why it cannot be done, or "". */
+function act(world: Engine, deed: Deed): string {
+  try {
+    if (deed.type === "add") world.add(deed.kind, deed.x, deed.y);
+    else if (deed.type === "remove") world.remove(deed.x, deed.y, deed.slack);
+    else if (deed.type === "keep") {
+      world.keep();
+      kept = { step: world.number("head.step"), meals: meals.copy() };
+    } else {
+      world.goBack();
+      meals = kept!.meals.copy();
+    }
+    meals.note(world.view("eaten") as Int32Array, layout!.meals.length);
+    return "";
+  } catch (error) {
+    if (error instanceof EngineError) return error.message;
+    throw error;
+  }
+}
+
+interface Told {
+  done: number;
+  refused: string;
+  back: boolean;
+}
+
+function moment(world: Engine, { done, refused, back }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const waiting = world.number("head.event_count");
   const dead = lives(world, "event", Array.from({ length: waiting }, (_, i) => i));
@@ -151,6 +204,10 @@ function moment(world: Engine, done: number, { chosen, digest }: Order & { type:
     done,
     over: living.length === 0,
     digest: learning || !digest ? "" : world.digest(),
+    byHand: world.byHand,
+    kept: kept?.step ?? -1,
+    back,
+    refused,
   };
 }
 
@@ -158,8 +215,13 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
   try {
     if (data.type === "make") self.postMessage(await make(data));
     else if (engine) {
-      const done = advance(engine, data.steps, data.milliseconds);
-      self.postMessage({ type: "moment", moment: moment(engine, done, data) } satisfies Report);
+      const told = { done: 0, refused: "", back: false };
+      if (data.type === "advance") told.done = advance(engine, data.steps, data.milliseconds);
+      else {
+        told.refused = act(engine, data.deed);
+        told.back = data.deed.type === "back" && told.refused === "";
+      }
+      self.postMessage({ type: "moment", moment: moment(engine, told, data) } satisfies Report);
     }
   } catch (error) {
     self.postMessage({ type: "error", text: error instanceof Error ? error.message : String(error) } satisfies Report);

@@ -27,6 +27,13 @@ export class Lives {
     this.known.set(life.id, life);
   }
 
+  /** Forgets what happened after a step. */
+  rewind(step: number): void {
+    const before = [...this.known.values()].filter((life) => life.birth <= step);
+    for (const each of [this.known, this.family, this.roots]) each.clear();
+    for (const life of before) this.put(life.death > step ? { ...life, death: -1 } : life);
+  }
+
   children(id: number): number[] {
     return this.family.get(id) ?? [];
   }

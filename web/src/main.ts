@@ -10,13 +10,15 @@ import { Live } from "./live";
 import { Plots } from "./plots";
 import { castRays, type Ray } from "./rays";
 import { Replay } from "./replay";
-import { command, configFile, Settings } from "./settings";
+import { command, Settings } from "./settings";
 import { events, Timeline } from "./timeline";
+import { Tools } from "./tools";
 import type { Event, Frame, LiveWorld, Source } from "./types";
 
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
 const PICTURE_MS = 13; // of work for a live world between two pictures
 const PANEL_MS = 200; // between two looks at the panels
+const PANELS = ["agent", "plots", "settings", "world-panel"];
 
 export class App {
   readonly arena = new Arena(by<HTMLCanvasElement>("scene"));
@@ -29,6 +31,8 @@ export class App {
   pictures = 0;
   private coloring!: Coloring;
   private plots: Plots | undefined;
+  private tools: Tools | undefined;
+  private skipped = 0; // steps between the last two pictures that were not drawn
   private marks: Event[] = [];
   private panelsDue = 0;
   private owed = 0; // part of a step at speeds below 1
@@ -69,6 +73,13 @@ export class App {
     this.keepLink();
   }
 
+  /** A click at a place of the world: chooses who is there, or changes the world by hand. */
+  click(x: number, y: number): void {
+    const { scene } = this.arena;
+    if (this.tools?.click(this.source, x, y, 1 / scene.zoom)) this.now = this.source.last;
+    else if (this.frame) this.choose(this.arena.pick(this.source, this.frame, x, y));
+  }
+
   seek(step: number): void {
     const { first, last } = this.source;
     this.now = Math.min(Math.max(Math.round(step), first), last);
@@ -102,7 +113,7 @@ export class App {
   }
 
   tab(name: string): void {
-    for (const other of ["agent", "plots", "settings"]) {
+    for (const other of PANELS) {
       by(other).hidden = other !== name;
       by(`tab-${other}`).setAttribute("aria-selected", String(other === name));
     }
@@ -138,6 +149,7 @@ export class App {
       this.coloring = colors.find((each) => each.name === by<HTMLSelectElement>("color").value) ?? colors[0]!;
     };
     this.plots = new Plots(source, (step) => this.seek(step));
+    this.tools = new Tools(source instanceof Live ? source : undefined);
     this.panel.forget();
     this.setSpeed(4);
     this.arena.fit(source);
@@ -152,7 +164,10 @@ export class App {
   private picture(): void {
     this.move();
     const { before, after } = this.source.around(this.now);
+    const shown = this.frame?.step;
     this.frame = before && (this.source.live ? before : blend(before, after, this.now));
+    if (!this.playing) this.skipped = 0;
+    else if (this.frame && shown !== undefined && this.frame.step > shown) this.skipped = this.frame.step - shown - 1;
     const legend = this.arena.draw(this.source, this.frame, this.coloring, this.chosen);
     if (this.frame) this.pictures++;
     const time = performance.now();
@@ -186,7 +201,9 @@ export class App {
     this.panel.update(source, this.frame, this.chosen);
     by("status").textContent = source.status();
     const population = this.frame ? `, ${show(this.frame.id.length)} agents` : "";
-    by("clock").textContent = `step ${show(Math.floor(this.now))} of ${show(source.last)}${population}`;
+    const skipped = this.skipped > 0 ? `, ${show(Math.round(this.skipped))} steps skipped` : "";
+    by("clock").textContent = `step ${show(Math.floor(this.now))} of ${show(source.last)}${population}${skipped}`;
+    this.tools?.update();
     if (!this.playing && source instanceof Live) source.look();
     by("notice").hidden = !(source instanceof Live && source.error);
     if (source instanceof Live && source.error) by("notice").textContent = source.error;
@@ -204,10 +221,10 @@ export class App {
       dot.style.color = food.color;
       return element("span", {}, dot, ` ${food.name}`);
     });
-    const digest = this.source.digest();
-    const made: HTMLElement[] = digest && (!this.source.live || this.now === this.source.last) ? [element("div", { text: `digest ${digest}` })] : [];
-    if (made.length > 0) made[0]!.id = "digest";
     const { source } = this;
+    const digest = source.digest();
+    const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.byHand ? ", changed by hand" : ""}` })] : [];
+    if (made.length > 0) made[0]!.id = "digest";
     const kernel = source instanceof Live ? [element("div", { text: source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "kernel portable" })] : [];
     by("legend").replaceChildren(element("div", { text: this.coloring.label }), bar, element("div", {}, ...foods), ...kernel, ...made);
   }
@@ -219,7 +236,7 @@ export class App {
     by("step-on").onclick = () => this.step(1);
     by("step-back").onclick = () => this.step(-1);
     by("speed").onchange = () => this.setSpeed(Number(by<HTMLSelectElement>("speed").value));
-    for (const name of ["agent", "plots", "settings"]) by(`tab-${name}`).onclick = () => this.tab(name);
+    for (const name of PANELS) by(`tab-${name}`).onclick = () => this.tab(name);
     by("show-rays").onchange = () => (this.arena.showRays = by<HTMLInputElement>("show-rays").checked);
     by("show-trail").onchange = () => (this.arena.showTrail = by<HTMLInputElement>("show-trail").checked);
     by("theme").onclick = () => {
@@ -231,7 +248,7 @@ export class App {
 
   /** The rays of an agent of the moment that is shown. */
   rays(i: number): Ray[] {
-    return this.frame ? castRays(this.source.layout, this.frame, i) : [];
+    return this.frame ? castRays(this.source.layout, this.frame, i, this.source.obstacles) : [];
   }
 
   help(): void {
@@ -241,11 +258,8 @@ export class App {
     const { source } = this;
     if (source instanceof Live) {
       const same = command(source.world, source.changes, source.seed, source.last);
-      lines.push(element("p", { text: "The same world, with the same digest:" }), element("code", { text: same }));
-      const file = element("a", { text: "the config as a file" });
-      file.href = URL.createObjectURL(new Blob([configFile(source.world, source.changes)], { type: "text/plain" }));
-      file.download = `${source.world.name}.toml`;
-      lines.push(element("p", {}, file));
+      const said = source.byHand ? "It was changed by hand: no command makes the same world. It began as" : "The same world, with the same digest:";
+      lines.push(element("p", { text: said }), element("code", { text: same }));
     }
     box.replaceChildren(...lines);
   }

@@ -1,5 +1,5 @@
 // The rays of one agent, from positions alone: what they hit in a moment that was recorded.
-import type { Frame, Layout } from "./types";
+import type { Frame, Layout, Place } from "./types";
 
 export interface Ray {
   x0: number;
@@ -32,12 +32,14 @@ function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]
 }
 
 /** The rays of agent `i` of a frame, from the right to the left. Heading 0 is up, positive is counter-clockwise. */
-export function castRays(layout: Layout, frame: Frame, i: number): Ray[] {
+export function castRays(layout: Layout, frame: Frame, i: number, obstacles: Place[][]): Ray[] {
   const own = layout.species[frame.species[i]!]!;
   const { count, spread_degrees: spread, length } = own.rays;
   const body = own.radius;
-  const [wall, [x, y]] = [layout.types.length - 1, [frame.x[i]!, frame.y[i]!]];
+  const [x, y] = [frame.x[i]!, frame.y[i]!];
   const foodType = layout.species.length;
+  const wall = foodType + layout.foods.length; // and after it obstacles
+  const sides = obstacles.flatMap((corners) => corners.map((corner, c) => [...corner, ...corners[(c + 1) % corners.length]!]));
   const reach = body + length;
   const rays: Ray[] = [];
   for (let r = 0; r < count; r++) {
@@ -61,6 +63,7 @@ export function castRays(layout: Layout, frame: Frame, i: number): Ray[] {
       consider(toDisc(x, y, dx, dy, frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius), foodType + kind);
     }
     for (const segment of layout.arena.walls) consider(toWall(x, y, dx, dy, segment), wall);
+    for (const side of own.sees.includes(wall + 1) ? sides : []) consider(toWall(x, y, dx, dy, side), wall + 1);
     rays.push({ x0: x + body * dx, y0: y + body * dy, x1: x + best * dx, y1: y + best * dy, type, share: (best - body) / length });
   }
   return rays;

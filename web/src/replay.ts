@@ -2,7 +2,7 @@
 import { Lives } from "./lives";
 import type { Answer, Column, Request } from "./records.worker";
 import { Series } from "./series";
-import type { Frame, Layout, Part, RunIndex, Source } from "./types";
+import type { Frame, Layout, Part, Place, RunIndex, Source } from "./types";
 
 const FOLLOW_MS = 2000; // between two looks at a run that goes on
 const KEPT_PARTS = 6; // parts of the frames in memory
@@ -69,6 +69,10 @@ export class Replay implements Source {
     const frames = this.index.files.frames;
     const shown = frames[frames.length - 1]?.last ?? -1;
     return Math.max(shown, this.series.step[this.series.step.length - 1] ?? 0);
+  }
+
+  get obstacles(): Place[][] {
+    return this.index.obstacles?.[this.world] ?? [];
   }
 
   status(): string {
@@ -190,6 +194,8 @@ export class Replay implements Source {
     const eaten = this.layout.meals.map((meal) => of(`eaten_${meal}`));
     const genes = this.layout.genes.map((gene) => of(gene.name));
     const world = of("world");
+    const kinds = columns.species as string[] | undefined;
+    const species = new Map(this.layout.species.map((each, i) => [each.name, i]));
     const orNone = (value: number | undefined) => (value === undefined || Number.isNaN(value) ? -1 : value);
     for (let row = 0; row < world.length; row++) {
       if (world[row] !== this.world) continue;
@@ -206,6 +212,8 @@ export class Replay implements Source {
         children: of("children")[row]!,
         reward: of("reward_sum")[row]!,
         eaten: eaten.map((column) => column[row] ?? 0),
+        lastMeal: -1,
+        species: kinds ? (species.get(kinds[row]!) ?? 0) : 0,
         genome: genes.map((column) => column[row]!),
       });
     }

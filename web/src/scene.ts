@@ -1,4 +1,4 @@
-// Draws discs and lines by WebGL2: one call for all discs, one for all lines.
+// Draws discs, lines and polygons by WebGL2: one call for all of a sort.
 
 const DISC_VERTEX = `#version 300 es
 layout(location=0) in vec2 corner;
@@ -46,7 +46,7 @@ in vec4 tint; out vec4 color;
 void main() { color = vec4(tint.rgb * tint.a, tint.a); }`;
 
 const DISC_WORDS = 7; // x, y, radius, angle, color, mouth, ring
-const LINE_WORDS = 3; // x, y, color
+const LINE_WORDS = 3; // x, y, color; corners of triangles too
 
 /** Things of one sort, in one buffer that only grows. */
 class Batch {
@@ -80,6 +80,7 @@ export class Scene {
   private readonly gl: WebGL2RenderingContext;
   private readonly discs = new Batch(DISC_WORDS);
   private readonly lines = new Batch(LINE_WORDS);
+  private readonly triangles = new Batch(LINE_WORDS);
   private readonly discProgram: WebGLProgram;
   private readonly lineProgram: WebGLProgram;
   private readonly discArray: WebGLVertexArrayObject;
@@ -98,7 +99,7 @@ export class Scene {
   }
 
   begin(): void {
-    this.discs.used = this.lines.used = 0;
+    this.discs.used = this.lines.used = this.triangles.used = 0;
   }
 
   disc(x: number, y: number, radius: number, color: number, angle = 0, mouth = 2, ring = 0): void {
@@ -114,11 +115,14 @@ export class Scene {
   }
 
   line(x0: number, y0: number, x1: number, y1: number, color: number): void {
-    for (const [x, y] of [[x0, y0], [x1, y1]] as const) {
-      const at = this.lines.next();
-      this.lines.floats[at] = x;
-      this.lines.floats[at + 1] = y;
-      this.lines.words[at + 2] = color;
+    this.corner(this.lines, x0, y0, color);
+    this.corner(this.lines, x1, y1, color);
+  }
+
+  /** A convex polygon. */
+  polygon(corners: [number, number][], color: number): void {
+    for (let i = 2; i < corners.length; i++) {
+      for (const [x, y] of [corners[0]!, corners[i - 1]!, corners[i]!]) this.corner(this.triangles, x, y, color);
     }
   }
 
@@ -130,6 +134,8 @@ export class Scene {
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    this.use(this.lineProgram, this.lineArray, this.lineBuffer, this.triangles);
+    gl.drawArrays(gl.TRIANGLES, 0, this.triangles.count);
     this.use(this.lineProgram, this.lineArray, this.lineBuffer, this.lines);
     gl.drawArrays(gl.LINES, 0, this.lines.count);
     this.use(this.discProgram, this.discArray, this.discBuffer, this.discs);
@@ -161,6 +167,13 @@ export class Scene {
     if (width === this.canvas.width && height === this.canvas.height) return false;
     [this.canvas.width, this.canvas.height] = [width, height];
     return true;
+  }
+
+  private corner(batch: Batch, x: number, y: number, color: number): void {
+    const at = batch.next();
+    batch.floats[at] = x;
+    batch.floats[at + 1] = y;
+    batch.words[at + 2] = color;
   }
 
   private use(program: WebGLProgram, array: WebGLVertexArrayObject, buffer: WebGLBuffer, batch: Batch): void {

@@ -15,6 +15,13 @@ export class Series {
     this.step.push(step);
   }
 
+  /** Forgets the rows after a step. */
+  rewind(step: number): void {
+    const kept = this.step.findLastIndex((each) => each <= step) + 1;
+    this.step.length = kept;
+    for (const column of this.columns.values()) column.length = Math.min(column.length, kept);
+  }
+
   get(name: string): number[] {
     return this.columns.get(name) ?? [];
   }

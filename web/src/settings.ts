@@ -27,10 +27,25 @@ export function command(world: LiveWorld, changes: Map<string, string>, seed: nu
 
 /** The same world as a config file. */
 export function configFile(world: LiveWorld, changes: Map<string, string>): string {
-  const lines = [`preset = "${world.source}"`, `fidelity = "${world.fidelity}"`];
   const quoted = new Set(world.settings.filter((setting) => setting.choices.length > 0).map((setting) => setting.path));
-  for (const [path, value] of changes) lines.push(`${path} = ${quoted.has(path) ? JSON.stringify(value) : value}`);
+  const written = (path: string, value: string) => (quoted.has(path) ? JSON.stringify(value) : value);
+  if (world.toml) return changedLines(world.toml, changes, written);
+  const lines = [`preset = "${world.source}"`, `fidelity = "${world.fidelity}"`];
+  for (const [path, value] of changes) lines.push(`${path} = ${written(path, value)}`);
   return lines.join("\n") + "\n";
+}
+
+/** A whole config, which has each setting on a line of its own below the name of its table, with some values changed. */
+function changedLines(toml: string, changes: Map<string, string>, written: (path: string, value: string) => string): string {
+  let table = "";
+  const line = (text: string): string => {
+    const name = /^\[(.*)\]$/.exec(text);
+    if (name) table = `${name[1]}.`;
+    const key = /^([\w-]+) = /.exec(text);
+    const value = key ? changes.get(table + key[1]) : undefined;
+    return value === undefined ? text : `${key![1]} = ${written(table + key![1], value)}`;
+  };
+  return toml.split("\n").map(line).join("\n");
 }
 
 export class Settings {

@@ -22,10 +22,13 @@ export interface Layout {
   foods: { name: string; radius: number; energy: number; color: string }[];
   genes: Gene[];
   meals: string[];
+  obstacle_corners: number;
   arena: { width: number; height: number; walls: [number, number, number, number][] };
   window: number;
   energy_capacity: number;
 }
+
+export type Place = [number, number];
 
 /** Everything that has a place at one moment. Agents are in the order of their ids. */
 export interface Frame {
@@ -52,6 +55,8 @@ export interface Life {
   children: number;
   reward: number;
   eaten: number[]; // by meal
+  lastMeal: number; // what it ate last, -1 for nothing; only a live world knows it
+  species: number;
   genome: number[]; // by the layout's genes; NaN for one that its species lacks
 }
 
@@ -73,6 +78,7 @@ export interface Event {
 export interface Source {
   readonly layout: Layout;
   readonly live: boolean;
+  readonly obstacles: Place[][]; // their corners
   readonly first: number;
   readonly last: number;
   readonly lives: import("./lives").Lives;
@@ -105,6 +111,7 @@ export interface LiveWorld {
   description: string;
   source: string;
   fidelity: string;
+  toml: string; // the whole config, for a world that no preset names; else ""
   layout: Layout;
   text: string;
   settings: Setting[];
@@ -127,6 +134,7 @@ export interface RunIndex {
   extinct: (number | null)[];
   frames: number;
   digests: string[];
+  obstacles?: Place[][][]; // of each world
   layout: Layout;
   files: { agents: Part[]; population: Part[]; frames: Part[] };
 }

@@ -27,8 +27,8 @@ class RunIndex:
 
         Returns:
             `name`, `status`, `seeds`, `steps` (done, per world), `extinct` (step or None, per world), `frames` (steps
-            between two), `digests`, `layout`, and `files`: for each table its parts, each with `file` (relative to
-            the run), `bytes` and, for frames, `first` and `last` step.
+            between two), `digests`, `obstacles` (corners of each, per world), `layout`, and `files`: for each table its
+            parts, each with `file` (relative to the run), `bytes` and, for frames, `first` and `last` step.
 
         Raises:
             RecordError: It is no run, or it holds a symbolic link.
@@ -46,6 +46,7 @@ class RunIndex:
             "extinct": list(manifest.extinct_steps),
             "frames": manifest.frames,
             "digests": list(manifest.world_digests),
+            "obstacles": list(manifest.obstacle_places),
             "layout": describe(config),
             "files": {table: list(self._parts(run, table)) for table in TABLE_FOLDERS},
         }

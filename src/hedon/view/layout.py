@@ -19,10 +19,11 @@ def describe(config: Config) -> dict[str, Any]:
         `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of the heading), rays (count,
         spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel) and genes
         (indices into `genes`, in genome order);
-        `types`: names that senses tell apart: the species, the foods, walls;
+        `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
         `genes`: of all species, each once: name, role ("reward" or "neutral") and input (what it rewards, "" for none);
         `meals`: what an agent may eat, in the order in which the engine counts it;
+        `obstacle_corners`: of each obstacle; 0 where there are none;
         `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;
         `energy_capacity`: most energy of an agent.
     """
@@ -38,6 +39,7 @@ def describe(config: Config) -> dict[str, Any]:
         "foods": foods,
         "genes": _genes(config, made),
         "meals": [*config.food, *(config.agents if hunting else ())],
+        "obstacle_corners": config.obstacle.corners if config.obstacle.count else 0,
         "arena": {
             "width": config.arena.width,
             "height": config.arena.height,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
+from hedon.config.dump import dump_toml
 from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
 from hedon.view.engine_text import engine_settings, engine_text
@@ -31,8 +32,9 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
     """One world that the page can make.
 
     Returns:
-        `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `layout`, as `describe` gives it; `text`
-        for the engine, for seed 1; `settings`, each as `_setting` gives it.
+        `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if no preset is
+        it, else ""; `layout`, as `describe` gives it; `text` for the engine, for seed 1; `settings`, each as `_setting`
+        gives it.
     """
     preset = source in PRESETS
     shown = source if preset else Path(source).name
@@ -42,6 +44,7 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
         "description": description,
         "source": shown,
         "fidelity": config.fidelity,
+        "toml": "" if preset else dump_toml(config),
         "layout": describe(config),
         "text": engine_text(config, 1),
         "settings": list(_settings(config)),

@@ -1,0 +1,173 @@
+"""What a person does with a live world in the page: by hand, to a snapshot and back, into files, at any speed."""
+
+import polars as pl
+import pytest
+from view_page import live_server, serving
+
+from hedon import Simulation, load_config
+
+pytest_plugins = ("view_fixture",)
+
+
+@pytest.fixture(scope="module")
+def server():
+    with serving(live_server("small")) as running:
+        yield running
+
+
+@pytest.fixture
+def world(server, watch):
+    """A page with a world that rests at step 200."""
+    watched = watch(server.link)
+    rest(watched, 200)
+    watched.get("hedon.tab('world-panel')")
+    return watched
+
+
+def rest(watched, step):
+    watched.get("hedon.play(false)")
+    watched.until("!hedon.source.busy")
+    while (done := watched.get("hedon.source.last")) < step:
+        watched.get(f"hedon.source.advance({step - done}, 5000)")
+        watched.until("!hedon.source.busy")
+    watched.get("hedon.seek(hedon.source.last)")
+    watched.until("hedon.frame && hedon.frame.step === hedon.source.last && hedon.source.digest() !== ''")
+
+
+def native(watched, step):
+    kernel = "" if watched.get("hedon.source.fused") else "portable"
+    simulation = Simulation(load_config("small"), seeds=[1], kernel=kernel)
+    simulation.run(step)
+    return simulation.worlds[0]
+
+
+def click_at(watched, place):
+    x, y = watched.get(f"hedon.arena.scene.toPage(...{place})")
+    watched.page.mouse.click(x, y)
+
+
+def free_place(watched, gap):
+    """A place in the middle of the arena with nothing within `gap` units."""
+    return watched.get(
+        f"""(() => {{
+          const {{ frame }} = hedon;
+          const [xs, ys] = [[...frame.x, ...frame.foodX], [...frame.y, ...frame.foodY]];
+          for (let x = 60; x < 300; x += 5) for (let y = 60; y < 300; y += 5)
+            if (!xs.some((other, i) => Math.hypot(other - x, ys[i] - y) < {gap})) return [x, y];
+        }})()"""
+    )
+
+
+def download(watched, button):
+    with watched.page.expect_download() as waiting:
+        watched.page.locator(button).click()
+    return waiting.value
+
+
+@pytest.mark.parametrize(("choice", "count"), [("0", "frame.id.length"), ("1", "frame.foodX.length")])
+def test_what_is_added_by_hand_is_there_and_can_be_removed(world, choice, count):
+    place = free_place(world, 24)
+    before = world.get(f"hedon.{count}")
+    world.page.locator("#hand").select_option(choice)
+    click_at(world, place)
+    world.until(f"hedon.{count} === {before + 1}")
+    world.until("document.querySelector('#digest')?.textContent.includes('changed by hand')")
+    click_at(world, place)
+    world.until("document.querySelector('#world-panel .problem').textContent.includes('there is no room')")
+    world.page.locator("#hand").select_option("remove")
+    click_at(world, place)
+    world.until(f"hedon.{count} === {before}")
+    world.until("document.querySelector('#world-panel .problem').textContent === ''")
+    world.page.locator("#hand").select_option("choose")
+    world.get("hedon.play(true)")
+    world.until("hedon.source.last > 220")
+    assert world.get("hedon.source.error") == ""
+
+
+def test_a_world_goes_back_to_its_snapshot_and_on_with_the_same_digest(world):
+    assert world.page.locator("#back").is_disabled()
+    world.page.locator("#keep").click()
+    world.until("hedon.source.kept === 200")
+    world.page.locator("#hand").select_option("1")
+    click_at(world, free_place(world, 24))
+    world.until("hedon.source.byHand")
+    rest(world, 700)
+    later = world.get("hedon.source.series.step.length")
+    world.page.locator("#back").click()
+    world.until("hedon.source.last === 200 && hedon.frame.step === 200 && !hedon.source.byHand")
+    assert world.get("hedon.source.series.step.length") < later
+    assert world.get("[...hedon.source.lives.all()].every((life) => life.birth <= 200 && life.death <= 200)")
+    rest(world, 700)
+    assert world.get("hedon.source.digest()") == native(world, 700).digest()
+
+
+def test_the_records_of_the_page_are_those_of_the_native_world(world):
+    rest(world, 900)
+    same = native(world, 900)
+    living = pl.read_csv(download(world, "#save-living").path())
+    agents = same.agents()
+    order = agents["agent_id"].argsort()
+    assert living["agent_id"].to_list() == agents["agent_id"][order].tolist()
+    assert living["energy"].to_list() == pytest.approx(agents["energy"][order].tolist(), rel=1e-6)
+    assert living["death_step"].null_count() == len(living)
+    x, y, agent = world.get("[hedon.frame.x[3], hedon.frame.y[3], hedon.frame.id[3]]")
+    world.page.locator("#hand").select_option("remove")
+    click_at(world, [x, y])
+    world.until("hedon.source.byHand")
+    ended = pl.read_csv(download(world, "#save-ended").path())
+    assert (agent, 900) in ended.select("agent_id", "death_step").rows()
+    assert not set(ended["agent_id"]) & set(pl.read_csv(download(world, "#save-living").path())["agent_id"])
+    assert {"parent_id", "eaten_normal", "w_action", "neutral_1"} <= set(living.columns)
+
+
+def test_the_config_of_the_page_makes_the_same_world(server, watch):
+    watched = watch(server.link)
+    watched.get("hedon.tab('settings')")
+    watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
+    watched.page.locator("[data-path='energy.basic_cost']").fill("0.05")
+    watched.page.locator("#restart").click()
+    watched.until("hedon.source.changes.size === 1 && hedon.frame")
+    rest(watched, 50)
+    watched.get("hedon.tab('world-panel')")
+    taken = download(watched, "#save-config")
+    assert taken.suggested_filename == "small.toml"
+    kernel = "" if watched.get("hedon.source.fused") else "portable"
+    simulation = Simulation(load_config(str(taken.path())), [1], kernel=kernel)
+    simulation.run(watched.get("hedon.source.last"))
+    assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
+
+
+def test_the_config_of_a_world_from_a_file_is_whole(tmp_path, watch):
+    file = tmp_path / "mushrooms.toml"
+    file.write_text('preset = "small"\n[food.mushroom]\nenergy = 3.0\ninitial_count = 5\ncapacity = 20\n')
+    with serving(live_server(str(file))) as server:
+        watched = watch(server.link)
+        watched.get("hedon.tab('settings')")
+        watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
+        watched.page.locator("[data-path='food.mushroom.energy']").fill("4.5")
+        watched.page.locator("#restart").click()
+        watched.until("hedon.source.changes.size === 1 && hedon.frame")
+        watched.get("hedon.tab('world-panel')")
+        taken = tmp_path / "taken.toml"
+        download(watched, "#save-config").save_as(taken)
+        expected = load_config(str(file), overrides=["food.mushroom.energy=4.5"])
+        assert load_config(str(taken)).food == expected.food
+
+
+def test_agents_are_colored_by_what_they_ate_last(world):
+    rest(world, 600)
+    lives = world.get(
+        "[...hedon.frame.id].map((id) => hedon.source.lives.get(id)).map((life) => [life.lastMeal, life.eaten])"
+    )
+    assert {last for last, _ in lives} == {-1, 0}
+    assert all((last >= 0) == (sum(eaten) > 0) for last, eaten in lives)
+    world.page.locator("#color").select_option("last")
+    world.until("document.querySelector('#legend').textContent.includes('ate last')")
+
+
+def test_the_page_says_how_many_steps_it_does_not_draw(world):
+    world.page.locator("#speed").select_option("64")
+    world.get("hedon.play(true)")
+    world.until("/steps skipped/.test(document.querySelector('#clock').textContent)")
+    world.get("hedon.play(false)")
+    world.until("!/steps skipped/.test(document.querySelector('#clock').textContent)")

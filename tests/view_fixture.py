@@ -1,0 +1,36 @@
+"""A plugin of pytest: a browser, a run to watch, and pages that may not complain."""
+
+import pytest
+from view_page import CHROMIUM, FLAGS, SIZE, Watched, record
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group browser")
+    if not CHROMIUM.exists():
+        pytest.skip(f"needs {CHROMIUM}: apt-get install chromium")
+    with playwright.sync_playwright() as tool:
+        opened = tool.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("view") / "run", 2048)
+
+
+@pytest.fixture
+def watch(browser):
+    """Opens links; at the end no page may have complained or asked another host for anything."""
+    opened = []
+
+    def open_link(link: str) -> Watched:
+        context = browser.new_context(viewport=SIZE)
+        opened.append((context, Watched(context.new_page(), link)))
+        return opened[-1][1]
+
+    yield open_link
+    for context, watched in opened:
+        context.close()
+        assert watched.faults == []

@@ -1,0 +1,27 @@
+// Lives as a file for a spreadsheet: the columns are called as in the table `agents` of a run.
+import type { Life, Source } from "./types";
+
+/** One line for each life, after the names of the columns; what is missing is empty. */
+export function csvOf(source: Source, seed: number, lives: Life[]): string {
+  const { layout } = source;
+  const several = layout.species.length > 1;
+  const names = ["seed", ...(several ? ["species"] : []), "agent_id", "parent_id", "generation", "birth_step", "death_step", "energy"];
+  names.push(...layout.meals.map((meal) => `eaten_${meal}`), "children", "reward_sum", ...layout.genes.map((gene) => gene.name));
+  const known = (value: number) => (value < 0 ? "" : String(value));
+  const line = (life: Life): string => {
+    const first = [String(seed), ...(several ? [layout.species[life.species]!.name] : []), String(life.id), known(life.parent)];
+    first.push(String(life.generation), String(life.birth), known(life.death), String(life.energy), ...life.eaten.map(String));
+    const genome = life.genome.map((value) => (Number.isNaN(value) ? "" : String(value)));
+    return [...first, String(life.children), String(life.reward), ...genome].join(",");
+  };
+  return [names.join(","), ...lives.map(line)].join("\n") + "\n";
+}
+
+/** Lets the browser save a text as a file. */
+export function save(name: string, text: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,31 @@
+// What the agent in each slot of a live world ate last: the engine counts meals, so the count that grew tells it.
+
+export class LastMeals {
+  private counts = new Int32Array();
+  private last = new Int8Array(); // by slot, -1 for nothing yet
+
+  /** Looks at the counts after a step: rows of slots, one column for each kind of meal. */
+  note(eaten: Int32Array, kinds: number): void {
+    if (this.counts.length !== eaten.length) {
+      this.counts = eaten.slice();
+      this.last = new Int8Array(eaten.length / kinds).fill(-1);
+      return;
+    }
+    for (let i = 0; i < eaten.length; i++) {
+      if (eaten[i] === this.counts[i]) continue;
+      // Counts fall only where a newborn has taken the slot.
+      this.last[Math.floor(i / kinds)] = eaten[i]! > this.counts[i]! ? i % kinds : -1;
+      this.counts[i] = eaten[i]!;
+    }
+  }
+
+  of(slot: number): number {
+    return this.last[slot] ?? -1;
+  }
+
+  copy(): LastMeals {
+    const made = new LastMeals();
+    [made.counts, made.last] = [this.counts.slice(), this.last.slice()];
+    return made;
+  }
+}

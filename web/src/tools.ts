@@ -1,0 +1,76 @@
+// What can be done with a live world beside changing its settings: by hand, to a snapshot and back, into files.
+import { csvOf, save } from "./csv";
+import { by, element, option, show } from "./element";
+import type { Live } from "./live";
+import { configFile } from "./settings";
+import type { Source } from "./types";
+
+export class Tools {
+  private readonly host = by<HTMLDivElement>("world-panel");
+  private readonly hand = element("select");
+  private readonly back = element("button");
+  private readonly refused = element("p", { class: "problem" });
+  private readonly kept = element("p", { class: "quiet" });
+
+  constructor(private readonly live: Live | undefined) {
+    if (!live) {
+      this.host.replaceChildren(element("p", { text: "What was recorded cannot be changed: choose a live world above." }));
+      return;
+    }
+    this.refused.setAttribute("role", "alert");
+    this.hand.id = "hand";
+    this.back.id = "back";
+    this.back.addEventListener("click", () => live.act({ type: "back" }));
+    const keep = this.button("keep", "Keep it as it is now", () => live.act({ type: "keep" }));
+    this.host.replaceChildren(
+      element("h3", { text: "by hand" }),
+      element("label", {}, "A click in the arena ", this.hand),
+      this.refused,
+      element("p", { text: "Who is added has a founder's energy, new genes and a new network. After a change by hand no config gives this world.", class: "quiet" }),
+      element("h3", { text: "snapshot" }),
+      element("div", { class: "row" }, keep, this.back),
+      this.kept,
+      element("h3", { text: "files" }),
+      element("div", { class: "row" }, ...this.files(live)),
+    );
+    this.hand.append(option("choose", "chooses an agent"));
+    live.layout.types.slice(0, live.layout.species.length + live.layout.foods.length).forEach((name, type) => {
+      this.hand.append(option(String(type), `adds ${type < live.layout.species.length ? "" : "food "}${name}`));
+    });
+    this.hand.append(option("remove", "removes what is there"));
+    this.update();
+  }
+
+  /** Does by hand what was chosen; false if a click chooses an agent. */
+  click(source: Source, x: number, y: number, pixel: number): boolean {
+    if (!this.live || source !== this.live || this.hand.value === "choose") return false;
+    if (this.hand.value === "remove") this.live.act({ type: "remove", x, y, slack: 3 * pixel });
+    else this.live.act({ type: "add", kind: Number(this.hand.value), x, y });
+    return true;
+  }
+
+  update(): void {
+    if (!this.live) return;
+    this.refused.textContent = this.live.refused;
+    this.back.disabled = this.live.kept < 0;
+    this.back.textContent = this.live.kept < 0 ? "Go back" : `Go back to step ${show(this.live.kept)}`;
+    this.kept.textContent = this.live.kept < 0 ? "Nothing is kept yet." : "";
+  }
+
+  private files(live: Live): HTMLElement[] {
+    const name = `${live.world.name}-s${live.seed}`;
+    const lives = (ended: boolean) => [...live.lives.all()].filter((life) => life.death >= 0 === ended).sort((a, b) => a.id - b.id);
+    return [
+      this.button("save-config", "Config", () => save(`${live.world.name}.toml`, configFile(live.world, live.changes))),
+      this.button("save-living", "The living", () => save(`${name}-living.csv`, csvOf(live, live.seed, lives(false)))),
+      this.button("save-ended", "Lives that ended", () => save(`${name}-ended.csv`, csvOf(live, live.seed, lives(true)))),
+    ];
+  }
+
+  private button(id: string, text: string, act: () => void): HTMLButtonElement {
+    const made = element("button", { text });
+    made.id = id;
+    made.addEventListener("click", act);
+    return made;
+  }
+}
