@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
-from inspect import signature
+from inspect import iscoroutinefunction, signature
 from pathlib import Path
 from stat import S_ISREG
 from types import FunctionType
@@ -72,6 +72,8 @@ class Rule:
             near = nearest(self.source.name, known)
             hint = f"; did you mean {near}?" if near else ""
             raise self._error(f"the file has no function {self.source.name}{hint}")
+        if iscoroutinefunction(function):
+            raise self._error(f"{self.source.name} must be a plain function, without async")
         try:
             signature(function).bind(None)
         except TypeError as error:
