@@ -67,6 +67,13 @@ class Group:
         return (self.ids != NOBODY) & (self.ids_before != self.ids)
 
     def _tell(self, engine: Any) -> None:
+        shape = (*self.ids.shape, len(ACTIONS))
+        given: Any = self.actions
+        good = isinstance(given, np.ndarray) and given.shape == shape and given.dtype == np.float32
+        if not good or not given.flags.c_contiguous:
+            raise ArgumentError(
+                f"actions: must be the array of {shape} float32 that was there: write into it, actions[...] = …"
+            )
         if not np.isfinite(self.actions).all():
             world, slot, motor = np.argwhere(~np.isfinite(self.actions))[0]
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]})"
@@ -152,6 +159,9 @@ class Batch:
             self._look()
         self.simulation.run(1)
         self._look()
+
+    def __getstate__(self) -> Any:
+        raise TypeError("worlds that are driven cannot be copied or pickled: make a new one from its config")
 
     def _look(self) -> None:
         for group in self.groups.values():

@@ -46,6 +46,7 @@ class World(ParallelEnv[str, Any, Any]):
         self.max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
         self._batch: Batch = batch(config, [seed], species, threads)
         self.agents: list[str] = []
+        self._begun = False
         self._row: dict[str, tuple[Group, int]] = {}
         self._spaces: dict[str, tuple[Box, Box]] = {}
 
@@ -68,6 +69,7 @@ class World(ParallelEnv[str, Any, Any]):
         """Begins again: with this seed, or with that of the last time."""
         self._batch.reset(None if seed is None else [seed])
         self._spaces.clear()
+        self._begun = True
         self._list_agents()
         return self._observations(), {name: {} for name in self.agents}
 
@@ -84,8 +86,10 @@ class World(ParallelEnv[str, Any, Any]):
             terminations, truncations, infos.
 
         Raises:
-            ArgumentError: An action is for nobody alive, or is not two finite numbers.
+            ArgumentError: An action is for nobody alive, or is not two finite numbers; or there was no `reset`.
         """
+        if not self._begun:
+            raise ArgumentError("step: there are no agents yet: call reset first")
         if not self.agents:
             return {}, {}, {}, {}, {}
         for name, action in actions.items():
@@ -115,7 +119,11 @@ class World(ParallelEnv[str, Any, Any]):
     def _set(self, name: str, action: Any) -> None:
         if name not in self._row:
             raise ArgumentError(f"actions: no agent {brief(str(name))!r} is alive")
-        given = np.asarray(action, np.float32)
+        try:
+            with np.errstate(over="ignore"):
+                given = np.asarray(action, np.float32)
+        except (TypeError, ValueError):
+            given = np.empty(0, np.float32)
         if given.shape != (len(ACTIONS),) or not np.isfinite(given).all():
             raise ArgumentError(f"actions[{name!r}] = {brief(str(action))}: must be two finite numbers, left and right")
         group, row = self._row[name]
