@@ -1,0 +1,20 @@
+"""The example that trains a shared policy by Stable-Baselines3."""
+
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.long
+
+
+def test_a_shared_policy_of_a_library_forages_better_than_chance():
+    reason = "needs 5 GB that the project does not install: pip install stable-baselines3"
+    pytest.importorskip("stable_baselines3", reason=reason)
+    spec = spec_from_file_location("ppo", Path(__file__).parents[2] / "examples" / "ppo.py")
+    assert spec is not None
+    assert spec.loader is not None
+    ppo = module_from_spec(spec)
+    spec.loader.exec_module(ppo)
+    (trained,), random = ppo.compare([1], steps=120_000)
+    assert trained > 1.4 * random > 0
