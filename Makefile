@@ -37,6 +37,7 @@ sanitized: sync
 test-long: sync
 	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
 	  -m "long or not long" tests/property tests/contract
+	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view
 	$(RUN) python tests/soak.py
 	$(RUN) python tests/sanitize.py tsan
 

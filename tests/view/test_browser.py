@@ -107,9 +107,14 @@ def test_the_page_shows_the_digest_of_the_run(run_folder, watch):
         watched.until(f"document.querySelector('#digest')?.textContent.includes('{digest}')")
 
 
-@pytest.mark.parametrize("steps", [1030, pytest.param(20 * 1024, marks=pytest.mark.long)])
-def test_a_live_world_has_the_digest_of_the_native_one(steps, watch):
-    with serving(live_server("poison")) as server:
+LONG = [
+    pytest.param(preset, 20 * 1024, marks=pytest.mark.long, id=preset) for preset in ("baseline", "poison", "predator")
+]
+
+
+@pytest.mark.parametrize(("preset", "steps"), [("poison", 1030), *LONG])
+def test_a_live_world_has_the_digest_of_the_native_one(preset, steps, watch):
+    with serving(live_server(preset)) as server:
         watched = watch(server.link)
         watched.get("hedon.play(false)")
         watched.until("!hedon.source.busy")
@@ -119,7 +124,7 @@ def test_a_live_world_has_the_digest_of_the_native_one(steps, watch):
             watched.until("!hedon.source.busy")
         watched.until("hedon.source.digest() !== ''")
         kernel = next((k for k in _engine.kernel.kernel_names() if k != "portable"), "") if fused else "portable"
-        simulation = Simulation(load_config("poison"), seeds=[1], kernel=kernel)
+        simulation = Simulation(load_config(preset), seeds=[1], kernel=kernel)
         simulation.run(steps)
         assert watched.get("[hedon.source.last, hedon.source.digest()]") == [steps, simulation.worlds[0].digest()]
 

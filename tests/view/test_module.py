@@ -21,6 +21,7 @@ MODULES = [
         marks=pytest.mark.skipif(not FUSED, reason="this processor does not fuse a multiplication with an addition"),
     ),
 ]
+LONG_PRESETS = ["baseline", "poison", "predator"]
 STEPS = 1030  # a window with its learning, and the first steps with what was learned
 
 needs_node = pytest.mark.skipif(
@@ -59,7 +60,7 @@ def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, tmp_
 
 @needs_node
 @pytest.mark.long
-@pytest.mark.parametrize("preset", ["baseline", "small", "poison"])
+@pytest.mark.parametrize("preset", LONG_PRESETS)
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
 def test_twenty_windows_have_the_bits_of_the_native_engine(module, kernel, preset, tmp_path):
     found = run_in_node(module, engine_text(load_config(preset), 1), tmp_path, 20 * 1024)

@@ -14,6 +14,8 @@ export interface Coloring {
   /** Value of an agent, from its life and the frame; NaN for unknown. */
   value(life: Life | undefined, frame: Frame, i: number): number;
   scale: "ramp" | "diverging" | "distinct" | "food";
+  /** The things that it tells apart, where they have names. */
+  key?: { name: string; color: string }[];
   low?: number;
   high?: number;
 }
@@ -41,7 +43,8 @@ export function colorings(source: Source): Coloring[] {
     const most = life ? Math.max(...life.eaten) : 0;
     return life && most > 0 ? life.eaten.indexOf(most) : NaN;
   };
-  const species: Coloring = { name: "species", label: "species", scale: "distinct", value: (_, frame, i) => frame.species[i]! };
+  const key = layout.species.map((each, i) => ({ name: each.name, color: css(distinctColor(i)) }));
+  const species: Coloring = { name: "species", label: "species", scale: "distinct", key, value: (_, frame, i) => frame.species[i]! };
   // Records count the meals of a life and not their order.
   const lastMeal: Coloring = { name: "last", label: "ate last", scale: "food", value: (life) => (life && life.lastMeal >= 0 ? life.lastMeal : NaN) };
   return [
@@ -82,19 +85,21 @@ export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uin
   if (coloring.scale === "diverging") [low, high] = [-Math.max(-low, high, 1e-6), Math.max(-low, high, 1e-6)];
   const stops = coloring.scale === "diverging" ? DIVERGING : RAMP;
   const table = Uint32Array.from({ length: 256 }, (_, i) => pack(along(stops, i / 255)));
-  const distinct = DISTINCT.map((color) => pack(color));
   const meals = source.layout.meals.map((meal) => pack(parse(mealColor(source.layout, meal))));
   const scale = 255 / (high - low || 1);
   const unknown = pack([140, 140, 140]);
   for (let i = 0; i < count; i++) {
     const value = values[i]!;
     if (Number.isNaN(value)) out[i] = unknown;
-    else if (coloring.scale === "distinct") out[i] = distinct[(value * 7) % distinct.length]!;
+    else if (coloring.scale === "distinct") out[i] = pack(distinctColor(value));
     else if (coloring.scale === "food") out[i] = meals[value] ?? unknown;
     else out[i] = table[Math.min(Math.max(Math.round((value - low) * scale), 0), 255)]!;
   }
   return { colors: out, legend: { low, high, stops: stops.map(css) } };
 }
+
+/** The color of one of several things that have no order. */
+const distinctColor = (value: number): Rgb => DISTINCT[(value * 7) % DISTINCT.length]!;
 
 /** The color of a food, or that of the species that is eaten. */
 export function mealColor(layout: Layout, meal: string): string {

@@ -216,10 +216,10 @@ export class App {
       bar.append(show(legend.low), element("i"), show(legend.high));
       bar.querySelector("i")!.style.background = `linear-gradient(90deg, ${legend.stops.join(", ")})`;
     }
-    const foods = this.source.layout.foods.map((food): HTMLElement => {
+    const foods = [...(this.coloring.key ?? []), ...this.source.layout.foods].map((each): HTMLElement => {
       const dot = element("b", { text: "●" });
-      dot.style.color = food.color;
-      return element("span", {}, dot, ` ${food.name}`);
+      dot.style.color = each.color;
+      return element("span", {}, dot, ` ${each.name}`);
     });
     const { source } = this;
     const digest = source.digest();
