@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from hedon.config import load_config
+from hedon.sweep.read import read_sweep
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs" / "guide").glob("*.md"))]
@@ -63,4 +64,7 @@ def test_configs_of_a_page_load(page, tmp_path):
     for i, block in enumerate(blocks(page, "toml")):
         file = tmp_path / f"config{i}.toml"
         file.write_text(block, encoding="utf-8")
-        assert load_config(file).food, block
+        if "[factor]" in block:
+            assert read_sweep(file).conditions, block
+        else:
+            assert load_config(file).food, block

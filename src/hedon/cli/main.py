@@ -8,7 +8,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, assay_contest, assay_start, config
+from hedon.cli import assay, assay_contest, assay_start, config, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.bench import bench
 from hedon.cli.branch import branch
@@ -58,6 +58,7 @@ app.command()(bench)
 assay_contest.add_to(assay.app)
 assay_start.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
+app.add_typer(sweep.app, name="sweep")
 app.add_typer(config.app, name="config")
 
 
@@ -88,6 +89,7 @@ def _hedon(
       hedon analyze runs/poison --only selection,drift
       hedon reproduce list
       hedon assay landscape baseline
+      hedon sweep run cost.toml
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
       hedon bench

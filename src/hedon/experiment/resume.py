@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from hedon.config.dump import digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
@@ -12,12 +13,12 @@ from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
-from hedon.experiment.run import drive
+from hedon.experiment.run import drive, run
 from hedon.experiment.session import next_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
+from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG, holds_run
 from hedon.record.founder_table import load_founders
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
@@ -25,6 +26,7 @@ from hedon.record.provenance import git_revision
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint, roll_back, verify_parts
 from hedon.record.writer import Writer
+from hedon.text import brief
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +115,44 @@ def resume(
     """
     with hold(folder, steps, threads, checkpoint_seconds) as found:
         return go_on(found, display)
+
+
+def make(plan: RunPlan, display: Display | None = None) -> Manifest:
+    """Makes the run of a plan: begins it, goes on with it, or only reads it where it is finished.
+
+    Raises:
+        RecordError: The folder holds a run with other settings, founders or seeds.
+        HedonError: As `run` and `resume`.
+    """
+    if not holds_run(plan.out):
+        return run(plan, display)
+    require_same(plan)
+    manifest = open_run(plan.out).manifest
+    if is_finished(manifest, plan.steps):
+        return manifest
+    steps = max(plan.steps, *manifest.steps_done, 1)
+    return resume(plan.out, steps, plan.threads, display, plan.checkpoint_seconds)
+
+
+def is_finished(manifest: Manifest, steps: int) -> bool:
+    """Whether a run has so many steps, or all its worlds have died out."""
+    over = bool(manifest.extinct_steps) and None not in manifest.extinct_steps
+    return manifest.status == "finished" and (over or max(manifest.steps_done) >= steps)
+
+
+def require_same(plan: RunPlan) -> None:
+    """Refuses a folder that holds another run than the plan's.
+
+    Raises:
+        RecordError: It has other settings, founders or seeds.
+    """
+    if not holds_run(plan.out):
+        return
+    manifest = open_run(plan.out).manifest
+    if manifest.config_digest != digest(plan.config) or manifest.seeds != plan.seeds:
+        raise RecordError(
+            f"{brief(str(plan.out))} holds a run with other settings, founders or seeds: give another folder with --out"
+        )
 
 
 def go_on(found: Resumption, display: Display | None = None) -> Manifest:

@@ -97,7 +97,8 @@ def _over_worlds(worlds: Sequence[Mapping[str, Any]], weight_names: Sequence[str
 def _world(
     run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame, weights: Mapping[str, Any]
 ) -> dict[str, Any]:
-    agents, population = (table.filter(pl.col("world") == index) for table in (agents, population))
+    # In one piece: sums must not depend on the parts in which rows were written.
+    agents, population = (table.filter(pl.col("world") == index).rechunk() for table in (agents, population))
     manifest, tail = run.manifest, run_tail(population)
     recorded = int(population["step"][-1]) if population.height else 0
     steps = max(recorded, manifest.steps_done[index] if manifest.steps_done else 0)

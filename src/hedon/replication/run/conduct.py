@@ -2,26 +2,45 @@
 
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from hedon.experiment.interrupt import SIGNALS, count_interrupts
 from hedon.experiment.plan import Moment
-from hedon.replication.run.plan import Job
 from hedon.replication.run.work import Outcome, work
+
+if TYPE_CHECKING:
+    from hedon.replication.run.plan import Job
 
 _LOOK_SECONDS = 0.2
 """Longest time between two checks for Ctrl-C [s]."""
 
 
+class Task(Protocol):
+    """What a process is given to do; the folder of its run tells it from the others."""
+
+    @property
+    def folder(self) -> Path:
+        """Of its run."""
+        ...
+
+
+T = TypeVar("T", bound=Task)
+T_contra = TypeVar("T_contra", contravariant=True)
+Work = Callable[[T, int, Connection], None]
+"""Does a task with so many threads in a new process, and answers through a pipe; see `hedon.replication.run.work`."""
+Share = Callable[[Sequence[T], Sequence[int], int], int]
+"""How many threads the next task begins with; see `next_share`."""
+
+
 @dataclass
-class _Worker:
+class _Worker(Generic[T]):
     """A process that works on a job.
 
     Attributes:
@@ -32,7 +51,7 @@ class _Worker:
         ready: whether its run has begun, so that it counts signals.
     """
 
-    job: Job
+    job: T
     threads: int
     process: BaseProcess
     pid: int
@@ -41,20 +60,27 @@ class _Worker:
     ready: bool = False
 
 
-class Display(Protocol):
+class Display(Protocol[T_contra]):
     """A progress display of several runs."""
 
-    def update(self, job: Job, moment: Moment) -> None:
+    def update(self, job: T_contra, moment: Moment) -> None:
         """Shows a moment of a run; called about five times a second for each."""
         ...
 
-    def end(self, job: Job, outcome: Outcome) -> None:
+    def end(self, job: T_contra, outcome: Outcome) -> None:
         """Shows how a run ended."""
         ...
 
 
-def conduct(jobs: Sequence[Job], threads: int, display: Display) -> dict[Path, Outcome]:
-    """Makes the runs, each in its own process.
+def conduct(jobs: "Sequence[Job]", threads: int, display: "Display[Job]") -> dict[Path, Outcome]:
+    """Makes the runs of jobs, each in its own process; see `side_by_side`."""
+    return side_by_side(jobs, threads, display, work, next_share)
+
+
+def side_by_side(
+    jobs: Sequence[T], threads: int, display: Display[T], work: Work[T], share: Share[T]
+) -> dict[Path, Outcome]:
+    """Does tasks that make runs, each in its own process.
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
     not run. A run that fails does not end the others.
@@ -63,18 +89,20 @@ def conduct(jobs: Sequence[Job], threads: int, display: Display) -> dict[Path, O
         jobs: in the order in which they begin.
         threads: to use in total.
         display: shows every moment, and how each run ends.
+        work: called in the new process.
+        share: how many threads the next task gets; 0 if it must wait.
 
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
     """
-    waiting, workers = list(jobs), list[_Worker]()
+    waiting, workers = list(jobs), list[_Worker[T]]()
     outcomes: dict[Path, Outcome] = {}
     # Python starts this helper with the first process, and unblocks signals then.
     resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
-            while not interrupted.count and (share := next_share(waiting, [w.threads for w in workers], threads)):
-                workers.append(_start(waiting.pop(0), share))
+            while not interrupted.count and (given := share(waiting, [w.threads for w in workers], threads)):
+                workers.append(_start(waiting.pop(0), given, work))
             for link in wait([worker.link for worker in workers], _LOOK_SECONDS):
                 worker = next(worker for worker in workers if worker.link is link)
                 if (outcome := _hear(worker, display)) is not None:
@@ -89,7 +117,7 @@ def conduct(jobs: Sequence[Job], threads: int, display: Display) -> dict[Path, O
     return outcomes
 
 
-def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
+def next_share(waiting: "Sequence[Job]", taken: Sequence[int], threads: int) -> int:
     """How many threads the next job begins with: one per world; the last job gets all free ones; 0 if it must wait.
 
     Args:
@@ -105,7 +133,7 @@ def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> in
     return free if len(waiting) == 1 else needed
 
 
-def _pass_on(worker: _Worker) -> None:
+def _pass_on(worker: _Worker[Any]) -> None:
     """Passes one signal on. The system merges equal signals that wait, so the second is a different one."""
     number = SIGNALS[min(worker.told, len(SIGNALS) - 1)]
     worker.told += 1
@@ -113,7 +141,7 @@ def _pass_on(worker: _Worker) -> None:
         os.kill(worker.pid, number)
 
 
-def _start(job: Job, threads: int) -> _Worker:
+def _start(job: T, threads: int, work: Work[T]) -> _Worker[T]:
     context = get_context("spawn")  # a fork would copy the engine's memory without its threads
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(job, threads, theirs), name=job.folder.name)
@@ -134,7 +162,7 @@ def _blocked_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _hear(worker: _Worker, display: Display) -> Outcome | None:
+def _hear(worker: _Worker[T], display: Display[T]) -> Outcome | None:
     """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
     try:
         said = worker.link.recv()

@@ -2,17 +2,21 @@
 
 import os
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING
 
 from hedon.error import HedonError
 from hedon.experiment.interrupt import SIGNALS
-from hedon.experiment.plan import Moment, RunPlan
+from hedon.experiment.plan import Display, Moment, RunPlan
 from hedon.experiment.resume import resume
 from hedon.experiment.run import run
 from hedon.record.manifest import Manifest
-from hedon.replication.run.plan import Job
+
+if TYPE_CHECKING:  # it draws figures: a process that makes a run must not wait for that
+    from hedon.replication.run.plan import Job
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,25 +49,34 @@ class _Teller:
             os.kill(os.getpid(), signal.SIGTERM)
 
 
-def work(job: Job, threads: int, link: Connection) -> None:
-    """Makes a job's run, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
+def work(job: "Job", threads: int, link: Connection) -> None:
+    """Makes a job's run in a new process; see `answer`."""
+    answer(link, lambda display: _make(job, threads, display).status)
+
+
+def answer(link: Connection, make: Callable[[Display], str]) -> None:
+    """Does some work that makes a run, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
 
     The process leaves its parent's session: a terminal sends Ctrl-C only to the parent, which passes it on as soon as
     the run counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
+
+    Args:
+        link: to the parent.
+        make: gets a display for its moments, and returns the status of an `Outcome`.
     """
     os.setsid()
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
     try:
-        outcome = Outcome(_make(job, threads, _Teller(link)).status)
+        outcome = Outcome(make(_Teller(link)))
     except HedonError as error:
         outcome = Outcome("failed", str(error))
-    with suppress(OSError):  # the parent may have ended; the manifest says it too
+    with suppress(OSError):  # the parent may have ended; what is on disk says it too
         link.send(outcome)
 
 
-def _make(job: Job, threads: int, teller: _Teller) -> Manifest:
+def _make(job: "Job", threads: int, display: Display) -> Manifest:
     if job.begun:
-        return resume(job.folder, job.steps, threads, teller)
-    return run(RunPlan(job.config, job.seeds, job.steps, job.folder, threads), teller)
+        return resume(job.folder, job.steps, threads, display)
+    return run(RunPlan(job.config, job.seeds, job.steps, job.folder, threads), display)

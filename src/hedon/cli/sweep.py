@@ -1,0 +1,217 @@
+"""`hedon sweep`: many settings and seeds, and one table of what came out."""
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hedon.cli.console import make_console
+from hedon.cli.run import Checkpoint
+from hedon.record.folder import CHECKPOINT_SECONDS
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hedon.sweep.plan import SweepPlan
+    from hedon.sweep.store import Store
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Run many settings and seeds, and collect one table of what came out. docs/guide/sweep.md explains it.",
+)
+
+File = Annotated[Path, typer.Argument(metavar="SWEEP.toml", help="The file of a sweep.")]
+Place = Annotated[str, typer.Argument(metavar="FOLDER", help="Where the sweep lives: a folder, or a URL (s3://…).")]
+Out = Annotated[
+    str | None,
+    typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
+]
+Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
+Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th batch, from the I-th on.")]
+
+
+@app.command()
+def plan(file: File) -> None:
+    """Say what a sweep would run; nothing is written.
+
+    \b
+    Example:
+      hedon sweep plan cost.toml
+    """
+    from hedon.config.problem import format_value
+    from hedon.sweep.plan import plan_sweep
+    from hedon.sweep.read import read_sweep
+
+    made, console = plan_sweep(read_sweep(file)), make_console()
+    _say_size(made, console)
+    for name in made.factors:
+        values = list(dict.fromkeys(format_value(settings[name]) for settings in made.settings))
+        shown = ", ".join(values[:8]) + (f", … {values[-1]}" if len(values) > 8 else "")
+        console.print(f"  {name}: {len(values)} values: {shown}", soft_wrap=True)
+
+
+@app.command()
+def run(
+    file: File,
+    out: Out = None,
+    workers: Workers = 0,
+    part: Part = None,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+) -> None:
+    """Run a sweep. The same command goes on with what is not finished.
+
+    Worlds of one setting share a process, and settings take turns. Each finished batch is on disk at once. Ctrl-C or
+    a kill loses no finished batch, and of the others what came after their last checkpoint.
+
+    \b
+    Examples:
+      hedon sweep run cost.toml --workers 2
+      hedon sweep run cost.toml --out s3://bucket/cost
+    """
+    from hedon.sweep.plan import write_plan
+    from hedon.sweep.read import read_sweep
+    from hedon.sweep.store import open_store
+
+    asked = read_sweep(file)
+    store = open_store(out or str(Path("sweeps") / asked.name))
+    _conduct(write_plan(asked, store), store, workers, part, checkpoint)
+
+
+@app.command()
+def resume(
+    place: Place,
+    workers: Workers = 0,
+    part: Part = None,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+) -> None:
+    """Go on with a sweep from where it lives; its file is not needed.
+
+    \b
+    Example:
+      hedon sweep resume sweeps/cost --workers 2
+    """
+    from hedon.sweep.plan import load_plan
+    from hedon.sweep.store import open_store
+
+    store = open_store(place)
+    _conduct(load_plan(store), store, workers, part, checkpoint)
+
+
+@app.command()
+def status(place: Place) -> None:
+    """Say how far a sweep is, and how long the rest will take.
+
+    \b
+    Example:
+      hedon sweep status sweeps/cost
+    """
+    from hedon.cli.display.run import duration
+    from hedon.sweep.plan import load_plan
+    from hedon.sweep.status import sweep_status
+    from hedon.sweep.store import open_store
+
+    store = open_store(place)
+    made, console = load_plan(store), make_console()
+    _say_size(made, console)
+    found = sweep_status(made, store)
+    console.print(f"  done: {found.done} of {found.batches} batches, {found.worlds} worlds, {found.extinct} extinct")
+    for name, share in found.begun.items():
+        console.print(f"  begun: {name}, {100 * share:.0f} %")
+    if found.seconds_left is not None and found.done < found.batches:
+        console.print(f"  left: {duration(found.seconds_left)} of one worker; so far {duration(found.seconds)}")
+
+
+@app.command()
+def collect(place: Place) -> None:
+    """Write one table, a row per world: FOLDER/table.parquet. Also while the sweep runs.
+
+    Columns: condition, number of the repetition, seed, the settings that vary, digest of the world's end, and its
+    part of summary.json. Worlds that died out have a row too.
+
+    \b
+    Example:
+      hedon sweep collect sweeps/cost
+    """
+    from hedon.sweep.collect import TABLE
+    from hedon.sweep.collect import collect as write_table
+    from hedon.sweep.plan import load_plan
+    from hedon.sweep.store import open_store
+
+    store = open_store(place)
+    made = load_plan(store)
+    table = write_table(made, store)
+    all_worlds = len(made.settings) * len(made.seeds)
+    make_console().print(f"wrote {store.location}/{TABLE}: {table.height} of {all_worlds} worlds", soft_wrap=True)
+
+
+@app.command()
+def report(
+    place: Place,
+    only: Annotated[
+        str | None, typer.Option(metavar="COLUMN,…", help="Columns of the table to show; by default the usual ones.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the report; by default FOLDER/report.")] = None,
+) -> None:
+    """Draw response curves and heat maps with intervals. Also while the sweep runs.
+
+    \b
+    Examples:
+      hedon sweep report sweeps/cost
+      hedon sweep report sweeps/cost --only alive_mean,w_action_mean
+    """
+    from hedon.sweep.collect import collect as write_table
+    from hedon.sweep.plan import load_plan
+    from hedon.sweep.report import write_report
+    from hedon.sweep.store import open_store
+
+    store = open_store(place)
+    made = load_plan(store)
+    names = [name.strip() for name in only.split(",")] if only else []
+    folder = out or (store.folder or Path("sweeps") / made.name) / "report"
+    files = write_report(made, write_table(made, store), folder, names)
+    make_console().print(f"wrote {files[0]} and {len(files) - 1} figures beside it", soft_wrap=True)
+
+
+def _say_size(made: "SweepPlan", console: "Console") -> None:
+    console.print(
+        f"hedon: sweep {made.name}: {len(made.settings):,} settings x {len(made.seeds):,} seeds x "
+        f"{made.steps:,} steps = {made.world_steps:,} world-steps, in {len(made.batches()):,} batches",
+        soft_wrap=True,
+    )
+
+
+def _conduct(made: "SweepPlan", store: "Store", workers: int, part: str | None, checkpoint: float) -> None:
+    """Runs what is open, shows it, and says what to do next. SweepError: a batch failed."""
+    from hedon.cli.display.sweep import SweepDisplay
+    from hedon.record.provenance import usable_cpus
+    from hedon.sweep.conduct import open_batches, run_sweep
+    from hedon.sweep.part import parse_part
+
+    console, share = make_console(), parse_part(part)
+    _say_size(made, console)
+    batches = open_batches(made, store, share)
+    world_steps = made.steps * sum(len(batch.seeds) for batch in batches)
+    console.print(f"  {len(batches):,} batches to make in {store.location}", soft_wrap=True)
+    with SweepDisplay(console, len(batches), world_steps) as display:
+        outcomes = run_sweep(made, store, workers or usable_cpus(), display, checkpoint, share)
+    _say_end({name: outcome.status for name, outcome in outcomes.items()}, len(batches), store.location, console)
+
+
+def _say_end(ends: dict[str, str], batches: int, location: str, console: "Console") -> None:
+    from hedon.sweep.error import SweepError
+
+    place = shlex.quote(location)
+    failed = sorted(name for name, status in ends.items() if status == "failed")
+    finished = sum(status == "finished" for status in ends.values())
+    if failed:
+        raise SweepError(
+            f"{len(failed)} of {batches} batches failed (see the reasons above): {', '.join(failed[:5])}; "
+            f"`hedon sweep resume {place}` tries them again"
+        )
+    if finished < batches:
+        console.print(f"Interrupted: {finished} of {batches} batches are done, and kept.")
+        console.print(f"Go on with: hedon sweep resume {place}", soft_wrap=True)
+        return
+    console.print(f"All done. Next: hedon sweep report {place}", soft_wrap=True)

@@ -1,0 +1,250 @@
+"""Reads the file of a sweep, and says all that is wrong with it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hedon.config.config import Config
+from hedon.config.load import DEFAULT_PRESET, FIDELITIES, load_config
+from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.toml import read_toml
+from hedon.error import HedonError
+from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS
+from hedon.experiment.plan import RunPlan
+from hedon.sweep.design import DRAWS, Design, Settings, all_settings
+from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
+
+KEYS = ("base", "fidelity", "steps", "seeds", "worlds", "keep", "set", "factor", "design")
+DESIGN = ("draw", "points", "seed", "zip")
+KEEP = ("agents", "population", "run")
+"""What a sweep may keep beside its table: tables of each batch, or its whole run folder."""
+MOST_CONDITIONS = 100_000
+WORLDS = 4
+"""Default worlds of a batch."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One setting of a sweep: the values of its factors, and the config that follows."""
+
+    settings: Settings
+    config: Config
+
+
+@dataclass(frozen=True)
+class SweepFile:
+    """What a file asks for.
+
+    Attributes:
+        name: the file's name without its ending.
+        steps: of each world [step].
+        seeds: of each condition, one world for each.
+        worlds: most worlds of a batch, which share a process.
+        keep: what is kept beside the table.
+        factors: in the order of the file.
+        design: how they are put together.
+        conditions: every setting.
+    """
+
+    name: str
+    steps: int
+    seeds: tuple[int, ...]
+    worlds: int
+    keep: tuple[str, ...]
+    factors: tuple[Factor, ...]
+    design: Design
+    conditions: tuple[Condition, ...]
+
+
+def read_sweep(path: Path | str) -> SweepFile:
+    """Reads and checks a file, and the config of every condition.
+
+    Raises:
+        ConfigError: it cannot be read, or something in it is wrong; it has all problems of the file, or those of the
+            first condition that cannot be.
+    """
+    path = Path(path)
+    tables, origin = read_toml(path), str(path)
+    problems = [
+        Problem(key, f"is not a part of a sweep ({', '.join(KEYS)})", nearest=nearest(key, KEYS))
+        for key in tables
+        if key not in KEYS
+    ]
+    found = [read_factor(name, said) for name, said in _flat(_table(tables, "factor", problems), stop=True)]
+    factors = tuple(each for each in found if isinstance(each, Factor))
+    problems += [each for each in found if isinstance(each, Problem)]
+    design = _design(_table(tables, "design", problems), factors, problems)
+    steps = _whole(tables, "steps", 1, MAX_STEPS, problems)
+    worlds = _whole(tables, "worlds", 1, MAX_WORLDS, problems, WORLDS)
+    seeds = _seeds(tables.get("seeds", 1), problems)
+    keep = _keep(tables.get("keep", []), problems)
+    fixed = list(_flat(_table(tables, "set", problems)))
+    problems += [
+        Problem(f"set.{name}", "is a factor too: leave one of them out")
+        for name, _ in fixed
+        if any(factor.name == name for factor in factors)
+    ]
+    base = _base(tables, factors, problems)
+    if problems:
+        raise ConfigError(origin, problems)
+    settings = all_settings(factors, design)
+    if len(settings) > MOST_CONDITIONS:
+        many = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
+        raise ConfigError(origin, [many])
+    conditions = [
+        Condition(each, _config(path, base, tables.get("fidelity"), fixed, each, seeds, steps)) for each in settings
+    ]
+    return SweepFile(path.stem, steps, seeds, worlds, keep, factors, design, tuple(conditions))
+
+
+def _config(
+    path: Path,
+    base: str,
+    fidelity: str | None,
+    fixed: Sequence[tuple[str, Any]],
+    settings: Settings,
+    seeds: tuple[int, ...],
+    steps: int,
+) -> Config:
+    """The config of a condition. ConfigError: it cannot be; the message says where."""
+    own = [(name, value) for name, value in settings.items() if name not in (PRESET, FIDELITY)]
+    source = settings.get(PRESET, base)
+    if source.endswith(".toml") and not Path(source).is_absolute():
+        source = str(path.parent / source)
+    texts = [f"{name}={format_value(value)}" for name, value in [*fixed, *own]]
+    varied = ", ".join(f"{name} = {format_value(value)}" for name, value in settings.items())
+    place = f"{path}, with {varied}" if varied else str(path)
+    try:
+        config = load_config(source, settings.get(FIDELITY, fidelity), texts)
+        return RunPlan(config, seeds, steps, "run").config
+    except ConfigError as error:
+        raise ConfigError(place, error.problems) from None
+    except HedonError as error:
+        raise ConfigError(place, [Problem("", str(error))]) from None
+
+
+def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[str, Any]:
+    table = tables.get(key, {})
+    if isinstance(table, dict):
+        return table
+    problems.append(Problem(key, "must be a table", format_value(table)))
+    return {}
+
+
+def _flat(table: dict[str, Any], before: str = "", *, stop: bool = False) -> Iterator[tuple[str, Any]]:
+    """Values by path, whether paths are quoted names or tables; with `stop`, tables that are factors stay whole."""
+    for name, value in table.items():
+        path = f"{before}.{name}" if before else name
+        if isinstance(value, dict) and not (stop and {"values", "range", "log", "count"} & set(value)):
+            yield from _flat(value, path, stop=stop)
+        else:
+            yield path, value
+
+
+def _base(tables: dict[str, Any], factors: Sequence[Factor], problems: list[Problem]) -> str:
+    base, fidelity = tables.get("base", DEFAULT_PRESET), tables.get("fidelity")
+    if not isinstance(base, str) or not base:
+        problems.append(Problem("base", "must be the name of a preset, or of a file (.toml)", format_value(base)))
+    if fidelity is not None and fidelity not in FIDELITIES:
+        near = nearest(fidelity, FIDELITIES) if isinstance(fidelity, str) else None
+        message = f"must be one of {', '.join(FIDELITIES)}"
+        problems.append(Problem("fidelity", message, format_value(fidelity), near))
+    for name, key in ((PRESET, "base"), (FIDELITY, "fidelity")):
+        if key in tables and any(factor.name == name for factor in factors):
+            problems.append(Problem(key, f"goes not with the factor {name}, which chooses it: leave one of them out"))
+    return base
+
+
+def _design(table: dict[str, Any], factors: Sequence[Factor], problems: list[Problem]) -> Design:
+    for key in table:
+        if key not in DESIGN:
+            said = f"is not a part of a design ({', '.join(DESIGN)})"
+            problems.append(Problem(f"design.{key}", said, nearest=nearest(key, DESIGN)))
+    draw = table.get("draw", DRAWS[-1])
+    if draw not in DRAWS:
+        near = nearest(draw, DRAWS) if isinstance(draw, str) else None
+        problems.append(Problem("design.draw", f"must be one of {', '.join(DRAWS)}", format_value(draw), near))
+    drawn = [factor.name for factor in factors if factor.drawn]
+    if drawn and "points" not in table:
+        problems.append(Problem("design.points", f"is missing: how many values to draw for {', '.join(drawn)}"))
+    elif not drawn and "points" in table:
+        problems.append(Problem("design.points", "has nothing to draw: every factor has its values"))
+    points = _whole(table, "points", 1, MOST_CONDITIONS, problems, 1, "design.") if drawn else 0
+    seed = _whole(table, "seed", 0, 2**32 - 1, problems, 1, "design.")
+    return Design(draw, points, seed, _zipped(table.get("zip", []), factors, problems))
+
+
+def _zipped(groups: Any, factors: Sequence[Factor], problems: list[Problem]) -> tuple[tuple[str, ...], ...]:
+    counts = {factor.name: len(factor.values) for factor in factors if not factor.drawn}
+    if not isinstance(groups, list) or not all(isinstance(group, list) and len(group) > 1 for group in groups):
+        form = 'must be a list of groups of two factors or more, such as [["a.b", "c.d"]]'
+        problems.append(Problem("design.zip", form, format_value(groups)))
+        return ()
+    seen: set[str] = set()
+    for group in groups:
+        for name in group:
+            if name not in counts:
+                near = nearest(name, counts) if isinstance(name, str) else None
+                problems.append(Problem("design.zip", "is not a factor with values", format_value(name), near))
+            elif name in seen:
+                problems.append(Problem("design.zip", "is zipped twice", format_value(name)))
+            else:
+                seen.add(name)
+        lengths = {name: counts[name] for name in group if name in seen}
+        if len(set(lengths.values())) > 1:
+            said = ", ".join(f"{name} {count}" for name, count in lengths.items())
+            problems.append(Problem("design.zip", f"needs equally many values of each factor of a group, not {said}"))
+    # The first of a group in the order of the factors stands for it.
+    order = list(counts)
+    return tuple(tuple(sorted(group, key=order.index)) for group in groups if set(group) <= seen)
+
+
+def _whole(
+    table: dict[str, Any],
+    key: str,
+    low: int,
+    high: int,
+    problems: list[Problem],
+    default: int | None = None,
+    before: str = "",
+) -> int:
+    value = table.get(key, default)
+    if isinstance(value, int) and not isinstance(value, bool) and low <= value <= high:
+        return value
+    said = "is missing: it" if value is None else ""
+    text = None if value is None else format_value(value)
+    message = f"{said} must be a whole number from {low:,} to {high:,}".strip()
+    problems.append(Problem(before + key, message, text))
+    return low
+
+
+def _seeds(value: Any, problems: list[Problem]) -> tuple[int, ...]:
+    """Seeds from a list, or from how many there are: 4 means 1, 2, 3 and 4."""
+    form = f"must be how many (1 to {MAX_WORLDS:,}), or a list of different whole numbers from 0 to {MAX_SEED}"
+    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= MAX_WORLDS:
+        return tuple(range(1, value + 1))
+    if (
+        isinstance(value, list)
+        and 1 <= len(value) <= MAX_WORLDS
+        and all(map(_is_seed, value))
+        and len(set(value)) == len(value)
+    ):
+        return tuple(value)
+    problems.append(Problem("seeds", form, format_value(value)))
+    return (1,)
+
+
+def _is_seed(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= MAX_SEED
+
+
+def _keep(value: Any, problems: list[Problem]) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        problems.append(Problem("keep", f"must be a list of {', '.join(KEEP)}", format_value(value)))
+        return ()
+    for each in value:
+        if each not in KEEP:
+            near = nearest(each, KEEP) if isinstance(each, str) else None
+            problems.append(Problem("keep", f"must be a list of {', '.join(KEEP)}", format_value(each), near))
+    return tuple(value)

@@ -1,0 +1,91 @@
+"""What a report of a sweep shows of each world, and its means over the worlds of equal settings."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import polars as pl
+
+from hedon.config.problem import nearest
+from hedon.statistic.interval import Interval, mean_interval, share_interval
+from hedon.sweep.error import SweepError
+from hedon.sweep.row import KEYS
+
+TITLES = {
+    "extinct": "share of worlds extinct",
+    "alive_mean": "agents alive, last tenth",
+    "mean_energy": "mean energy, last tenth",
+    "food_per_agent_step": "food per agent and step",
+    "mean_lifetime": "lifetime of the dead [step]",
+}
+"""Responses that every report has, by column, and what they are called."""
+BINS = 8
+"""Most groups of neighboring values for which means are shown, where every world has a value of its own."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """Worlds of equal or neighboring settings.
+
+    Attributes:
+        at: values of the factors; of neighbors, the mean.
+        mean: of the response, with its interval of 95 %.
+    """
+
+    at: tuple[float | str, ...]
+    mean: Interval
+
+
+def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str]) -> dict[str, str]:
+    """Columns to show and what they are called: those asked for, or the usual ones and the mean of each weight.
+
+    Raises:
+        SweepError: one is not a column of numbers.
+    """
+    fit = [name for name, kind in table.schema.items() if kind.is_numeric() or kind == pl.Boolean]
+    fit = [name for name in fit if name not in (*KEYS, *factors)]
+    for name in asked:
+        if name not in fit:
+            near = nearest(name, fit)
+            hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
+            raise SweepError(f"--only: {name!r} is not a column of numbers of the table{hint}")
+    weights = {name: f"mean of {name.removesuffix('_mean')}" for name in fit if _is_weight(name)}
+    usual = {name: title for name, title in TITLES.items() if name in fit} | weights
+    return {name: usual.get(name, name) for name in asked} if asked else usual
+
+
+def _is_weight(name: str) -> bool:
+    return name.startswith("w_") and name.endswith("_mean")
+
+
+def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
+    """The mean of a response at each combination of some factors' values, over all else that varies."""
+    made = []
+    for at, rows in table.sort(*factors).group_by(*factors, maintain_order=True):
+        made.append(Point(tuple(at), response_interval(rows[response])))  # type: ignore[arg-type]
+    return made
+
+
+def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
+    """Means over groups of neighbors along a factor that was drawn from a range."""
+    rows = table.sort(factor)
+    count = min(BINS, max(1, rows.height // 4))
+    edges = [round(i * rows.height / count) for i in range(count + 1)]
+    groups = [rows[low:high] for low, high in pairwise(edges) if high > low]
+    return [Point((_mean(group[factor]),), response_interval(group[response])) for group in groups]
+
+
+def response_interval(values: pl.Series) -> Interval:
+    """Mean over worlds: Student's t interval; of yes and no a share, with Jeffreys' interval."""
+    known = values.drop_nulls()
+    if values.dtype != pl.Boolean:
+        return mean_interval(known.cast(pl.Float64).to_list())
+    if not len(known):
+        return Interval(None, None, None, 0)
+    count = int(known.sum())
+    return Interval(count / len(known), *share_interval(count, len(known)), len(known))
+
+
+def _mean(values: pl.Series) -> float:
+    return math.fsum(values.to_list()) / len(values)

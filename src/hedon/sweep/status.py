@@ -1,0 +1,69 @@
+"""How far a sweep is, and how long it will still take."""
+
+from dataclasses import dataclass
+
+from hedon.error import HedonError
+from hedon.record.reader import open_run
+from hedon.sweep.collect import read_results
+from hedon.sweep.conduct import open_batches
+from hedon.sweep.plan import SweepPlan
+from hedon.sweep.store import Store
+from hedon.sweep.work import WORK
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a sweep is.
+
+    Attributes:
+        batches, done: how many there are, and have a result.
+        worlds: with a row in the table.
+        extinct: of them, died out.
+        begun: batches that are under way or were left, with the share of each that is recorded.
+        seconds: that the batches so far took, summed over them [s].
+        seconds_left: of one worker for all the rest, if it goes as fast as so far [s]; None before the first result.
+    """
+
+    batches: int
+    done: int
+    worlds: int
+    extinct: int
+    begun: dict[str, float]
+    seconds: float
+    seconds_left: float | None
+
+
+def sweep_status(plan: SweepPlan, store: Store) -> Status:
+    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way."""
+    results, missing = read_results(plan, store), open_batches(plan, store)
+    worlds = [world for result in results for world in result["worlds"]]
+    begun = {}
+    for batch in missing if store.folder is not None else ():
+        share = _share(store, batch.name, plan.steps)
+        if share is not None:
+            begun[batch.name] = share
+    seconds = sum(result["seconds"] or 0.0 for result in results)
+    rate = seconds / len(worlds) if worlds else None  # [s] of each world
+    left = sum(len(batch.seeds) * (1.0 - begun.get(batch.name, 0.0)) for batch in missing)
+    return Status(
+        batches=len(missing) + len(results),
+        done=len(results),
+        worlds=len(worlds),
+        extinct=sum(world["extinct"] for world in worlds),
+        begun=begun,
+        seconds=seconds,
+        seconds_left=None if rate is None else rate * left,
+    )
+
+
+def _share(store: Store, name: str, steps: int) -> float | None:
+    assert store.folder is not None
+    folder = store.folder / WORK / name
+    if not folder.is_dir():
+        return None
+    try:
+        population = open_run(folder).population(skip_damaged=True)
+    except (HedonError, OSError):  # it is being made, or removed since it is done
+        return None
+    last = population["step"].max() if population.height else 0
+    return float(last) / steps if isinstance(last, int) else 0.0

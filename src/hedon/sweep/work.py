@@ -1,0 +1,159 @@
+"""Makes one batch: its run, its rows of the table, and what is kept of it.
+
+A batch that is done is known by its result, which is written last. A run lives in the sweep's folder, or, for a sweep
+behind a URL, in a passing one, and its state travels at each checkpoint: whoever makes the batch next goes on there.
+"""
+
+import io
+import json
+import shutil
+import zipfile
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from hedon.experiment.plan import Display, Moment, RunPlan
+from hedon.experiment.resume import make
+from hedon.record.error import RecordError
+from hedon.record.folder import LOCK, checkpoint_paths
+from hedon.record.manifest import Manifest
+from hedon.record.reader import Run, open_run
+from hedon.replication.run.work import answer
+from hedon.report.summary import summarize
+from hedon.sweep.plan import Batch, SweepPlan, load_condition
+from hedon.sweep.row import world_rows
+from hedon.sweep.store import Store, open_store
+
+RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A batch to make.
+
+    Attributes:
+        location: of the sweep.
+        plan: of the sweep.
+        batch: what to make.
+        folder: for its run.
+        checkpoint_seconds: between two checkpoints [s].
+    """
+
+    location: str
+    plan: SweepPlan
+    batch: Batch
+    folder: Path
+    checkpoint_seconds: float
+
+
+def result_name(batch: Batch) -> str:
+    """Where a batch's result is."""
+    return f"{RESULTS}/{batch.name}.json"
+
+
+def work(task: Task, threads: int, link: Connection) -> None:
+    """Makes a batch in a new process; see `hedon.replication.run.work.answer`."""
+    answer(link, lambda display: make_batch(task, threads, display))
+
+
+def make_batch(task: Task, threads: int, display: Display | None) -> str:
+    """Makes a batch, from where it is, and writes its result.
+
+    Returns:
+        "finished", or "interrupted".
+
+    Raises:
+        HedonError: as `hedon.experiment.run.run`, or what is written cannot be.
+    """
+    store, batch = open_store(task.location), task.batch
+    if store.read(result_name(batch)) is not None:
+        return "finished"
+    config = load_condition(store, batch.condition)
+    plan = RunPlan(config, batch.seeds, task.plan.steps, task.folder, threads, 0, task.checkpoint_seconds)
+    _fetch_state(store, task)
+    manifest = _make(plan, _Carrying(store, task, display) if store.folder is None else display)
+    if manifest.status != "finished":
+        _send_state(store, task)
+        return manifest.status
+    run = open_run(task.folder)
+    _keep(store, task, run)
+    result = {
+        "batch": batch.name,
+        "seconds": manifest.run_seconds,
+        "steps": sum(manifest.steps_done),
+        "worlds": world_rows(task.plan, batch, summarize(run), manifest.world_digests),
+    }
+    store.write(result_name(batch), (json.dumps(result, ensure_ascii=False, allow_nan=False) + "\n").encode())
+    store.remove(_state_name(task))
+    shutil.rmtree(task.folder, ignore_errors=True)
+    return "finished"
+
+
+def _make(plan: RunPlan, display: Display | None) -> Manifest:
+    """Goes on with the run of a batch; where it was left so damaged that this cannot be, begins again."""
+    try:
+        return make(plan, display)
+    except RecordError:
+        if not plan.out.exists() or checkpoint_paths(plan.out):
+            raise
+        shutil.rmtree(plan.out)
+        return make(plan, display)
+
+
+def _keep(store: Store, task: Task, run: Run) -> None:
+    for table in ("agents", "population"):
+        if table in task.plan.keep:
+            rows = run.agents().sort("world", "agent_id") if table == "agents" else run.population()
+            buffer = io.BytesIO()
+            rows.write_parquet(buffer)
+            store.write(f"{TABLES}/{table}/{task.batch.name}.parquet", buffer.getvalue())
+    if "run" in task.plan.keep:
+        for path in sorted(path for path in task.folder.rglob("*") if path.is_file() and path.name != LOCK):
+            store.write(f"{RUNS}/{task.batch.name}/{path.relative_to(task.folder)}", path.read_bytes())
+
+
+class _Carrying:
+    """Sends the state of a run to the store when it has a new checkpoint, and passes moments on."""
+
+    def __init__(self, store: Store, task: Task, display: Display | None) -> None:
+        self._store, self._task, self._display = store, task, display
+        self._sent = _newest(task.folder)
+
+    def update(self, moment: Moment) -> None:
+        if (newest := _newest(self._task.folder)) != self._sent:
+            self._sent = newest
+            _send_state(self._store, self._task)
+        if self._display is not None:
+            self._display.update(moment)
+
+
+def _newest(folder: Path) -> str:
+    return max((path.name for path in checkpoint_paths(folder)), default="")
+
+
+def _state_name(task: Task) -> str:
+    return f"{STATE}/{task.batch.name}.zip"
+
+
+def _send_state(store: Store, task: Task) -> None:
+    """Sends a run's folder. Checkpoints go first: what later files have more than they say, a resumed run removes."""
+    if store.folder is not None:
+        return
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
+        others = sorted(path for path in task.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+        first = checkpoint_paths(task.folder)[-1:]
+        for path in [*first, *(path for path in others if path.suffix != ".npz")]:
+            archive.write(path, str(path.relative_to(task.folder)))
+    store.write(_state_name(task), buffer.getvalue())
+
+
+def _fetch_state(store: Store, task: Task) -> None:
+    """Puts a run's folder where it is made, if it was begun elsewhere and not here."""
+    if store.folder is not None or _newest(task.folder):
+        return
+    content = store.read(_state_name(task))
+    if content is not None:
+        shutil.rmtree(task.folder, ignore_errors=True)
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            archive.extractall(task.folder)

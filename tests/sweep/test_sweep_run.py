@@ -1,0 +1,158 @@
+"""A sweep gives the same table whoever runs it, and however often it is killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import polars as pl
+import pytest
+from sweep_case import assert_same_table, planned, sweep_file, table_of
+from typer.testing import CliRunner
+
+from hedon.cli.main import app
+from hedon.error import HedonError
+from hedon.sweep.conduct import Silent, open_batches, run_sweep
+from hedon.sweep.part import parse_part
+from hedon.sweep.plan import load_plan
+from hedon.sweep.status import sweep_status
+from hedon.sweep.store import open_store
+from hedon.sweep.work import RESULTS, WORK, Task, make_batch
+
+START = "from hedon.cli.start import main; main()"
+STEPS = 20_480
+"""Of each world: some seconds."""
+
+
+def make_all(location: str, file: Path) -> pl.DataFrame:
+    """The table of a sweep whose batches are made in this process, one after the other."""
+    plan, store = planned(file, location)
+    assert store.folder is not None
+    for batch in plan.batches():
+        assert make_batch(Task(location, plan, batch, store.folder / WORK / batch.name, 1e9), 1, None) == "finished"
+    return table_of(location)
+
+
+def command(*words: str | Path) -> subprocess.Popen:
+    return subprocess.Popen([sys.executable, "-c", START, *map(str, words)], start_new_session=True)
+
+
+def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
+    """Killed by SIGKILL with all its processes, in the middle of its first batch."""
+    file = sweep_file(tmp_path, STEPS)
+    whole = make_all(str(tmp_path / "whole"), file)
+    place = tmp_path / "killed"
+    begun = command("sweep", "run", file, "--out", place, "--workers", "1", "--checkpoint", "0")
+    deadline = time.monotonic() + 120
+    while not (kept := list((place / WORK).glob("*/checkpoints/step-*[1-9]*.npz"))):
+        assert time.monotonic() < deadline
+        assert begun.poll() is None
+        time.sleep(0.02)
+    worker = int(kept[0].parents[1].joinpath(".lock").read_text().partition('"process": ')[2].rstrip("} \n"))
+    os.kill(worker, signal.SIGKILL)
+    os.killpg(begun.pid, signal.SIGKILL)
+    begun.wait()
+    assert not list((place / RESULTS).glob("*")), "it was to be killed before its first result"
+    plan, store = load_plan(open_store(str(place))), open_store(str(place))
+    assert 0 < max(sweep_status(plan, store).begun.values()) < 1
+    outcomes = run_sweep(plan, store, 2, Silent(), 1e9)
+    assert {outcome.status for outcome in outcomes.values()} == {"finished"}
+    assert_same_table(table_of(str(place)), whole)
+    assert not list((place / WORK).glob("*"))
+    assert run_sweep(plan, store, 2, Silent(), 1e9) == {}, "nothing finished is done again"
+    assert sorted(zip(whole["condition"], whole["repetition"], whole["seed"], strict=True)) == [
+        (0, 1, 1), (0, 2, 2), (1, 1, 1), (1, 2, 2)
+    ]  # fmt: skip
+    assert whole["energy.basic_cost"].to_list() == [0.001, 0.001, 0.01, 0.01]
+    assert whole["digest"].n_unique() == 4
+
+
+def test_the_size_of_batches_changes_no_row(tmp_path):
+    one = make_all(str(tmp_path / "one"), sweep_file(tmp_path, worlds=1))
+    two = make_all(str(tmp_path / "two"), sweep_file(tmp_path, worlds=2))
+    assert_same_table(one, two)
+
+
+def test_worlds_that_die_out_have_a_row(tmp_path):
+    file = sweep_file(tmp_path, 4096, rest='[factor]\n"hazard.alpha_age" = [0.001, 1.0]\n"birth.kappa" = [0.0]\n')
+    text = file.read_text().replace("hazard.alpha_age=0.001\n", "").replace("birth.kappa=0.05\n", "")
+    file.write_text(text)
+    table = make_all(str(tmp_path / "doomed"), file)
+    gone = table.filter(pl.col("hazard.alpha_age") == 1.0)
+    assert gone["extinct"].all()
+    assert gone["extinct_step"].is_not_null().all()
+    assert gone["alive"].to_list() == [0, 0]
+
+
+def test_what_is_asked_for_is_kept(tmp_path):
+    file = sweep_file(tmp_path, seeds=1)
+    file.write_text('keep = ["agents", "population", "run"]\n' + file.read_text())
+    place = tmp_path / "kept"
+    table = make_all(str(place), file)
+    for name in ("c00000-r00001", "c00001-r00001"):
+        agents = pl.read_parquet(place / "tables" / "agents" / f"{name}.parquet")
+        births = table.filter(pl.col("condition") == int(name[1:6]))["births"].item()
+        assert agents.height == 16 + births
+        assert (place / "runs" / name / "manifest.json").is_file()
+
+
+def test_a_batch_that_fails_harms_no_other_and_is_tried_again(tmp_path):
+    file, place = sweep_file(tmp_path, 64, seeds=1), tmp_path / "fails"
+    plan, store = planned(file, str(place))
+    config = place / "configs" / "c00001.toml"
+    whole = config.read_text()
+    config.write_text("broken = ")
+    outcomes = run_sweep(plan, store, 1, Silent(), 1e9)
+    assert outcomes["c00000-r00001"].status == "finished"
+    assert outcomes["c00001-r00001"].status == "failed"
+    assert "c00001.toml" in outcomes["c00001-r00001"].fault
+    config.write_text(whole)
+    assert {name: o.status for name, o in run_sweep(plan, store, 1, Silent(), 1e9).items()} == {
+        "c00001-r00001": "finished"
+    }
+
+
+def test_another_sweep_is_not_mixed_in(tmp_path):
+    file, place = sweep_file(tmp_path, 64), str(tmp_path / "mixed")
+    planned(file, place)
+    planned(file, place)
+    with pytest.raises(HedonError, match="holds another sweep"):
+        planned(sweep_file(tmp_path, 128), place)
+
+
+def test_parts_share_a_sweep(tmp_path):
+    plan, store = planned(sweep_file(tmp_path, 64, seeds=3), str(tmp_path / "parts"))
+    parts = [open_batches(plan, store, parse_part(f"{i}/3")) for i in (1, 2, 3)]
+    assert sorted(batch.name for part in parts for batch in part) == sorted(batch.name for batch in plan.batches())
+    for wrong in ("0/3", "4/3", "x", "1/0"):
+        with pytest.raises(HedonError, match="must be I/N"):
+            parse_part(wrong)
+
+
+def test_the_commands_report_what_was_made(tmp_path):
+    file = sweep_file(
+        tmp_path, 640, rest='[factor]\n"energy.basic_cost" = [0.001, 0.01]\n"birth.kappa" = [0.05, 0.1]\n'
+    )
+    file.write_text(file.read_text().replace("birth.kappa=0.05\n", "", 1))
+    place = str(tmp_path / "told")
+    assert "4 settings x 2 seeds x 640 steps = 5,120 world-steps" in said("sweep", "plan", str(file))
+    table = make_all(place, file)
+    assert "done: 4 of 4 batches, 8 worlds" in said("sweep", "status", place)
+    assert "8 of 8 worlds" in said("sweep", "collect", place)
+    assert_same_table(pl.read_parquet(f"{place}/table.parquet"), table)
+    said("sweep", "report", place, "--only", "alive_mean,extinct")
+    page = (Path(place) / "report" / "report.md").read_text()
+    assert "8 of 8 worlds (4 settings x 2 seeds) of 640 steps" in page
+    for name in ("curve-energy-basic-cost", "curve-birth-kappa", "map-energy-basic-cost-birth-kappa-alive_mean"):
+        assert (Path(place) / "report" / f"{name}.png").stat().st_size > 5000
+        assert f"({name}.png)" in page
+    done = CliRunner().invoke(app, ["sweep", "report", place, "--only", "alive_maen"])
+    assert "did you mean alive_mean?" in str(done.exception)
+
+
+def said(*words: str) -> str:
+    done = CliRunner().invoke(app, list(words))
+    assert done.exit_code == 0, done.output + str(done.exception)
+    return done.output
