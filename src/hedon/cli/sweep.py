@@ -29,6 +29,9 @@ Out = Annotated[
     typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
 ]
 Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
+Ray = Annotated[
+    str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
+]
 Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th batch, from the I-th on.")]
 
 
@@ -57,6 +60,7 @@ def run(
     file: File,
     out: Out = None,
     workers: Workers = 0,
+    ray: Ray = None,
     part: Part = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
@@ -76,13 +80,14 @@ def run(
 
     asked = read_sweep(file)
     store = open_store(out or str(Path("sweeps") / asked.name))
-    _conduct(write_plan(asked, store), store, workers, part, checkpoint)
+    _conduct(write_plan(asked, store), store, workers, ray, part, checkpoint)
 
 
 @app.command()
 def resume(
     place: Place,
     workers: Workers = 0,
+    ray: Ray = None,
     part: Part = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
@@ -96,7 +101,7 @@ def resume(
     from hedon.sweep.store import open_store
 
     store = open_store(place)
-    _conduct(load_plan(store), store, workers, part, checkpoint)
+    _conduct(load_plan(store), store, workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -182,10 +187,13 @@ def _say_size(made: "SweepPlan", console: "Console") -> None:
     )
 
 
-def _conduct(made: "SweepPlan", store: "Store", workers: int, part: str | None, checkpoint: float) -> None:
+def _conduct(
+    made: "SweepPlan", store: "Store", workers: int, ray: str | None, part: str | None, checkpoint: float
+) -> None:
     """Runs what is open, shows it, and says what to do next. SweepError: a batch failed."""
     from hedon.cli.display.sweep import SweepDisplay
     from hedon.record.provenance import usable_cpus
+    from hedon.sweep.cluster import run_on_ray
     from hedon.sweep.conduct import open_batches, run_sweep
     from hedon.sweep.part import parse_part
 
@@ -195,7 +203,10 @@ def _conduct(made: "SweepPlan", store: "Store", workers: int, part: str | None, 
     world_steps = made.steps * sum(len(batch.seeds) for batch in batches)
     console.print(f"  {len(batches):,} batches to make in {store.location}", soft_wrap=True)
     with SweepDisplay(console, len(batches), world_steps) as display:
-        outcomes = run_sweep(made, store, workers or usable_cpus(), display, checkpoint, share)
+        if ray is None:
+            outcomes = run_sweep(made, store, workers or usable_cpus(), display, checkpoint, share)
+        else:
+            outcomes = run_on_ray(made, store, ray, display, checkpoint, share, workers)
     _say_end({name: outcome.status for name, outcome in outcomes.items()}, len(batches), store.location, console)
 
 

@@ -1,0 +1,115 @@
+"""Runs a sweep on a Ray cluster: a task per batch, made again on another node when its node dies.
+
+A task goes on from its batch's last checkpoint. It finds that in the sweep's folder, which all nodes must share, or
+behind the sweep's URL.
+"""
+
+import tempfile
+import time
+from pathlib import Path
+
+from hedon.error import HedonError
+from hedon.experiment.interrupt import count_interrupts
+from hedon.record.error import RecordError
+from hedon.record.lock import FolderLock
+from hedon.replication.run.conduct import Display
+from hedon.replication.run.work import Outcome
+from hedon.sweep.conduct import open_batches, tasks
+from hedon.sweep.error import SweepError
+from hedon.sweep.plan import SweepPlan
+from hedon.sweep.store import Store
+from hedon.sweep.work import Task, make_batch
+
+LOCAL = "local"
+"""The address of a cluster that is started on this machine, for the sweep alone."""
+_LOOK_SECONDS = 0.5
+_ORPHAN_SECONDS = 120.0
+"""How long a batch waits for the process of a dead node to end, which may still hold its folder [s]."""
+
+
+def run_on_ray(
+    plan: SweepPlan,
+    store: Store,
+    address: str,
+    display: Display[Task],
+    checkpoint_seconds: float,
+    part: tuple[int, int] = (1, 1),
+    workers: int = 0,
+) -> dict[str, Outcome]:
+    """Makes all batches that have no result; one processor each. Ctrl-C ends it after the current windows.
+
+    Args:
+        plan: of the sweep.
+        store: where it lives: a folder that all nodes share, or a URL that all reach.
+        address: of the cluster, or `LOCAL`.
+        display: shows how each batch ends.
+        checkpoint_seconds: between two checkpoints of a batch [s].
+        part: which batches, as `hedon.sweep.conduct.open_batches`.
+        workers: processors of a local cluster; 0 for all.
+
+    Returns:
+        How each batch ended, by name; those that never began are missing.
+
+    Raises:
+        SweepError: Ray is not installed, or there is no cluster at the address.
+    """
+    try:
+        import ray  # type: ignore[import-not-found]
+        from ray.exceptions import RayError  # type: ignore[import-not-found]
+    except ImportError:
+        raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
+    scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}"
+    jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
+    outcomes: dict[str, Outcome] = {}
+    try:
+        if address == LOCAL:
+            ray.init(num_cpus=workers or None, include_dashboard=False, log_to_driver=False)
+        else:
+            ray.init(address=address, log_to_driver=False)
+    except (ConnectionError, ValueError, RuntimeError) as error:
+        raise SweepError(f"--ray = {address!r}: no cluster answers there: {error}") from error
+    try:
+        remote = ray.remote(num_cpus=1, max_retries=-1)(answer)
+        waiting = {remote.remote(job): job for job in jobs}
+        with count_interrupts() as interrupted:
+            told = 0
+            while waiting:
+                for done in ray.wait(list(waiting), timeout=_LOOK_SECONDS)[0]:
+                    job = waiting.pop(done)
+                    try:
+                        outcome = ray.get(done)
+                    except RayError as error:
+                        if interrupted.count:  # it was called off
+                            continue
+                        outcome = Outcome("failed", str(error))
+                    outcomes[job.batch.name] = outcome
+                    display.end(job, outcome)
+                if told < interrupted.count:
+                    told = interrupted.count
+                    for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
+                        ray.cancel(each, force=told > 1)
+    finally:
+        ray.shutdown()
+    return outcomes
+
+
+def answer(task: Task) -> Outcome:
+    """Makes a batch where Ray wants it made. A fault of the batch is an outcome; a lost node is an affair of Ray's."""
+    try:
+        _wait_for_folder(task.folder)
+        return Outcome(make_batch(task, 1, None))
+    except HedonError as error:
+        return Outcome("failed", str(error))
+
+
+def _wait_for_folder(folder: Path) -> None:
+    """Waits until no other process has the folder. RecordError: it has it for too long."""
+    until = time.monotonic() + _ORPHAN_SECONDS
+    while True:
+        try:
+            with FolderLock(folder):
+                return
+        except RecordError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(_LOOK_SECONDS)
