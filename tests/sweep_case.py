@@ -4,13 +4,16 @@ import textwrap
 from pathlib import Path
 
 import polars as pl
+import pytest
 from polars.testing import assert_frame_equal
 from resumed_run import SMALL
 
+from hedon.experiment.plan import Moment
 from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
 from hedon.sweep.store import Store, open_store
+from hedon.sweep.work import Task, make_batch
 
 FACTORS = """
 [factor]
@@ -41,3 +44,43 @@ def table_of(location: str) -> pl.DataFrame:
 def assert_same_table(one: pl.DataFrame, other: pl.DataFrame) -> None:
     """Two sweeps gave the same, bit for bit."""
     assert_frame_equal(one, other, check_exact=True)
+
+
+class MachineDiedError(Exception):
+    """A machine that ends without a word."""
+
+
+def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
+    """A batch that died on one machine goes on from its state on another, and the table is that of a folder."""
+    file = sweep_file(folder, steps)
+    plan, store = planned(file, str(folder / "folder"))
+    for batch in plan.batches():
+        make_batch(Task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+    remote, far = planned(file, url)
+
+    class Stopping:
+        """A machine that dies when a state has been sent."""
+
+        def update(self, moment: Moment) -> None:
+            if moment.step > steps // 2:
+                raise MachineDiedError
+
+    first = remote.batches()[0]
+    with pytest.raises(MachineDiedError):
+        make_batch(Task(url, remote, first, folder / "one machine", 0.0), 1, Stopping())
+    assert far.names("state") == [f"{first.name}.zip"]
+    assert far.names("results") == []
+    begun: list[int] = []
+
+    class Watching:
+        """Another machine, which notes where it goes on."""
+
+        def update(self, moment: Moment) -> None:
+            begun.append(moment.first)
+
+    assert make_batch(Task(url, remote, first, folder / "another", 1e9), 1, Watching()) == "finished"
+    assert begun[0] > 0, "it was to go on from the state"
+    assert far.names("state") == []
+    for batch in remote.batches():
+        assert make_batch(Task(url, remote, batch, folder / f"rest-{batch.name}", 1e9), 1, None) == "finished"
+    assert_same_table(table_of(url), table_of(store.location))

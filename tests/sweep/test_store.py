@@ -1,0 +1,52 @@
+"""Where a sweep lives: what is written is whole or not there, and URLs are places like folders."""
+
+import pytest
+from sweep_case import assert_goes_on_elsewhere
+
+from hedon.error import HedonError
+from hedon.sweep.store import PASSING, open_store
+
+
+@pytest.fixture(params=["folder", "file", "memory"])
+def store(request, tmp_path):
+    place = {"folder": str(tmp_path), "file": f"file://{tmp_path}", "memory": f"memory://{tmp_path}"}
+    return open_store(place[request.param] + "/sweep")
+
+
+def test_contents_are_kept_by_name(store):
+    assert store.read("a/b") is None
+    assert store.names("a") == []
+    store.write("a/b", b"one")
+    store.write("a/c", b"")
+    store.write("a/b", b"two")
+    assert store.read("a/b") == b"two"
+    assert store.read("a/c") == b""
+    assert store.names("a") == ["b", "c"]
+    store.remove("a/b")
+    store.remove("a/b")
+    assert store.names("a") == ["c"]
+
+
+def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
+    """A writer that ends between writing and naming leaves what no reader sees."""
+    store = open_store(f"file://{tmp_path}")
+    store.write("a/b", b"old")
+
+    def die(*_arguments: object, **_options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(type(store._system), "mv", die)  # type: ignore[attr-defined]
+    with pytest.raises(KeyboardInterrupt):
+        store.write("a/b", b"new")
+    assert [path.name for path in (tmp_path / "a").iterdir() if PASSING in path.name]
+    assert store.names("a") == ["b"]
+    assert store.read("a/b") == b"old"
+
+
+def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):
+    assert_goes_on_elsewhere(f"file://{tmp_path}/far", tmp_path, 5_120)
+
+
+def test_a_url_of_no_kind_is_refused():
+    with pytest.raises(HedonError, match="nosuch://x"):
+        open_store("nosuch://x/y")
