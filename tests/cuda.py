@@ -1,26 +1,34 @@
-"""Compiles the step path for CUDA, with the compiler of the package `nvidia-cuda-nvcc`: `python tests/cuda.py`.
+"""Compiles the CUDA part, and compares what the compiler says of each kernel with the table that is kept.
 
-No device is needed, and none is used: this keeps the sources fit for one.
+`python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`. No device is needed, and none
+is used.
 """
 
 import importlib.util
+import json
+import re
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
 OPTIONS = (
     "-std=c++20",
     "-arch=sm_90",
-    "-cubin",
-    "-Xptxas=-O1",  # a quarter of a minute less; nothing is run
     "--fmad=false",  # a product and a sum stay two roundings, as on the CPU
     "--expt-relaxed-constexpr",
     "--extended-lambda",
-    "-Werror=all-warnings",
     "--diag-suppress=1675",  # pragmas of other compilers
 )
+THREADS = 256
+# Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
+REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
+# Shared memory that is asked for at a launch: `StepWorlds::FLOATS`; an update of 95 inputs (`learning_layout.h`).
+SHARED = {"StepWorlds": 16 * 2 * 64 * 4, "LearnWorlds": 223_808}
+MAY_SPILL = {"StepWorlds"}
+SLACK = 8  # registers: another version of the compiler may take a few more or fewer
 
 
 def find_nvcc() -> Path | None:
@@ -30,20 +38,66 @@ def find_nvcc() -> Path | None:
     return next((path for place in places for path in sorted(Path(place).glob("*/bin/nvcc"))), None)
 
 
+def resident_blocks(registers: int, shared: int) -> int:
+    """Blocks of a kernel that one multiprocessor holds at a time; registers are given in steps of 8 a thread."""
+    by_registers = REGISTERS // (-(-registers // 8) * 8 * THREADS)
+    return min(by_registers, RESIDENT_THREADS // THREADS, SHARED_BYTES // (shared + SHARED_RESERVED))
+
+
+def read_kernels(report: str) -> dict[str, dict[str, int]]:
+    """What `ptxas -v` says of each kernel, by the name of its functor."""
+    kernels = {}
+    pattern = (
+        r"Compiling entry function '\w*run_kernelINS_\d+(\w+?)EEEvT_'.*?(\d+) bytes stack frame, (\d+) bytes spill "
+        r"stores, (\d+) bytes spill loads\n.*?Used (\d+) registers"
+    )
+    for name, stack, stores, loads, registers in re.findall(pattern, report, re.DOTALL):
+        shared = SHARED.get(name, 0)
+        kernels[name] = {
+            "registers": int(registers),
+            "stack": int(stack),
+            "spills": int(stores) + int(loads),
+            "shared": shared,
+            "blocks": resident_blocks(int(registers), shared),
+        }
+    return kernels
+
+
+def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) -> list[str]:
+    """Where the kernels differ from the table."""
+    out = [f"{name}: it is in the table alone, or in the source alone" for name in sorted(found.keys() ^ kept.keys())]
+    for name in sorted(found.keys() & kept.keys()):
+        now, then = found[name], kept[name]
+        if now["spills"] > (then["spills"] if name in MAY_SPILL else 0):
+            out.append(f"{name}: {now['spills']} bytes of registers are spilled")
+        if abs(now["registers"] - then["registers"]) > SLACK or now["blocks"] != then["blocks"]:
+            out.append(f"{name}: {now}, and the table has {then}: call `python tests/cuda.py --write` if that is right")
+    return out
+
+
 def main() -> int:
     nvcc = find_nvcc()
     if nvcc is None:
-        print("cuda: no nvcc in this environment, nothing compiled")
+        print("cuda: no nvcc in this environment, nothing compiled: uv sync --group cuda")
         return 0
     with tempfile.TemporaryDirectory() as folder:
-        binary = Path(folder) / "window.cubin"
-        source = ROOT / "engine" / "cuda" / "window.cu"
-        code = subprocess.run(
-            [str(nvcc), *OPTIONS, f"-I{ROOT / 'engine'}", "-o", str(binary), str(source)], check=False
-        ).returncode
-        if code == 0:
-            print(f"cuda: the step path compiles for sm_90, {binary.stat().st_size / 1e6:.1f} MB")
-        return code
+        binary = Path(folder) / "device.cubin"
+        source = ROOT / "engine" / "cuda" / "device.cu"
+        command = [str(nvcc), *OPTIONS, "-cubin", "-Xptxas=-v", "-Werror=all-warnings", f"-I{ROOT / 'engine'}"]
+        done = subprocess.run(
+            [*command, "-o", str(binary), str(source)], stderr=subprocess.PIPE, text=True, check=False
+        )
+        if done.returncode != 0:
+            print(done.stderr, file=sys.stderr)
+            return done.returncode
+        found = read_kernels(done.stderr)
+        if "--write" in sys.argv:
+            TABLE.write_text(json.dumps(found, indent=2) + "\n")
+        wrong = problems(found, json.loads(TABLE.read_text()))
+        for line in wrong:
+            print(f"cuda: {line}", file=sys.stderr)
+        print(f"cuda: {len(found)} kernels for sm_90, {binary.stat().st_size / 1e6:.1f} MB")
+        return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 
 #include "base/float_mode.h"
 #include "binding/config.h"
+#include "binding/device.h"
 #include "binding/error.h"
 #include "simulation/config_check.h"
 
@@ -81,21 +82,24 @@ WorldConfig need_config(nb::dict config) {
 
 PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer_walls,
                                    const std::vector<uint64_t>& seeds, int threads, const std::string& kernel,
-                                   const std::vector<int32_t>& slot_order, bool flush_denormals) {
+                                   const std::vector<int32_t>& slot_order, bool flush_denormals,
+                                   const std::string& device) {
   const FloatMode mode;
   const WorldConfig known = need_config(config);
   const std::vector<Segment> segments = to_segments(walls);
   const int used = count_threads(threads);
   need(check_company(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
   need_memory(known, segments.size(), seeds.size(), used);
+  const DeviceProgram* const program = device.empty() ? nullptr : need_device(device, known);
   try {
     simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
-                                               need_kernel(kernel), slot_order, flush_denormals);
+                                               need_kernel(kernel), slot_order, flush_denormals, program);
   } catch (const std::system_error& error) {
     throw EngineError("the system gives no " + std::to_string(used) + " threads (" + error.what() +
                       "): use fewer, or check the limits `ulimit -u` and `ulimit -v`");
   }
   raise_faults();
+  need(simulation_->device_complaint());
 }
 
 Simulation& PythonSimulation::get() {
@@ -110,7 +114,7 @@ Simulation& PythonSimulation::get() {
 World& PythonSimulation::world(int index) {
   Simulation& simulation = get();
   if (index < 0 || index >= simulation.world_count()) throw nb::index_error("no world has this index");
-  return simulation.world(index);
+  return simulation.numbers(index);
 }
 
 World& PythonSimulation::slotted(int index) {
@@ -136,6 +140,7 @@ void PythonSimulation::run(int64_t steps) {
     }
     steps -= count;
     raise_faults();
+    need(simulation.device_complaint());
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     // Approach the full time by at most a factor of four: the time of a piece with learning says little about the next.
@@ -157,11 +162,11 @@ void PythonSimulation::raise_faults() {
   Simulation& simulation = *simulation_;
   int first = -1;
   for (int i = 0; i < simulation.world_count(); ++i) {
-    const Fault& fault = simulation.world(i).fault();
-    if (fault.status != Status::ok && (first < 0 || fault.step < simulation.world(first).fault().step)) first = i;
+    const Fault& fault = simulation.numbers(i).fault();
+    if (fault.status != Status::ok && (first < 0 || fault.step < simulation.numbers(first).fault().step)) first = i;
   }
   if (first < 0) return;
-  const Fault& fault = simulation.world(first).fault();
+  const Fault& fault = simulation.numbers(first).fault();
   const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
   std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) + ", step " +
                         std::to_string(fault.step) + ", value " + std::to_string(fault.value);

@@ -19,18 +19,20 @@ using WallsIn = nanobind::ndarray<const float, nanobind::shape<-1, 4>, nanobind:
 class PythonSimulation {
  public:
   /// Arguments as `Simulation` has them; 0 threads for all processors, "" for the best kernel.
+  /// device   file of the library of a device that advances the worlds; "" for the threads
   /// EngineError: a number is out of bounds, the kernel is unknown, there is too little memory, or there is no place
-  /// for the initial agents or foods.
+  /// for the initial agents or foods; or the device cannot be used.
   PythonSimulation(nanobind::dict config, WallsIn walls, int64_t outer_walls, const std::vector<uint64_t>& seeds,
-                   int threads, const std::string& kernel, const std::vector<int32_t>& slot_order,
-                   bool flush_denormals);
+                   int threads, const std::string& kernel, const std::vector<int32_t>& slot_order, bool flush_denormals,
+                   const std::string& device);
 
   static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
 
   /// EngineError: it runs in another thread, or this process was forked from the one that made it.
   Simulation& get();
 
-  /// The same, and IndexError: there is no such world.
+  /// The same, and IndexError: there is no such world. Of worlds on a device, networks and rollouts may be older: see
+  /// `Simulation::numbers`.
   World& world(int index);
 
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.

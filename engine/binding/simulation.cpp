@@ -151,7 +151,8 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
 /// Gives the living of a world other genomes, in their order, and their networks what these genes set in a new one.
 void set_genomes(PythonSimulation& self, int index,
                  nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> genomes) {
-  World& from = self.slotted(index);
+  self.slotted(index);
+  World& from = self.get().world(index);  // genes can set parts of networks
   const size_t width = static_cast<size_t>(from.shape->genes);
   if (genomes.shape(0) != static_cast<size_t>(from.head().living_count) || genomes.shape(1) != width)
     throw nb::value_error("there must be one genome for each living agent, with all genes");
@@ -246,9 +247,10 @@ void bind_simulation(nb::module_& module) {
       "Many worlds under one config. Views are read-only and valid until the next `run`. EngineError: it runs "
       "in another thread, or this process was forked from the one that made it.")
       .def(nb::init<nb::dict, WallsIn, int64_t, const std::vector<uint64_t>&, int, const std::string&,
-                    const std::vector<int32_t>&, bool>(),
+                    const std::vector<int32_t>&, bool, const std::string&>(),
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
-           nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{}, nb::arg("flush_denormals") = true)
+           nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{}, nb::arg("flush_denormals") = true,
+           nb::arg("device") = "")
       .def("run", &S::run, nb::arg("steps"),
            "Advances every world that is not over; releases the interpreter lock. Ctrl-C raises KeyboardInterrupt.")
       .def("take_rows", &take_rows, nb::arg("world"),
@@ -323,7 +325,7 @@ void bind_simulation(nb::module_& module) {
           nb::arg("world"), "Seconds spent in each part by the world's first thread.")
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })
-      .def_prop_ro("kernel", [](S& s) { return s.get().kernel().name; })
+      .def_prop_ro("kernel", [](S& s) { return s.get().kernel_name(); })
       .def_prop_ro("bytes_per_world", [](S& s) { return s.get().bytes_per_world(); });
 }
 

@@ -19,10 +19,20 @@ int64_t table_rows(const World& world, const std::string& wanted) {
   return rows;
 }
 
+/// Whether an array is part of the networks and rollouts.
+bool is_large(const std::string& wanted) {
+  bool large = false;
+  WorldState::for_each_shape(
+      [&](const char* name, auto, ArrayShape size) { large |= name == wanted && Device::is_large(size); });
+  return large;
+}
+
 }  // namespace
 
 nb::object view_state(nb::handle self, int index, const std::string& path) {
-  World& world = nb::cast<PythonSimulation&>(self).world(index);
+  PythonSimulation& simulation = nb::cast<PythonSimulation&>(self);
+  World& world = simulation.world(index);
+  if (is_large(path)) simulation.get().complete(index);
   const size_t capacity = static_cast<size_t>(world.shape->capacity);
   nb::object out;
   for_each_array(world.state, "", [&]<class T>(const std::string& name, Array<T>& array) {

@@ -1,36 +1,50 @@
 /// The threads of a CUDA block as the group that every step rule is written for: see `base/team.h`.
 #pragma once
 
+#include "cuda/thread.h"
+
 namespace hedon {
 
+/// One member of a block; all of them call the same functions.
 class Block {
  public:
-  __device__ int rank() const { return static_cast<int>(threadIdx.x); }
-  __device__ int size() const { return static_cast<int>(blockDim.x); }
-  __device__ void barrier() const { __syncthreads(); }
+  HEDON_INLINE int rank() const { return thread_rank(); }
+  HEDON_INLINE int size() const { return thread_count(); }
+  HEDON_INLINE void barrier() const { block_barrier(); }
+  HEDON_INLINE int tile() const { return thread_rank() / TILE; }
+  HEDON_INLINE int tiles() const { return thread_count() / TILE; }
 
   /// Calls body(i) for i in [0, count), neighbors in neighboring threads.
   template <class Body>
-  __device__ void for_each(int count, Body&& body) const {
-    for (int i = rank(); i < count; i += size()) body(i);
+  HEDON_INLINE void for_each(int count, Body&& body) const {
+    each(count, body);
     barrier();
   }
 
-  /// Threads need not take the same branch here.
+  /// The same without a barrier at the end.
   template <class Body>
-  __device__ void for_each_backward(int count, Body&& body) const {
-    for_each(count, body);
+  HEDON_INLINE void each(int count, Body&& body) const {
+    for (int i = rank(); i < count; i += size()) body(i);
+  }
+
+  /// Calls body(i) for i in [0, count), each time with a whole tile.
+  template <class Body>
+  HEDON_INLINE void for_each_by_tile(int count, Body&& body) const {
+    for (int i = tile(); i < count; i += tiles()) body(i);
+    barrier();
   }
 
   template <class Body>
-  __device__ void for_each_claimed(int count, Body&& body) const {
-    for_each(count, body);
-  }
-
-  template <class Body>
-  __device__ void once(Body&& body) const {
+  HEDON_INLINE void once(Body&& body) const {
     if (rank() == 0) body();
     barrier();
+  }
+
+  /// Calls body() on one thread of the tile while the others wait.
+  template <class Body>
+  HEDON_INLINE void once_by_tile(Body&& body) const {
+    if (thread_lane() == 0) body();
+    tile_barrier();
   }
 };
 

@@ -103,9 +103,7 @@ HEDON_FN void cast_rays(const RayTargets& targets, const RayFan& fan, const RayC
       types = select(found, rays.type, zero);
     }
     store(reading + a * 16, readings);
-    alignas(64) float each[16];
-    store(each, types);
-    for (int r = 0; r < 16; ++r) type[a * 16 + r] = static_cast<uint8_t>(each[r]);
+    store_bytes(type + a * 16, types);
   }
 }
 

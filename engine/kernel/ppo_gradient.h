@@ -191,20 +191,12 @@ HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const Learning
   const float* const log_sd = params + shape.log_sd();
   alignas(64) float sd_inverse[LANES] = {-log_sd[0], -log_sd[1]};
   store(sd_inverse, exp_lanes(load(sd_inverse)));
-  const bool batch_mean = config.critic_target == CriticTarget::batch_mean;
   float target_mean = 0.0f;
-  if (batch_mean) {
+  if (config.critic_target == CriticTarget::batch_mean) {
     for (int32_t i = 0; i < size; ++i) target_mean += batch.target[order[i]];
     target_mean *= share;
   }
-  const float log_two_pi = 1.83787707f;
-  const LossConstants constants = {{broadcast(sd_inverse[0]), broadcast(sd_inverse[1])},
-                                   broadcast(log_sd[0] + log_sd[1] + log_two_pi),
-                                   broadcast(1.0f - config.clip_coef),
-                                   broadcast(1.0f + config.clip_coef),
-                                   broadcast(config.value_coef),
-                                   broadcast(target_mean),
-                                   batch_mean};
+  const LossConstants constants = make_loss_constants(config, log_sd, sd_inverse, target_mean);
   LossSums sums = zero_sums();
   for (int32_t first = 0; first < size; first += BLOCK) {
     const int count = size - first < BLOCK ? size - first : BLOCK;
@@ -222,7 +214,7 @@ HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const Learning
   unroll<OUTPUTS>([&](auto o) HEDON_INLINED { gradient[shape.b3() + o] = sum(sums.bias[o]); });
   unroll<ACTIONS>([&](auto d)
                       HEDON_INLINED { gradient[shape.log_sd() + d] = sum(sums.log_sd[d]) - config.entropy_coef; });
-  const float entropy = log_sd[0] + log_sd[1] + ACTIONS * 0.5f + log_two_pi;
+  const float entropy = log_sd[0] + log_sd[1] + ACTIONS * 0.5f + LOG_TWO_PI;
   return {sum(sums.policy), sum(sums.value), entropy};
 }
 

@@ -35,6 +35,21 @@ struct LossConstants {
   bool batch_mean;
 };
 
+inline constexpr float LOG_TWO_PI = 1.83787707f;
+
+/// log_sd, sd_inverse   (2) of the actions; sd_inverse is exp(-log_sd)
+/// target_mean          of the minibatch; used only if the critic learns it
+HEDON_INLINE LossConstants make_loss_constants(const LearningConfig& config, const float* log_sd,
+                                               const float* sd_inverse, float target_mean) {
+  return {{broadcast(sd_inverse[0]), broadcast(sd_inverse[1])},
+          broadcast(log_sd[0] + log_sd[1] + LOG_TWO_PI),
+          broadcast(1.0f - config.clip_coef),
+          broadcast(1.0f + config.clip_coef),
+          broadcast(config.value_coef),
+          broadcast(target_mean),
+          config.critic_target == CriticTarget::batch_mean};
+}
+
 HEDON_INLINE LossSums zero_sums() {
   const Lanes zero = broadcast(0.0f);
   return {zero, zero, {zero, zero, zero}, {zero, zero}};

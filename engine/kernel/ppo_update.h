@@ -24,27 +24,40 @@ HEDON_INLINE Lanes without_tiny(Lanes moment) {
   return select(both(moment <= limit, broadcast(-SMALLEST_MOMENT) <= moment), broadcast(0.0f), moment);
 }
 
-/// One Adam step: p -= rate · m̂ / (sqrt(v̂) + ε). Source: Kingma and Ba (2015), algorithm 1.
+/// What all parameters share in one Adam step.
+struct AdamStep {
+  Lanes rate, root_scale, epsilon;
+  Lanes beta1, beta2, rest1, rest2;
+};
+
+/// number   of the step in the learner's life, from 1
+HEDON_INLINE AdamStep make_adam_step(const LearningConfig& config, int64_t number) {
+  const double correction1 = 1.0 - power(config.adam_beta1, number);
+  const double correction2 = 1.0 - power(config.adam_beta2, number);
+  return {broadcast(static_cast<float>(-config.learning_rate / correction1)),
+          broadcast(static_cast<float>(__builtin_sqrt(1.0 / correction2))),
+          broadcast(config.adam_epsilon),
+          broadcast(config.adam_beta1),
+          broadcast(config.adam_beta2),
+          broadcast(1.0f - config.adam_beta1),
+          broadcast(1.0f - config.adam_beta2)};
+}
+
+/// 16 parameters from `i` on: p -= rate · m̂ / (sqrt(v̂) + ε). Source: Kingma and Ba (2015), algorithm 1.
+HEDON_INLINE void adam_lanes(const AdamStep& step, int32_t i, const float* gradient, const Learner& learner) {
+  const Lanes g = load(gradient + i);
+  const Lanes m = without_tiny(multiply_add(step.beta1, load(learner.first_moment + i), step.rest1 * g));
+  const Lanes v = without_tiny(multiply_add(step.beta2, load(learner.second_moment + i), step.rest2 * g * g));
+  store(learner.first_moment + i, m);
+  store(learner.second_moment + i, v);
+  const Lanes divisor = multiply_add(square_root(v), step.root_scale, step.epsilon);
+  store(learner.params + i, load(learner.params + i) + step.rate * m / divisor);
+}
+
+/// One Adam step of all parameters.
 HEDON_FN void adam(const LearningConfig& config, int32_t size, const float* gradient, const Learner& learner) {
-  const int64_t step = ++*learner.updates;
-  const double correction1 = 1.0 - power(config.adam_beta1, step);
-  const double correction2 = 1.0 - power(config.adam_beta2, step);
-  const Lanes rate = broadcast(static_cast<float>(-config.learning_rate / correction1));
-  const Lanes root_scale = broadcast(static_cast<float>(__builtin_sqrt(1.0 / correction2)));
-  const Lanes epsilon = broadcast(config.adam_epsilon);
-  const Lanes beta1 = broadcast(config.adam_beta1);
-  const Lanes beta2 = broadcast(config.adam_beta2);
-  const Lanes rest1 = broadcast(1.0f - config.adam_beta1);
-  const Lanes rest2 = broadcast(1.0f - config.adam_beta2);
-  for (int32_t i = 0; i < size; i += LANES) {
-    const Lanes g = load(gradient + i);
-    const Lanes m = without_tiny(multiply_add(beta1, load(learner.first_moment + i), rest1 * g));
-    const Lanes v = without_tiny(multiply_add(beta2, load(learner.second_moment + i), rest2 * g * g));
-    store(learner.first_moment + i, m);
-    store(learner.second_moment + i, v);
-    const Lanes divisor = multiply_add(square_root(v), root_scale, epsilon);
-    store(learner.params + i, load(learner.params + i) + rate * m / divisor);
-  }
+  const AdamStep step = make_adam_step(config, ++*learner.updates);
+  for (int32_t i = 0; i < size; i += LANES) adam_lanes(step, i, gradient, learner);
 }
 
 /// See `Kernel::update`.

@@ -83,5 +83,11 @@ HEDON_INLINE float sum(Lanes a) {
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
+HEDON_INLINE void store_bytes(uint8_t* to, Lanes a) {
+  alignas(64) float each[16];
+  store(each, a);
+  for (int i = 0; i < 16; ++i) to[i] = static_cast<uint8_t>(each[i]);
+}
+
 }  // namespace
 }  // namespace hedon

@@ -122,5 +122,11 @@ HEDON_INLINE float sum(Lanes a) {
   return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
+HEDON_INLINE void store_bytes(uint8_t* to, Lanes a) {
+  alignas(64) float each[16];
+  store(each, a);
+  for (int i = 0; i < 16; ++i) to[i] = static_cast<uint8_t>(each[i]);
+}
+
 }  // namespace
 }  // namespace hedon

@@ -17,15 +17,15 @@ inline constexpr int OUTPUTS = ACTIONS + 1;  ///< mean of each action, then the 
 struct NetworkShape {
   ObservationShape observation;
 
-  HEDON_INLINE int32_t w1() const { return 0; }                            ///< (inputs, 64)
-  HEDON_INLINE int32_t b1() const { return observation.size() * HIDDEN; }  ///< (64)
-  HEDON_INLINE int32_t w2() const { return b1() + HIDDEN; }                ///< (64, 64)
-  HEDON_INLINE int32_t b2() const { return w2() + HIDDEN * HIDDEN; }       ///< (64)
-  HEDON_INLINE int32_t w3() const { return b2() + HIDDEN; }                ///< (3, 64): by output, not by input
-  HEDON_INLINE int32_t b3() const { return w3() + OUTPUTS * HIDDEN; }      ///< (3)
-  HEDON_INLINE int32_t log_sd() const { return b3() + OUTPUTS; }           ///< (2)
-  HEDON_INLINE int32_t size() const { return b3() + 16; }
-  HEDON_INLINE int32_t pairs() const {
+  constexpr HEDON_INLINE int32_t w1() const { return 0; }                            ///< (inputs, 64)
+  constexpr HEDON_INLINE int32_t b1() const { return observation.size() * HIDDEN; }  ///< (64)
+  constexpr HEDON_INLINE int32_t w2() const { return b1() + HIDDEN; }                ///< (64, 64)
+  constexpr HEDON_INLINE int32_t b2() const { return w2() + HIDDEN * HIDDEN; }       ///< (64)
+  constexpr HEDON_INLINE int32_t w3() const { return b2() + HIDDEN; }            ///< (3, 64): by output, not by input
+  constexpr HEDON_INLINE int32_t b3() const { return w3() + OUTPUTS * HIDDEN; }  ///< (3)
+  constexpr HEDON_INLINE int32_t log_sd() const { return b3() + OUTPUTS; }       ///< (2)
+  constexpr HEDON_INLINE int32_t size() const { return b3() + 16; }
+  constexpr HEDON_INLINE int32_t pairs() const {
     return b2() / 2;
   }  ///< of all before b2: rows of 64 at the same places as in the parameters; b1 is not used
 };

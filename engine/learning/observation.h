@@ -66,8 +66,8 @@ struct ObservationShape {
 
   HEDON_INLINE bool wide() const { return touches > 64 || dense > MAX_DENSE; }
   HEDON_INLINE int32_t narrow_dense() const { return dense < MAX_DENSE ? dense : MAX_DENSE; }
-  HEDON_INLINE int32_t ray_entries() const { return types * rays; }
-  HEDON_INLINE int32_t size() const { return ray_entries() + touches + dense; }
+  constexpr HEDON_INLINE int32_t ray_entries() const { return types * rays; }
+  constexpr HEDON_INLINE int32_t size() const { return ray_entries() + touches + dense; }
 
   /// The row of a ray and a type. Neighboring rays mostly hit the same type, so their rows are next to one another.
   HEDON_INLINE int32_t ray_entry(int32_t ray, int32_t type) const { return type * rays + ray; }

@@ -141,15 +141,15 @@ class Hash {
 
 }  // namespace
 
-Checkpoint Simulation::save(int index) const {
+Checkpoint Simulation::save(int index) {
   Checkpoint out;
-  save_each(worlds_[static_cast<size_t>(index)], [&](SavedArray&& array) { out.push_back(std::move(array)); });
+  save_each(complete(index), [&](SavedArray&& array) { out.push_back(std::move(array)); });
   return out;
 }
 
-uint64_t Simulation::digest(int index) const {
+uint64_t Simulation::digest(int index) {
   Hash hash;
-  save_each(worlds_[static_cast<size_t>(index)], [&](const SavedArray& array) { hash.add(array); });
+  save_each(complete(index), [&](const SavedArray& array) { hash.add(array); });
   return hash.value();
 }
 

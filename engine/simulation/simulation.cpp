@@ -51,7 +51,7 @@ int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
 
 Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
                        const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-                       const std::vector<int32_t>& slot_order, bool flush)
+                       const std::vector<int32_t>& slot_order, bool flush, const DeviceProgram* program)
     : config_(config),
       kernel_(kernel),
       flush_(flush),
@@ -68,7 +68,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     world.shape = &shape_;
     world.kernel = kernel_;
     world.seed = seeds[i];
-    set_counts(world, threads);
+    set_counts(world, program == nullptr ? threads : std::max(threads, DEVICE_MEMBERS));
     memory_.emplace_back(lay_out_world(world, nullptr));
     lay_out_world(world, memory_.back().data());
     begin(world);
@@ -77,6 +77,7 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
   pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
+  if (program != nullptr) device_ = std::make_unique<Device>(*program, worlds_, memory_);
 }
 
 MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
@@ -163,9 +164,10 @@ void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
 }
 
 void Simulation::run(int64_t steps) {
+  if (device_) return device_->run(steps);
   std::vector<int> going;
   for (int i = 0; i < world_count(); ++i) {
-    if (!world(i).over()) going.push_back(i);
+    if (!numbers(i).over()) going.push_back(i);
   }
   const int threads = pool_->size();
   const int count = static_cast<int>(going.size());

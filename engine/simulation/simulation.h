@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/team.h"
 #include "simulation/checkpoint.h"
+#include "simulation/device.h"
 #include "simulation/memory.h"
 #include "simulation/pace.h"
 #include "simulation/window.h"
@@ -53,10 +54,11 @@ class Simulation {
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   /// flush   whether denormals are flushed to zero; it changes no result
+  /// program  of the device that advances the worlds; null for the threads
   /// The arguments must have passed `check_config` and `check_company`.
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-             const std::vector<int32_t>& slot_order, bool flush = true);
+             const std::vector<int32_t>& slot_order, bool flush = true, const DeviceProgram* program = nullptr);
 
   /// Bytes that a simulation reserves: compare them with the machine's memory before you make it.
   static MemoryNeed bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
@@ -66,14 +68,14 @@ class Simulation {
   bool set_scene(int index, const SceneInput& scene);
 
   /// Everything that decides a world's future, as arrays. Deaths that the reader has not yet taken are not included.
-  Checkpoint save(int index) const;
+  Checkpoint save(int index);
 
   /// Replaces a world by a saved one, which continues with the same bits. Returns "", or what is wrong with the
   /// checkpoint; then the world is unchanged.
   std::string restore(int index, const Checkpoint& checkpoint);
 
   /// A hash of everything that decides a world's future: equal for equal bits.
-  uint64_t digest(int index) const;
+  uint64_t digest(int index);
 
   /// Advances every world that is not over by `steps` steps. The results do not depend on threads.
   void run(int64_t steps);
@@ -92,11 +94,26 @@ class Simulation {
   void show(int32_t species, const Shown& out);
 
   int world_count() const { return static_cast<int>(worlds_.size()); }
-  World& world(int index) { return worlds_[static_cast<size_t>(index)]; }
+  /// A world, of which the caller may change everything.
+  World& world(int index) {
+    complete(index);
+    if (device_) device_->change(index);
+    return numbers(index);
+  }
+  /// A world, of which the caller reads everything.
+  const World& complete(int index) {
+    if (device_) device_->fetch(index);
+    return numbers(index);
+  }
+  /// A world, of which the caller reads or changes anything but networks and rollouts: they may be the device's.
+  World& numbers(int index) { return worlds_[static_cast<size_t>(index)]; }
+  /// What went wrong on the device; "" if nothing did.
+  std::string device_complaint() const { return device_ ? device_->complaint() : ""; }
   const WorldShape& shape() const { return shape_; }
   const WorldConfig& config() const { return config_; }
   bool flush() const { return flush_; }
-  const Kernel& kernel() const { return *kernel_; }
+  /// What advances the worlds: the name of an instruction set or of a device.
+  const char* kernel_name() const { return device_ ? device_->program().name : kernel_->name; }
   const Pool& pool() const { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
   /// The block that holds all of a world, `bytes_per_world` long: who puts a copy of it back has the world as it was.
@@ -121,6 +138,7 @@ class Simulation {
   Memory learn_scratch_;
   int64_t learn_stride_;
   std::unique_ptr<Pool> pool_;
+  std::unique_ptr<Device> device_;
 };
 
 }  // namespace hedon

@@ -10,54 +10,68 @@
 
 namespace hedon {
 
+/// How many agents lived through the window that ends now. The living are in the order of birth, so these come first.
+HEDON_FN int32_t count_taught(const World& world) {
+  const int64_t window_start = world.head().step - world.shape->steps;
+  int32_t taught = 0;
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    if (world.state.life[world.state.living[i]].birth_step <= window_start) ++taught;
+  }
+  return taught;
+}
+
+/// The whole window of the agent in `slot`.
+/// bootstrap   value of its next observation
+HEDON_FN Rollout rollout_of(const World& world, int32_t slot, float bootstrap) {
+  const WorldState& state = world.state;
+  const int64_t row = slot * int64_t{world.shape->steps};
+  return {&world.observation(slot, 0), &state.action[row * ACTIONS], &state.log_prob[row],
+          &state.value[row],           &state.reward[row],           bootstrap,
+          world.shape->steps};
+}
+
+HEDON_FN Learner learner_of(const World& world, int32_t slot) {
+  const WorldState& state = world.state;
+  const int64_t first = int64_t{slot} * world.shape->params;
+  return {&state.params[first], &state.first_moment[first], &state.second_moment[first], &state.updates[slot]};
+}
+
+/// Decides the order of the minibatches of the agent in `slot` in the window that ends now.
+HEDON_FN RandomStream minibatch_stream(const World& world, int32_t slot) {
+  return {world.seed, Purpose::minibatch, static_cast<uint32_t>(world.state.life[slot].agent_id),
+          static_cast<uint32_t>(world.head().step)};
+}
+
+/// What follows the learning of the first `taught` of the living: counts, genomes that wait, the next window.
+HEDON_FN void close_window(World& world, int32_t taught) {
+  for (int32_t i = 0; i < taught; ++i) {
+    const int32_t slot = world.state.living[i];
+    world.counters(slot).learners += world.species(slot).learns;
+  }
+  if (inherits_late(world)) settle_newborns(world);
+  open_window(world);
+}
+
 /// Every agent that lived through the whole window learns from its rollout, if its species learns; all others wait for
 /// the next window.
 /// `scratch` holds `stride` floats for each member of the group.
 template <class Group>
 HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
-  const WorldState& state = world.state;
-  const WorldShape& shape = *world.shape;
-  WorldHead& head = world.head();
-  const int64_t window_start = head.step - shape.steps;
-
-  int32_t learners = 0;
-  for (int32_t i = 0; i < head.living_count; ++i) {
-    if (state.life[state.living[i]].birth_step <= window_start) ++learners;
-  }
-  // The living are in the order of birth, so those that lived through the window come first.
-  group.for_each_claimed(learners, [&](int32_t i) {
-    const int32_t slot = state.living[i];
-    if (!world.species(slot).learns) return;
+  const int32_t taught = count_taught(world);
+  group.for_each_claimed(taught, [&](int32_t i) {
+    const int32_t slot = world.state.living[i];
+    const Species& species = world.species(slot);
+    if (!species.learns) return;
     note_start(world, slot);
-    PackedObservation& next = world.observation(slot, shape.steps);
+    PackedObservation& next = world.observation(slot, world.shape->steps);
     observe(world, slot, group.rank(), next);
     float output[16];
-    const Species& species = world.species(slot);
     world.kernel->forward(species.network, world.network(slot), next, output);
-
-    const int64_t row = slot * int64_t{shape.steps};
-    const int64_t first = int64_t{slot} * shape.params;
-    const Rollout rollout{&world.observation(slot, 0),
-                          &state.action[row * ACTIONS],
-                          &state.log_prob[row],
-                          &state.value[row],
-                          &state.reward[row],
-                          output[ACTIONS],
-                          shape.steps};
-    const Learner learner{&state.params[first], &state.first_moment[first], &state.second_moment[first],
-                          &state.updates[slot]};
-    const RandomStream random{world.seed, Purpose::minibatch, static_cast<uint32_t>(state.life[slot].agent_id),
-                              static_cast<uint32_t>(head.step)};
-    learn(*world.kernel, species.network, own_learning(world, slot), rollout, random, scratch + group.rank() * stride,
-          learner);
+    learn(*world.kernel, species.network, own_learning(world, slot), rollout_of(world, slot, output[ACTIONS]),
+          minibatch_stream(world, slot), scratch + group.rank() * stride, learner_of(world, slot));
     world.kernel->pack_weights(species.network, world.network(slot));
   });
-  group.once([&] {
-    for (int32_t i = 0; i < learners; ++i)
-      world.counters(state.living[i]).learners += world.species(state.living[i]).learns;
-    if (inherits_late(world)) settle_newborns(world);
-    open_window(world);
-  });
+  group.once([&] { close_window(world, taught); });
 }
 
 /// Advances a world by `steps` steps, with learning at the end of each window; stops early if the world is over.

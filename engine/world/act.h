@@ -22,11 +22,10 @@ HEDON_FN NormalPair action_noise(const World& world, int32_t slot) {
 }
 
 /// Samples an action for the agent in `slot` and keeps it with its log-probability and the state's value.
-HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedObservation& observation) {
+/// output   of its network
+HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const float* output) {
   const WorldState& state = world.state;
   const NetworkShape& network = world.species(slot).network;
-  float output[16];
-  world.kernel->forward(network, world.network(slot), observation, output);
   const NormalPair noise = action_noise(world, slot);
   const float z[ACTIONS] = {noise.first, noise.second};
   const float* log_sd = world.params(slot) + network.log_sd();
@@ -40,12 +39,10 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const PackedO
   state.value[row] = output[ACTIONS];
 }
 
-/// The action of the agent in `slot`, into row `t` of its rollout, by the policy of its species.
-HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
+/// The action of the agent in `slot`, into row `t` of its rollout, if its species has no networks.
+HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
   float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
   switch (world.species(slot).config->learning.policy) {
-    case Policy::ppo:
-      return sample_action(world, slot, t, world.observation(slot, t));
     case Policy::random: {
       const NormalPair noise = action_noise(world, slot);
       action[0] = noise.first;
@@ -55,9 +52,18 @@ HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
     case Policy::external:
       for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.command[int64_t{slot} * ACTIONS + a];
       return;
+    case Policy::ppo:
     case Policy::still:
       return;
   }
+}
+
+/// The action of the agent in `slot`, into row `t` of its rollout, by the policy of its species.
+HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
+  if (!world.species(slot).learns) return act_without_network(world, slot, t);
+  float output[16];
+  world.kernel->forward(world.species(slot).network, world.network(slot), world.observation(slot, t), output);
+  sample_action(world, slot, t, output);
 }
 
 /// Turns the action into the forces of the two motors, and the force and torque on the body.

@@ -113,8 +113,10 @@ HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
 }
 
 /// Finds the circles in the cells that a rectangle around the fan touches, grown by the radius of the largest circle.
-HEDON_FN void find_circles(const World& world, const RayTargets& targets, const RayFan& fan, const Box& box,
-                           RayCandidates& candidates) {
+/// kernel   what has a `cull_circles`
+template <class Culler>
+HEDON_FN void find_circles(const Culler& kernel, const World& world, const RayTargets& targets, const RayFan& fan,
+                           const Box& box, RayCandidates& candidates) {
   const RayGrid& grid = world.shape->scene;
   const float largest = world.shape->bodies.max_radius();
   const float margin = largest > world.config->food_radius ? largest : world.config->food_radius;
@@ -124,7 +126,7 @@ HEDON_FN void find_circles(const World& world, const RayTargets& targets, const 
   const int32_t last_row = cell_along(fan.y + box.high_y + margin, grid.inverse_cell, grid.rows);
   for (int32_t row = first_row; row <= last_row; ++row) {
     const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
-    world.kernel->cull_circles(targets, fan, start[first_column], start[last_column + 1], candidates);
+    kernel.cull_circles(targets, fan, start[first_column], start[last_column + 1], candidates);
   }
 }
 

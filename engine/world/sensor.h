@@ -39,13 +39,16 @@ HEDON_FN void observe_more(const World& world, int32_t slot, Vec2 forward, Packe
   for (int32_t i = 0; i < scents; ++i) set_dense(out, own_entries(config) + i, smelled[i]);
 }
 
-/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the
-/// scene.
-HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservation& out) {
+/// The heading of the agent in `slot` at the start of the step, a unit vector.
+HEDON_FN Vec2 forward_of(const World& world, int32_t slot) {
+  return {-world.scratch.heading_sine[slot], world.scratch.heading_cosine[slot]};
+}
+
+/// Writes the part of an observation that needs no rays: touch, motion, heading, energy.
+HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& out) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
   const float sine = world.scratch.heading_sine[slot], cosine = world.scratch.heading_cosine[slot];
-  cast_agent_rays(world, slot, {-sine, cosine}, rank, out);
   out.touch = state.touch[slot];
   if (world.species(slot).network.observation.wide()) extra_of(out).touch = state.touch_more[slot];
   const float energy = static_cast<float>(state.life[slot].energy);
@@ -58,6 +61,13 @@ HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservat
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   }
   observe_more(world, slot, {-sine, cosine}, out);
+}
+
+/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the
+/// scene.
+HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservation& out) {
+  cast_agent_rays(world, slot, forward_of(world, slot), rank, out);
+  sense_body(world, slot, out);
 }
 
 /// Sine and cosine of an angle from those of a near angle, by rotation with a short series; of a far one, directly.

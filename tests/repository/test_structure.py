@@ -20,7 +20,7 @@ ALLOWED = {
     "simulation": {"base", "physics", "evolution", "learning", "kernel", "world"},
     "binding": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
     "web": {"base", "lanes", "physics", "evolution", "learning", "kernel", "world", "simulation"},
-    "cuda": {"lanes", "kernel", "simulation"},
+    "cuda": {"base", "lanes", "learning", "kernel", "simulation"},
 }
 STEP_PATH = ("physics", "evolution", "learning", "world", "kernel")
 FORBIDDEN_IN_STEP = re.compile(

@@ -37,7 +37,7 @@ class Simulation:
     Many worlds under one config. Views are read-only and valid until the next `run`. EngineError: it runs in another thread, or this process was forked from the one that made it.
     """
 
-    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = [], flush_denormals: bool = True) -> None: ...
+    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = [], flush_denormals: bool = True, device: str = '') -> None: ...
 
     def run(self, steps: int) -> None:
         """

@@ -52,6 +52,7 @@ def run(
             metavar="SOURCE[:SHARE],…", help="Begin with these genomes: a table (.csv), RUN@STEP, or a point."
         ),
     ] = None,
+    device: Annotated[str, typer.Option(help="What advances the worlds: cpu, or cuda for a CUDA device.")] = "cpu",
 ) -> None:
     """Run a condition, then write its report.
 
@@ -66,19 +67,21 @@ def run(
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
-    HEDON_KERNEL forces an instruction set: avx512, avx2 or portable.
+    HEDON_KERNEL forces an instruction set: avx512, avx2 or portable. HEDON_KERNEL=cuda is --device cuda, also for other
+    commands, such as hedon resume.
     """
     from hedon.config.load import load_config
     from hedon.experiment.plan import RunPlan, default_folder
     from hedon.experiment.run import run as run_plan
     from hedon.record.founder_source import read_founders
 
+    kernel = kernel_of(device)
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
     require_no_run(folder)
     begin_with = None if founders is None else read_founders(founders, config)
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with)
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, kernel)
     conduct(plan, lambda display: run_plan(plan, display))
 
 
@@ -108,6 +111,22 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
     console.print(f"Write the report again with: hedon report {folder}", soft_wrap=True)
     unseen = "" if plan.frames else " (plots only: a run with --frames 64 also shows its agents)"
     console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
+
+
+def kernel_of(device: str) -> str:
+    """The kernel for `--device`: empty for the processor.
+
+    Raises:
+        RunError: There is no such device, or its library cannot be there.
+    """
+    from hedon.experiment.device import DEVICES, device_library
+
+    if device == "cpu":
+        return ""
+    if device not in DEVICES:
+        raise RunError(f"--device: {brief(repr(device))} is none of: cpu, {', '.join(DEVICES)}")
+    device_library(device)
+    return device
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

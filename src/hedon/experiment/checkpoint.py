@@ -8,6 +8,7 @@ from hedon.config.config import Config
 from hedon.config.dump import diff
 from hedon.config.load import parse_config
 from hedon.config.problem import format_value
+from hedon.experiment.device import EMULATED
 from hedon.experiment.recorder import Start
 from hedon.experiment.sample import PopulationSampler
 from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
@@ -15,8 +16,8 @@ from hedon.record.checkpoint import Checkpoint, CheckpointHead
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
 
-SAME_BITS = (frozenset({"avx2", "avx512"}),)
-"""Instruction sets that compute the same bits, so that one can continue what another began."""
+SAME_BITS = (frozenset({"avx2", "avx512", "cuda", EMULATED}),)
+"""Instruction sets and devices that compute the same bits, so that one can continue what another began."""
 SHOWN = 5
 """Most differing settings that a message lists."""
 

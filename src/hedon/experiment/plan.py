@@ -39,6 +39,8 @@ class RunPlan:
         checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
         founders: Genomes that the worlds begin with; None where they are drawn as the config says. The plan's config
             gets the table's digest.
+        kernel: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
+            set.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -55,6 +57,7 @@ class RunPlan:
     frames: int
     checkpoint_seconds: float
     founders: Founders | None
+    kernel: str
 
     def __init__(
         self,
@@ -66,6 +69,7 @@ class RunPlan:
         frames: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
         founders: Founders | None = None,
+        kernel: str = "",
     ) -> None:
         checked = {
             "config": _with_founders(pinned(_without_caller(validated(config))), founders),
@@ -76,6 +80,7 @@ class RunPlan:
             "frames": integer("frames", frames, 0, MAX_STEPS),
             "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds, 0.0, MAX_SECONDS),
             "founders": founders,
+            "kernel": kernel,
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)

@@ -43,7 +43,7 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
-        simulation = Simulation(plan.config, plan.seeds, plan.threads)
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.kernel)
         if plan.founders is not None:
             simulation.set_founders(plan.founders)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)

@@ -12,6 +12,7 @@ from hedon.config.config import Config
 from hedon.config.layout import INNER_STATES, layouts
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
+from hedon.experiment.device import device_library
 from hedon.experiment.native import engine_input
 from hedon.experiment.rule import rules
 from hedon.record.founder import Founders
@@ -37,8 +38,8 @@ class Simulation:
         config: Settings of the worlds.
         seeds: One world per seed, each in [0, 2^64).
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
-        kernel: Instruction set, one of `hedon._engine.kernel.kernel_names`; empty for the one that the environment
-            variable HEDON_KERNEL names, or else the best one.
+        kernel: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
+            empty for what the environment variable HEDON_KERNEL names, or else the best instruction set.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -59,8 +60,10 @@ class Simulation:
         if not isinstance(kernel, str):
             raise ArgumentError(f"kernel: must be the name of an instruction set, not {kernel!r}")
         kernel = kernel or os.environ.get(KERNEL_VARIABLE, "")
+        device = device_library(kernel)
+        host = "" if device else kernel
         self.engine = _engine.Simulation(
-            given.settings, given.walls, given.outer_walls, list(self.seeds), threads, kernel
+            given.settings, given.walls, given.outer_walls, list(self.seeds), threads, host, device=device
         )
         self.rules = rules(self.config)
         for rule in self.rules:

@@ -1,0 +1,44 @@
+#include "binding/device.h"
+
+#include <dlfcn.h>
+
+#include "binding/error.h"
+
+namespace hedon {
+namespace {
+
+/// Refuses what only the host can do, and networks that a device cannot update.
+void need_fit(const DeviceProgram& program, const WorldConfig& config) {
+  const WorldShape shape = make_shape(config, 0, 0);
+  for (int32_t s = 0; s < shape.species; ++s) {
+    const std::string species = "species " + std::to_string(s);
+    if (has_rule(config.species[s]))
+      throw EngineError(species + " has a rule in Python, which a device cannot call: run it without a device");
+    if (config.species[s].learning.policy == Policy::external)
+      throw EngineError(species +
+                        " waits for actions of a program, which a device cannot ask: run it without a device");
+    const int32_t inputs = shape.of[s].network.observation.size();
+    if (shape.of[s].learns && inputs > program.widest_network)
+      throw EngineError("the networks of " + species + " have " + std::to_string(inputs) + " inputs, and device '" +
+                        program.name + "' learns with at most " + std::to_string(program.widest_network) +
+                        ": let it see fewer types, or use fewer rays or sectors");
+  }
+}
+
+}  // namespace
+
+const DeviceProgram* need_device(const std::string& file, const WorldConfig& config) {
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw EngineError("the library of the device cannot be loaded: " + std::string(dlerror()));
+  const DeviceEntry entry = reinterpret_cast<DeviceEntry>(dlsym(library, "hedon_device"));
+  if (entry == nullptr) throw EngineError(file + " is not the library of a device");
+  const DeviceProgram& program = *entry();
+  if (program.layout != device_layout())
+    throw EngineError(file + " was built from other sources than the engine: build both again");
+  const std::string problem = program.open();
+  if (!problem.empty()) throw EngineError("device '" + std::string(program.name) + "' cannot be used: " + problem);
+  need_fit(program, config);
+  return &program;
+}
+
+}  // namespace hedon

@@ -1,0 +1,18 @@
+/// Runs kernels of CUDA on a processor, with every thread of a block: for tests without a device.
+///
+/// The threads of a block are fibers, which run in turn, or threads of the system, so that the thread sanitizer sees
+/// them. Shared memory is fresh for each block and full of NaN. A barrier that some threads do not reach ends the
+/// program with a message if they are fibers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace hedon {
+
+/// Runs blocks 0 … blocks - 1 of `threads` threads each, one block after another, as kernel(block).
+/// threads   a multiple of 16
+/// floats    of shared memory per block
+void launch(int32_t blocks, int32_t threads, int64_t floats, const std::function<void(int32_t)>& kernel);
+
+}  // namespace hedon

@@ -1,0 +1,72 @@
+/// A learner in the shared memory of its block, and the tiles of 4 by 4 numbers that its threads compute in registers.
+#pragma once
+
+#include "cuda/block.h"
+#include "cuda/lanes.h"
+#include "cuda/learning_layout.h"
+#include "kernel/ppo_loss.h"
+
+namespace hedon {
+namespace {
+
+/// Four neighboring floats, read and written together; aligned to 16 bytes.
+struct __attribute__((may_alias, aligned(16))) Four {
+  float v[4];
+};
+HEDON_INLINE Four read_four(const float* from) { return *reinterpret_cast<const Four*>(from); }
+HEDON_INLINE void write_four(float* to, const Four& four) { *reinterpret_cast<Four*>(to) = four; }
+
+/// One learner and its place in shared memory.
+struct BlockUpdate {
+  const NetworkShape& shape;
+  const LearningConfig& config;
+  LearningLayout at;
+  Learner learner;  ///< what is updated: in shared memory, except moments that do not fit
+  float* gradient;
+  float* w2_transposed;
+  float* hidden1;  ///< later the derivatives of the first layer's sums
+  float* hidden2;  ///< the same of the second
+  float* folded_bias;
+  BlockSamples* samples;
+  float* parts;
+  float* sums;
+  int32_t* index;
+
+  HEDON_INLINE const float* params() const { return learner.params; }
+};
+
+static_assert(sizeof(BlockSamples) == SAMPLE_ARRAYS * BLOCK * sizeof(float));
+
+/// A tile: 4 samples or rows by 4 units.
+struct Totals {
+  float v[4][4];
+
+  HEDON_INLINE void add(int row, float x, const Four& by) {
+    for (int j = 0; j < 4; ++j) v[row][j] = __builtin_fmaf(x, by.v[j], v[row][j]);
+  }
+  HEDON_INLINE Four row(int i) const { return {v[i][0], v[i][1], v[i][2], v[i][3]}; }
+  HEDON_INLINE void set_row(int i, const Four& four) {
+    for (int j = 0; j < 4; ++j) v[i][j] = four.v[j];
+  }
+};
+
+/// Calls body(row, column) for each tile of a (64, 64) matrix.
+template <class Body>
+HEDON_INLINE void each_tile(const Block& block, Body&& body) {
+  block.each(256, [&](int tile) { body(tile / 16 * 4, tile % 16 * 4); });
+}
+
+/// A tile of A·B: a has its rows HIDDEN_STRIDE apart, b its rows 64; both are 64 wide. Adds to `total`, in order.
+HEDON_INLINE void multiply_rows(const float* a, const float* b, Totals& total) {
+  for (int k = 0; k < HIDDEN; k += 4) {
+    Four left[4];
+    for (int i = 0; i < 4; ++i) left[i] = read_four(a + i * HIDDEN_STRIDE + k);
+    for (int q = 0; q < 4; ++q) {
+      const Four right = read_four(b + (k + q) * HIDDEN);
+      for (int i = 0; i < 4; ++i) total.add(i, left[i].v[q], right);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hedon

@@ -1,0 +1,85 @@
+/// What an update keeps where in the shared memory of its block.
+#pragma once
+
+#include "kernel/ppo_scratch.h"
+#include "learning/network.h"
+
+namespace hedon {
+
+/// Shared memory that a block can have, of compute capability 9.0 [floats]: 227 KiB. Source: CUDA C++ Programming
+/// Guide, table of technical specifications.
+inline constexpr int32_t SHARED_FLOATS = 227 * 1024 / 4;
+
+/// From one row of a hidden layer to the next [floats]. Four more than a row: then neighboring rows begin in other
+/// banks.
+inline constexpr int32_t HIDDEN_STRIDE = HIDDEN + 4;
+
+/// Sums of the loss over a minibatch: the bias of each output, and the log-sd of each action.
+inline constexpr int32_t LOSS_SUMS = OUTPUTS + ACTIONS;
+inline constexpr int32_t SAMPLE_ARRAYS = OUTPUTS + ACTIONS + 4;  ///< of a `BlockSamples`
+
+/// Places in shared memory [floats]; -1 for a moment of Adam that stays in global memory, since it does not fit.
+struct LearningLayout {
+  int32_t params, gradient, first_moment, second_moment;
+  int32_t w2_transposed;     ///< (64, 64)
+  int32_t hidden1, hidden2;  ///< (64 samples, HIDDEN_STRIDE)
+  int32_t folded_bias;       ///< (64)
+  int32_t samples;           ///< `BlockSamples`
+  int32_t parts;             ///< (LOSS_SUMS, 64 samples)
+  int32_t sums;              ///< (LOSS_SUMS, 16)
+  int32_t index;             ///< (64) the steps of the samples
+  int32_t total;
+
+  HEDON_FN bool fits() const { return total <= SHARED_FLOATS; }
+};
+
+/// The layout for a network of `size` parameters with `moments` (0, 1 or 2) of them in shared memory.
+HEDON_FN constexpr LearningLayout learning_layout(int32_t size, int32_t moments) {
+  LearningLayout at{};
+  int32_t next = 0;
+  const auto take = [&](int32_t& place, int32_t floats) {
+    place = next;
+    next += floats;
+  };
+  take(at.params, size);
+  take(at.gradient, size);
+  at.first_moment = at.second_moment = -1;
+  if (moments > 0) take(at.first_moment, size);
+  if (moments > 1) take(at.second_moment, size);
+  take(at.w2_transposed, HIDDEN * HIDDEN);
+  take(at.hidden1, BLOCK * HIDDEN_STRIDE);
+  take(at.hidden2, BLOCK * HIDDEN_STRIDE);
+  take(at.folded_bias, HIDDEN);
+  take(at.samples, SAMPLE_ARRAYS * BLOCK);
+  take(at.parts, LOSS_SUMS * BLOCK);
+  take(at.sums, LOSS_SUMS * 16);
+  take(at.index, BLOCK);
+  at.total = next;
+  return at;
+}
+
+/// The same with as many moments as fit; `fits` is false if not even a network without them does.
+HEDON_FN constexpr LearningLayout learning_layout(int32_t size) {
+  for (int32_t moments = 2; moments > 0; --moments) {
+    const LearningLayout at = learning_layout(size, moments);
+    if (at.total <= SHARED_FLOATS) return at;
+  }
+  return learning_layout(size, 0);
+}
+
+/// Parameters of a network with this many inputs; the least number of inputs that an update cannot hold.
+constexpr int32_t params_of(int32_t inputs) { return NetworkShape{{0, 0, 0, inputs, NARROW_LINES}}.size(); }
+constexpr int32_t first_too_wide() {
+  int32_t inputs = 1;
+  while (learning_layout(params_of(inputs)).total <= SHARED_FLOATS) ++inputs;
+  return inputs;
+}
+inline constexpr int32_t WIDEST_NETWORK = first_too_wide() - 1;  ///< inputs
+
+// The widths of the presets: one species; poison; predators.
+static_assert(learning_layout(params_of(95)).second_moment >= 0, "an update of 95 inputs fits with both moments");
+static_assert(learning_layout(params_of(95)).total * 4 == 223'808, "tests/cuda.py computes with this size");
+static_assert(learning_layout(params_of(125)).first_moment >= 0, "an update of 125 inputs fits with one moment");
+static_assert(WIDEST_NETWORK >= 205, "an update of 205 inputs fits without moments");
+
+}  // namespace hedon

@@ -1,0 +1,73 @@
+/// What a thread of a block knows and how it talks with the others: CUDA's own, or the emulation's (`emulator.h`).
+///
+/// A *tile* is 16 neighboring threads: each of them holds one of 16 lanes (`lanes.h`). All threads of a tile take the
+/// same way to its barrier, ballots and reads; all threads of a block to the block's barrier.
+#pragma once
+
+#include <cstdint>
+
+#include "base/device.h"
+
+namespace hedon {
+
+inline constexpr int TILE = 16;
+
+#if defined(__CUDA_ARCH__)
+
+HEDON_INLINE int thread_rank() { return static_cast<int>(threadIdx.x); }
+HEDON_INLINE int thread_count() { return static_cast<int>(blockDim.x); }
+HEDON_INLINE void block_barrier() { __syncthreads(); }
+
+/// The threads of this one's tile, as bits of its warp.
+HEDON_INLINE uint32_t tile_mask() { return 0xFFFFu << (threadIdx.x & 16u); }
+HEDON_INLINE void tile_barrier() { __syncwarp(tile_mask()); }
+
+/// One bit per thread of the tile: where `holds` is true.
+HEDON_INLINE uint32_t tile_ballot(bool holds) {
+  return __ballot_sync(tile_mask(), holds) >> (threadIdx.x & 16u) & 0xFFFFu;
+}
+
+/// The value that another thread of the tile gives.
+HEDON_INLINE float tile_read(float value, int lane) { return __shfl_sync(tile_mask(), value, lane, TILE); }
+
+/// The block's shared memory, aligned to 16 bytes; its size is given at the launch. Filled by nobody.
+HEDON_INLINE float* shared_memory() {
+  extern __shared__ float4 memory[];
+  return reinterpret_cast<float*>(memory);
+}
+
+#elif defined(__CUDACC__)
+
+// nvcc compiles every function for the host too, where kernels never run.
+HEDON_INLINE int thread_rank() { return 0; }
+HEDON_INLINE int thread_count() { return 1; }
+HEDON_INLINE void block_barrier() {}
+HEDON_INLINE void tile_barrier() {}
+HEDON_INLINE uint32_t tile_ballot(bool holds) { return holds ? 1u : 0u; }
+HEDON_INLINE float tile_read(float value, int) { return value; }
+HEDON_INLINE float* shared_memory() { return nullptr; }
+
+#else
+
+int thread_rank();
+int thread_count();
+void block_barrier();
+void tile_barrier();
+uint32_t tile_ballot(bool holds);
+float tile_read(float value, int lane);
+float* shared_memory();
+
+#endif
+
+HEDON_INLINE int thread_lane() { return thread_rank() % TILE; }
+
+/// Bits that are set.
+HEDON_INLINE int count_bits(uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __popc(bits);
+#else
+  return __builtin_popcount(bits);
+#endif
+}
+
+}  // namespace hedon

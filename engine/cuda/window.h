@@ -1,0 +1,133 @@
+/// Windows of many worlds as three kernels: step all worlds, update all learners, close the windows.
+///
+/// Each kernel is a functor that the threads of a block call with the block's number. CUDA and the emulation run the
+/// same ones.
+#pragma once
+
+#include "cuda/learning.h"
+#include "cuda/sense.h"
+#include "simulation/device.h"
+#include "simulation/window.h"
+
+namespace hedon {
+
+/// Threads of a block, also of the emulated ones unless a test asks for fewer.
+#if !defined(HEDON_BLOCK_THREADS)
+#define HEDON_BLOCK_THREADS 256
+#endif
+inline constexpr int32_t BLOCK_THREADS = HEDON_BLOCK_THREADS;
+static_assert(BLOCK_THREADS % 32 == 0 && BLOCK_THREADS / TILE <= DEVICE_MEMBERS);
+
+/// The value of the next observation of each learner, to which its last reward leads.
+HEDON_FN void bootstrap_by_block(Block& block, World& world, float* bootstrap) {
+  block.for_each_by_tile(count_taught(world), [&](int32_t i) {
+    const int32_t slot = world.state.living[i];
+    if (!world.species(slot).learns) return;
+    PackedObservation& next = world.observation(slot, world.shape->steps);
+    block.once_by_tile([&] { note_start(world, slot); });
+    observe_by_tile(block, world, slot, next);
+    float output[OUTPUTS];
+    output_of(block, world, slot, next, output);
+    if (thread_lane() == 0) bootstrap[i] = output[ACTIONS];
+  });
+}
+
+/// Advances world b by up to `steps` steps, which do not go past the end of its window.
+struct StepWorlds {
+  DeviceWorlds on;
+  int64_t steps;
+
+  static constexpr int64_t FLOATS = int64_t{BLOCK_THREADS} / TILE * SENSE_FLOATS;
+  HEDON_FN int32_t blocks() const { return on.count; }
+
+  HEDON_FN void operator()(int32_t b) const {
+    Block block;
+    World& world = on.worlds[b];
+    if (world.over()) return;
+    block.once([&] { prepare_step(world); });
+    for (int64_t i = 0; i < steps && !world.over(); ++i)
+      step(block, world, world.head().step % world.shape->steps, [](Part) {});
+    if (world.over() || world.head().step % world.shape->steps != 0) return;
+    bootstrap_by_block(block, world, on.bootstrap + int64_t{b} * world.shape->capacity);
+  }
+};
+
+/// Updates the learners of all worlds, in blocks that each take every n-th one.
+struct LearnWorlds {
+  DeviceWorlds on;
+
+  HEDON_FN int32_t blocks() const { return on.learners_at_once; }
+
+  HEDON_FN void operator()(int32_t b) const {
+    const Block block;
+    const int32_t capacity = on.worlds[0].shape->capacity;
+    // The first learners of all worlds, then the second ones, and so on: every block has as many, more or less.
+    for (int32_t i = b; i < on.count * capacity; i += blocks()) {
+      const World& world = on.worlds[i % on.count];
+      const int32_t rank = i / on.count;
+      if (world.over() || rank >= world.head().living_count) continue;
+      const int32_t slot = world.state.living[rank];
+      const Species& species = world.species(slot);
+      if (!species.learns || world.state.life[slot].birth_step > world.head().step - world.shape->steps) continue;
+      const float value = on.bootstrap[int64_t{i % on.count} * capacity + rank];
+      learn_by_block(block, species.network, own_learning(world, slot), rollout_of(world, slot, value),
+                     minibatch_stream(world, slot), on.scratch + b * on.scratch_stride, learner_of(world, slot),
+                     world.network(slot));
+      block.barrier();
+    }
+  }
+};
+
+/// Closes the window of world b, checks the world, and begins the next window.
+struct CloseWindows {
+  DeviceWorlds on;
+
+  static constexpr int64_t FLOATS = 0;
+  HEDON_FN int32_t blocks() const { return on.count; }
+
+  HEDON_FN void operator()(int32_t b) const {
+    Block block;
+    World& world = on.worlds[b];
+    if (world.over()) return;
+    block.once([&] { close_window(world, count_taught(world)); });
+    audit(block, world);
+  }
+};
+
+/// Fills the table of what single threads call, whose addresses the host does not know.
+struct FillKernel {
+  Kernel* kernel;
+
+  static constexpr int64_t FLOATS = 0;
+  HEDON_FN int32_t blocks() const { return 1; }
+  HEDON_FN void operator()(int32_t) const {
+    if (thread_rank() == 0) kernel->pack_weights = pack_weights_alone;
+  }
+};
+
+/// Floats of shared memory that the updates of these worlds need.
+inline int64_t learning_floats(const DeviceWorlds& on) {
+  int64_t most = 0;
+  for (int32_t s = 0; s < on.species; ++s) {
+    const int64_t floats = learning_layout(on.params[s]).total;
+    most = floats > most ? floats : most;
+  }
+  return most;
+}
+
+/// Advances all worlds. `launch(kernel, floats)` runs a kernel after those before it.
+template <class Launch>
+void advance_worlds(const DeviceWorlds& on, int64_t step, int64_t steps, Launch&& launch) {
+  while (steps > 0) {
+    const int64_t left = on.window - step % on.window;
+    const int64_t stretch = left < steps ? left : steps;
+    launch(StepWorlds{on, stretch}, StepWorlds::FLOATS);
+    step += stretch;
+    steps -= stretch;
+    if (stretch < left) continue;
+    if (on.learning) launch(LearnWorlds{on}, learning_floats(on));
+    launch(CloseWindows{on}, CloseWindows::FLOATS);
+  }
+}
+
+}  // namespace hedon

@@ -1,0 +1,42 @@
+"""Devices that can advance worlds instead of the processor: which there are, and the libraries that drive them."""
+
+import os
+from pathlib import Path
+
+from hedon import _engine
+from hedon.error import EngineError
+
+DEVICES = ("cuda",)
+"""Names of devices, as `hedon run --device` has them; in the manifest they stand where instruction sets do."""
+EMULATED = "cuda-emulated"
+"""The same kernels on the processor, thread by thread: only for tests, which build its library."""
+EMULATION_VARIABLE = "HEDON_CUDA_EMULATION"
+"""Environment variable with the file of that library."""
+LIBRARY = "_cuda.so"
+"""The library of the device, beside the engine; docs/gpu.md says how to build it."""
+
+
+def is_device(kernel: str) -> bool:
+    """Whether this is the name of a device, not of an instruction set."""
+    return kernel in (*DEVICES, EMULATED)
+
+
+def device_library(kernel: str) -> str:
+    """The file of the library for a device; empty for an instruction set.
+
+    Raises:
+        EngineError: There is no such file.
+    """
+    if not is_device(kernel):
+        return ""
+    if kernel == EMULATED:
+        path = Path(os.environ.get(EMULATION_VARIABLE, ""))
+        if not path.is_file():
+            raise EngineError(f"{EMULATED} is for tests: {EMULATION_VARIABLE} must name its library")
+        return str(path.resolve())
+    path = Path(_engine.__file__).with_name(LIBRARY)
+    if not path.is_file():
+        raise EngineError(
+            f"device {kernel}: its library is not built, so it cannot be used: see docs/gpu.md, or leave --device out"
+        )
+    return str(path)

@@ -1,0 +1,21 @@
+"""`hedon run --device`: what is said where there is no device."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+
+def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["hedon", *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(
+    ("device", "expected"), [("cuda", "device cuda: "), ("cdua", "--device: 'cdua' is none of: cpu, cuda")]
+)
+def test_without_a_device_one_sentence_is_said(tmp_path: Path, device: str, expected: str):
+    answer = call("run", "baseline", "--device", device, "--out", tmp_path / "run")
+    assert answer.returncode == 2
+    assert expected in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert not (tmp_path / "run").exists()

@@ -1,0 +1,152 @@
+"""Windows on an emulated CUDA device have the bits of AVX2: every preset, many worlds, scenes made to be difficult.
+
+The kernels sum in the order of the CPU's, so equality is exact: of all state, after steps, learning and the audit.
+"""
+
+import platform
+
+import numpy as np
+import pytest
+from cuda_emulation import emulated as emulated
+from worlds import QUICK, RELEASED, make_simulation, set_scene
+
+from hedon.error import EngineError
+from hedon.experiment.simulation import Simulation
+
+pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
+
+SHORT = ("learning.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
+FEW = ("population.capacity=24", "population.initial_count=12")
+
+
+def pair(emulated: str, *overrides: str, preset: str = "baseline", seeds: tuple[int, ...] = (1,)):
+    return tuple(
+        make_simulation(*overrides, preset=preset, seeds=seeds, kernel=kernel) for kernel in ("avx2", emulated)
+    )
+
+
+def require_equal(one: Simulation, other: Simulation) -> None:
+    """Fails with the names of the arrays that differ."""
+    for index in range(len(one.seeds)):
+        a, b = one.engine.save(index), other.engine.save(index)
+        assert [name for name in a if a[name].tobytes() != b[name].tobytes()] == []
+        assert one.worlds[index].digest() == other.worlds[index].digest()
+
+
+PRESETS = ("baseline", "small", "poison", "relocation", "seasons", "predator", "prey-alone", "predator-square")
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_presets_have_the_same_bits(emulated: str, preset: str):
+    """A window with its learning and the beginning of the next, in pieces that end anywhere."""
+    one, other = pair(emulated, *SHORT, preset=preset)
+    for steps in (3, 14):
+        one.run(steps)
+        other.run(steps)
+        require_equal(one, other)
+
+
+@pytest.mark.parametrize("worlds", [2, 16])
+def test_any_number_of_worlds_has_the_same_bits(emulated: str, worlds: int):
+    one, other = pair(emulated, *SHORT, *FEW, seeds=tuple(range(1, worlds + 1)))
+    one.run(20)
+    other.run(20)
+    require_equal(one, other)
+
+
+def test_the_released_rules_have_the_same_bits(emulated: str):
+    one, other = pair(emulated, *RELEASED, *SHORT, *FEW)
+    one.run(34)
+    other.run(34)
+    require_equal(one, other)
+
+
+@pytest.mark.parametrize("weights", ["float32", "bfloat16"])
+def test_minibatches_of_several_blocks_with_a_rest(emulated: str, weights: str):
+    """80 samples: a block of 64, and one of 16."""
+    settings = ("learning.rollout_steps=160", "learning.minibatch_size=80", "learning.update_epochs=1")
+    acting = f'learning.acting_weights="{weights}"'
+    one, other = pair(emulated, *settings, acting, "population.capacity=8", "population.initial_count=4")
+    one.run(161)
+    other.run(161)
+    require_equal(one, other)
+
+
+def crowd(rng: np.random.Generator, count: int, width: float) -> np.ndarray:
+    """Agents so near to one another that all of them touch."""
+    place = 240.0 + width * (rng.random((count, 2)) - 0.5)
+    return np.column_stack([place, rng.uniform(0, 2 * np.pi, count)])
+
+
+def outcome(simulation: Simulation, steps: int) -> str:
+    """Runs, and returns the fault that ended it."""
+    try:
+        simulation.run(steps)
+    except EngineError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize(("solver", "width", "fault"), [("sequential", 90.0, True), ("jacobi", 200.0, False)])
+def test_crowds_at_walls_and_on_food_have_the_same_bits(emulated: str, solver: str, width: float, fault: bool):
+    """Overlaps, rows of touching bodies, a corner, foods in a mouth: what takes lists and islands to their limits, and
+    in the narrower crowd beyond them."""
+    rng = np.random.default_rng(3)
+    row = np.column_stack([np.arange(20) * 19.0 + 30.0, np.full(20, 11.0), np.full(20, np.pi / 2)])
+    agents = np.concatenate([crowd(rng, 30, width), row])
+    foods = 240.0 + 120.0 * (rng.random((20, 2)) - 0.5)
+    one, other = pair(emulated, *SHORT, f'physics.solver="{solver}"', "food.normal.capacity=40")
+    ends = []
+    for simulation in (one, other):
+        set_scene(simulation, agents, foods)
+        ends.append(outcome(simulation, 20))
+    assert ends[0] == ends[1]
+    assert bool(ends[0]) == fault
+    require_equal(one, other)
+
+
+def test_a_world_that_dies_out_stops_alone(emulated: str):
+    one, other = pair(emulated, *SHORT, *FEW, seeds=(1, 2, 3))
+    for simulation in (one, other):
+        set_scene(simulation, [[100.0, 100.0, 0.0]], energy=1e-3)
+        simulation.engine.run(40)
+    require_equal(one, other)
+    assert [w.step for w in one.worlds] == [w.step for w in other.worlds]
+
+
+def test_not_a_number_is_found_where_the_processor_finds_it(emulated: str):
+    """An infinite learning rate is not allowed; an advantage that is not finite comes from a reward that is not."""
+    messages = []
+    for simulation in pair(emulated, *SHORT, *FEW):
+        saved = simulation.engine.save(0)
+        saved["params"] = saved["params"].copy()
+        saved["params"][3, 70] = 3e38  # finite, so it may be restored; its activations are not, and the audit says so
+        saved["params"][3, -16:-13] = 3e38
+        simulation.engine.restore(0, saved)
+        with pytest.raises(EngineError, match="not_finite") as raised:
+            simulation.run(64)
+        messages.append(str(raised.value).split(", value")[0])
+    assert messages[0] == messages[1]
+
+
+def test_what_a_device_cannot_do_is_refused(emulated: str):
+    with pytest.raises(EngineError, match="actions of a program"):
+        make_simulation('learning.policy="external"', kernel=emulated)
+    many = [f"food.kind{i}.energy=1" for i in range(6)]
+    with pytest.raises(EngineError, match=r"have \d+ inputs, and device 'cuda-emulated' learns with at most \d+"):
+        make_simulation(*many, "sensor.touch_sectors=14", kernel=emulated)
+
+
+def test_views_and_rows_are_those_of_the_device(emulated: str):
+    one, other = pair(emulated, *QUICK, *FEW, "hazard.alpha_age=0.005")
+    for simulation in (one, other):
+        simulation.run(64)
+    for name in ("params", "observation", "physics.bodies.x", "life.energy", "genome"):
+        np.testing.assert_array_equal(one.worlds[0].view(name), other.worlds[0].view(name))
+    deaths, same = one.worlds[0].deaths(), other.worlds[0].deaths()
+    assert len(deaths["agent_id"]) > 0
+    for name, column in deaths.items():
+        np.testing.assert_array_equal(column, same[name])
+    for simulation in (one, other):
+        simulation.run(10)
+    np.testing.assert_array_equal(one.worlds[0].deaths()["agent_id"], other.worlds[0].deaths()["agent_id"])

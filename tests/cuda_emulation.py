@@ -1,0 +1,59 @@
+"""The kernels of CUDA on the processor: builds the library of the emulation, and names it to hedon."""
+
+import hashlib
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from project_files import ROOT
+
+from hedon.experiment.device import EMULATED, EMULATION_VARIABLE
+
+SOURCES = ("engine/cuda/emulation.cpp", "engine/cuda/emulator.cpp")
+OPTIONS = (
+    "-std=c++20",
+    "-O2",
+    "-mavx2",
+    "-mfma",  # so that a fused multiply-add is one instruction
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fvisibility=hidden",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-fPIC",
+    "-shared",
+)
+THREADS = 64
+"""Threads of an emulated block: few, since each barrier goes through all of them. A device has 256."""
+
+
+def build(threads: int = THREADS) -> Path:
+    """The library; built again only if a source has changed. `HEDON_SANITIZE` names a sanitizer."""
+    sanitizer = os.environ.get("HEDON_SANITIZE", "")
+    options = [*OPTIONS, f"-DHEDON_BLOCK_THREADS={threads}"]
+    if sanitizer:  # sanitizers know the system's threads, not the emulator's fibers
+        options += [f"-fsanitize={sanitizer}", "-g", "-DHEDON_SYSTEM_THREADS"]
+    content = hashlib.sha256(" ".join(options).encode())
+    for path in sorted([*(ROOT / "engine").rglob("*.h"), *(ROOT / "engine" / "cuda").glob("*.cpp")]):
+        content.update(path.read_bytes())
+    library = ROOT / "build" / f"cuda-emulated-{content.hexdigest()[:16]}.so"
+    if not library.exists():
+        library.parent.mkdir(exist_ok=True)
+        part = library.with_suffix(f".{os.getpid()}")
+        command = ["c++", *options, f"-I{ROOT / 'engine'}", *(str(ROOT / source) for source in SOURCES)]
+        subprocess.run([*command, "-o", str(part)], check=True)
+        part.rename(library)
+    return library
+
+
+@pytest.fixture
+def emulated(monkeypatch: pytest.MonkeyPatch) -> str:
+    """The name of the emulated device, ready for `Simulation(kernel=…)`."""
+    monkeypatch.setenv(EMULATION_VARIABLE, str(build()))
+    return EMULATED
+
+
+if __name__ == "__main__":
+    print(build())
