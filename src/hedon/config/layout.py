@@ -209,6 +209,20 @@ def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
     }
 
 
+def hunted(config: Config) -> str:
+    """The first species that another one eats.
+
+    Raises:
+        StopIteration: no species is eaten by another.
+    """
+    return next(name for name in config.species if hunters(config, name))
+
+
+def hunters(config: Config, name: str) -> tuple[str, ...]:
+    """The other species that eat a species, in order."""
+    return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
+
+
 def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     """The types that a list of names stands for, in order; walls and obstacles are always among them."""
     every = types(config)

@@ -34,6 +34,7 @@ class WorldRecord:
         population: its rows of the table `population`, by step.
         last_step: up to which the records reach [step].
         extinct_step: at which nobody was left [step]; None while somebody lives.
+        apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
     """
 
     condition: str
@@ -47,6 +48,7 @@ class WorldRecord:
     population: pl.DataFrame
     last_step: int
     extinct_step: int | None
+    apart_step: int | None = None
 
     @property
     def weight_names(self) -> tuple[str, ...]:
@@ -83,7 +85,8 @@ class WorldRecord:
             agents=born.with_columns(pl.when(~died_later).then(pl.col(later))),
             population=self.population.filter(pl.col("step") <= step),
             last_step=step,
-            extinct_step=None if self.extinct_step is None or self.extinct_step > step else self.extinct_step,
+            extinct_step=_by(step, self.extinct_step),
+            apart_step=_by(step, self.apart_step),
         )
 
 
@@ -130,6 +133,10 @@ def generator(world: WorldRecord) -> np.random.Generator:
     return np.random.default_rng([SEED, world.seed])
 
 
+def _by(end: int, step: int | None) -> int | None:
+    return None if step is None or step > end else step
+
+
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
     config = load_config(str(run.path / CONFIG))
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
@@ -143,7 +150,13 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
         rewards = tuple(gene for gene in run.reward_names if gene in layout.gene_names)
         mine, rows = (table.filter(own).drop(dropped, strict=False) for table in (agents, population))
         worlds += _records(run, f"{condition}: {name}", of_species(config, name), mine, rows, rewards)
-    return worlds
+    return [replace(world, apart_step=_apart(world, worlds)) for world in worlds]
+
+
+def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
+    """When the first of the other species of a world was gone [step]."""
+    others = [each for each in every if each.seed == world.seed and each is not world]
+    return min((gone for each in others if (gone := extinct_step(each.population)) is not None), default=None)
 
 
 def _records(

@@ -23,6 +23,7 @@ from hedon.analysis.world.population import last_generation, mean_alive, run_tai
 from hedon.analysis.world.record import WorldRecord
 from hedon.demography.life import cumulative_hazard
 from hedon.replication.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP, LIFESPAN, PAPER, SEEDS, STEPS
+from hedon.statistic.interval import LEVEL
 
 SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 14"
 SAME_FACTOR = 1.5
@@ -42,6 +43,10 @@ Measure = Callable[[WorldRecord], float | None]
 
 OverWorlds = Literal["mean", "ratio", "spread", "distance", "share", "extinction", "modes", "walk", "setting"]
 """How the figures of several worlds are summed up."""
+
+
+Role = Literal["", "hunted"]
+"""Which of a world's species a claim is about."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,10 @@ class Claim:
         steps: that a world must have lived through to count [step].
         paper_count: worlds of the paper that have it, and all of its worlds, for shares; None where it gives no
             such number.
+        level: of the interval that decides.
+        role: the species that is asked: "hunted", which another one eats; empty where there is only one.
+        together: whether worlds count only as long as none of their species has died out.
+        source: where it stands.
     """
 
     name: str
@@ -77,6 +86,10 @@ class Claim:
     steps: int = STEPS
     costs: tuple[float, float] | None = None
     paper_count: tuple[int, int] | None = None
+    level: float = LEVEL
+    role: Role = ""
+    together: bool = False
+    source: str = SOURCE
 
 
 def score(weight: str, world: WorldRecord) -> float | None:

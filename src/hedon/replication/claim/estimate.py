@@ -55,7 +55,7 @@ def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Es
         return _walk(figures)
     if claim.over_worlds == "share":
         count = int(np.count_nonzero(figures > 0))
-        return Estimate(count / len(figures), *share_interval(count, len(figures)))
+        return Estimate(count / len(figures), *share_interval(count, len(figures), claim.level))
     if claim.over_worlds == "setting":
         value = float(figures[0])
         return Estimate(value, value, value)

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.gene.weight import last_mean
-from hedon.replication.claim.claim import WEIGHTS, Measure, lifetime_of_dead
+from hedon.replication.claim.claim import SOURCE, WEIGHTS, Measure, Role, lifetime_of_dead
 from hedon.replication.paper import PAPER, STEPS
 from hedon.statistic.contrast import difference_interval, spread_ratio_interval
+from hedon.statistic.interval import LEVEL
 
 MUCH = 3.0
 """Much longer (≫ in the paper) is read as at least this many times as long; the paper's own ratios are 12 and 13."""
@@ -37,6 +38,8 @@ class Order:
         paper: what the paper reports.
         low, high: the region of the comparison in which the claim holds.
         steps: that a world must have lived through to count [step].
+        level: of the interval that decides.
+        role, together, source: as for `Claim`.
     """
 
     name: str
@@ -49,16 +52,22 @@ class Order:
     low: float = -math.inf
     high: float = math.inf
     steps: int = STEPS
+    level: float = LEVEL
+    role: Role = ""
+    together: bool = False
+    source: str = SOURCE
 
 
-def compare(scale: Scale, values: NDArray[np.float64], others: NDArray[np.float64]) -> tuple[float, float, float]:
-    """The comparison of two groups with its 95 % interval; two values or more in each, above 0 for a "ratio"."""
+def compare(
+    scale: Scale, values: NDArray[np.float64], others: NDArray[np.float64], level: float = LEVEL
+) -> tuple[float, float, float]:
+    """The comparison of two groups with its interval; two values or more in each, above 0 for a "ratio"."""
     if scale == "spread":
-        return spread_ratio_interval(values, others)
+        return spread_ratio_interval(values, others, level)
     if scale == "ratio":
-        value, low, high = (math.exp(x) for x in difference_interval(np.log(values), np.log(others)))
+        value, low, high = (math.exp(x) for x in difference_interval(np.log(values), np.log(others), level))
         return value, low, high
-    return difference_interval(values, others)
+    return difference_interval(values, others, level)
 
 
 def _orders() -> Iterator[Order]:

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from hedon.analysis.world.extinction import world_extinction
 from hedon.analysis.world.record import WorldRecord, by_condition
-from hedon.config import Config, digest, load_config
-from hedon.replication.claim.claim import CLAIMS, SOURCE, Claim
+from hedon.config import digest, load_config
+from hedon.config.layout import hunted, of_species
+from hedon.replication.claim.claim import CLAIMS, SOURCE, Claim, Role
 from hedon.replication.claim.estimate import Estimate, estimate
 from hedon.replication.claim.order import ORDERS, Order, compare
+from hedon.replication.claim.sequel import SEQUEL_CLAIMS, SEQUEL_ORDERS
 from hedon.statistic.contrast import fisher_mid_p
 
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
@@ -71,7 +73,9 @@ class Verdict:
 
 
 def verdicts(
-    worlds: Iterable[WorldRecord], claims: Sequence[Claim] = CLAIMS, orders: Sequence[Order] = ORDERS
+    worlds: Iterable[WorldRecord],
+    claims: Sequence[Claim] = (*CLAIMS, *SEQUEL_CLAIMS),
+    orders: Sequence[Order] = (*ORDERS, *SEQUEL_ORDERS),
 ) -> list[Verdict]:
     """A verdict for each condition and each claim that is about it, then for each pair and each claim about two.
 
@@ -83,13 +87,13 @@ def verdicts(
         judge(claim, condition, group)
         for condition, group in groups.items()
         for claim in claims
-        if digest(group[0].config) == _claim_digest(claim.preset, group[0].config.fidelity, claim.costs)
+        if digest(group[0].config) == _claim_digest(claim.preset, group[0].config.fidelity, claim.costs, claim.role)
     ]
     pairs = [
         judge_order(order, first, second)
         for order in orders
-        for first in _of_preset(order.first, groups.values())
-        for second in _of_preset(order.second, groups.values())
+        for first in _of_preset(order.first, order.role, groups.values())
+        for second in _of_preset(order.second, order.role, groups.values())
         if first[0].config.fidelity == second[0].config.fidelity
     ]
     return found + pairs
@@ -99,7 +103,7 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     """Applies a claim's rule to worlds of one condition."""
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
-    used, shortfall, remarks = _asked(claim.steps, worlds)
+    used, shortfall, remarks = _asked(claim, worlds)
     figures = _figures(claim, used)
     found = estimate(claim, figures, used)
     name = found.verdict or place(found.low, found.high, claim.low, claim.high)
@@ -120,12 +124,12 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     """Applies the rule of a claim about two conditions to worlds of both."""
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
-        used, shortfall, said = _asked(order.steps, worlds)
+        used, shortfall, said = _asked(order, worlds)
         parts.append(_figures(order, used))
         remarks += [f"{worlds[0].condition}: {remark}" for remark in said]
         shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
     fewest = min(map(len, parts))
-    value, low, high = compare(order.scale, *parts) if fewest > 1 else (math.nan,) * 3
+    value, low, high = compare(order.scale, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
     why = CROSSES if name == UNDECIDED else ""
     if fewest < FEWEST_WORLDS:
@@ -163,16 +167,19 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     return _verdict(claim, condition, name, figure, p, against, found.worlds, reasons)
 
 
-def _asked(steps: int, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
+def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
     """The worlds to ask, why they may not decide, and who was left out.
 
     Extinct worlds are left out, as the paper replaced them. Where some worlds are long enough, only these are asked.
     """
+    steps, remarks, shortfall = claim.steps, list[str](), ""
     living = [world for world in worlds if world.extinct_step is None]
-    long_enough = [world for world in living if world.last_step >= steps]
-    remarks, shortfall = [], ""
     if gone := len(worlds) - len(living):
         remarks.append(f"{gone} extinct left out, as in the paper")
+    if claim.together and (lone := sum(world.apart_step is not None for world in living)):
+        living = [world for world in living if world.apart_step is None]
+        remarks.append(f"{lone} left out where another species died out")
+    long_enough = [world for world in living if world.last_step >= steps]
     if living and not long_enough:
         shortfall = f"the worlds reach {max(world.last_step for world in living):,} of {steps:,} steps"
     elif short := len(living) - len(long_enough):
@@ -220,21 +227,20 @@ def _verdict(
         claim.text,
         claim.low,
         claim.high,
+        claim.source,
     )
 
 
-def _of_preset(preset: str, groups: Iterable[Sequence[WorldRecord]]) -> list[Sequence[WorldRecord]]:
-    """The groups of worlds that have a preset's settings, with any fidelity."""
-    return [group for group in groups if digest(group[0].config) == _preset_digest(preset, group[0].config)]
-
-
-def _preset_digest(preset: str, config: Config) -> str:
-    return _claim_digest(preset, config.fidelity, None)
+def _of_preset(preset: str, role: Role, groups: Iterable[Sequence[WorldRecord]]) -> list[Sequence[WorldRecord]]:
+    """The groups of worlds that have a preset's settings, with any fidelity; of the species with a role."""
+    return [g for g in groups if digest(g[0].config) == _claim_digest(preset, g[0].config.fidelity, None, role)]
 
 
 @cache
-def _claim_digest(preset: str, fidelity: str, costs: tuple[float, float] | None) -> str:
+def _claim_digest(preset: str, fidelity: str, costs: tuple[float, float] | None, role: Role) -> str:
     config = load_config(preset, fidelity)
+    if role:
+        config = of_species(config, hunted(config))
     if costs is not None:
         config = replace(config, energy=replace(config.energy, basic_cost=costs[0], action_cost=costs[1]))
     return digest(config)
