@@ -26,7 +26,7 @@ def test_the_stores_follow_their_equations():
     )
     world = simulation.worlds[0]
     nutrient, toxin = np.full(world.alive, 40.0), np.zeros(world.alive)
-    before = world.agents()
+    before = now = world.agents()
     capped = 0
     for _ in range(150):
         simulation.run(1)

@@ -43,7 +43,8 @@ def within(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Whether points (p, 2) lie in a polygon (c, 2) whose corners run clockwise."""
     side = np.roll(corners, -1, axis=0) - corners
     from_corner = points[:, None] - corners[None]
-    return (from_corner[..., 0] * side[:, 1] - from_corner[..., 1] * side[:, 0] >= 0).all(axis=1)
+    turn = from_corner[..., 0] * side[:, 1] - from_corner[..., 1] * side[:, 0]
+    return np.array([row.min() >= 0 for row in turn])
 
 
 def test_obstacles_are_regular_apart_and_inside():

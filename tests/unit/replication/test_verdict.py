@@ -177,7 +177,7 @@ def test_conditions_are_compared(worlds: list[WorldRecord]) -> None:
         return figures[world.condition][world.seed - 1]
 
     def rule(scale: Scale, **region: Any) -> Order:
-        return Order("a", "small", "large", "text", measure, scale, "0", **({"steps": 0} | region))
+        return Order("a", "small", "large", "text", measure, scale, "0", **dict[str, Any]({"steps": 0} | region))
 
     longer = judge_order(rule("ratio", low=2.0), second, first)
     assert (longer.verdict, longer.condition, longer.worlds) == ("holds", "two against one", 10)

@@ -14,10 +14,10 @@ from hedon.replication.item.condition import BASELINE
 from hedon.replication.item.item import Arm, Item, Material
 
 CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "parameters_physics": ("Bodies and physics", ("arena", "body", "physics")),
+    "parameters_physics": ("Bodies and physics", ("arena", "body", "physics", "obstacle")),
     "parameters_sense": ("Motors and senses", ("motor", "sensor")),
     "parameters_food": ("Food", ("food", "diet")),
-    "parameters_life": ("Energy, birth and death", ("population", "energy", "hazard", "birth")),
+    "parameters_life": ("Energy, birth and death", ("population", "energy", "nutrient", "toxin", "hazard", "birth")),
     "parameters_evolution": ("Genome and reward", ("genome", "reward")),
     "parameters_learning": ("Learning", ("learning",)),
 }
