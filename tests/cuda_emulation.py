@@ -29,12 +29,16 @@ THREADS = 64
 """Threads of an emulated block: few, since each barrier goes through all of them. A device has 256."""
 
 
-def build(threads: int = THREADS) -> Path:
-    """The library; built again only if a source has changed. `HEDON_SANITIZE` names a sanitizer."""
-    sanitizer = os.environ.get("HEDON_SANITIZE", "")
+def build(threads: int = THREADS, *, system_threads: bool = False) -> Path:
+    """The library; built again only if a source has changed.
+
+    Args:
+        threads: Of a block.
+        system_threads: They are threads of the system, which run at the same time, and not fibers in turn.
+    """
     options = [*OPTIONS, f"-DHEDON_BLOCK_THREADS={threads}"]
-    if sanitizer:  # sanitizers know the system's threads, not the emulator's fibers
-        options += [f"-fsanitize={sanitizer}", "-g", "-DHEDON_SYSTEM_THREADS"]
+    if system_threads:
+        options += ["-DHEDON_SYSTEM_THREADS", "-pthread"]
     content = hashlib.sha256(" ".join(options).encode())
     for path in sorted([*(ROOT / "engine").rglob("*.h"), *(ROOT / "engine" / "cuda").glob("*.cpp")]):
         content.update(path.read_bytes())

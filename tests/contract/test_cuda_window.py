@@ -7,10 +7,12 @@ import platform
 
 import numpy as np
 import pytest
+from cuda_emulation import build
 from cuda_emulation import emulated as emulated
 from worlds import QUICK, RELEASED, make_simulation, set_scene
 
 from hedon.error import EngineError
+from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.simulation import Simulation
 
 pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
@@ -44,6 +46,32 @@ def test_presets_have_the_same_bits(emulated: str, preset: str):
         one.run(steps)
         other.run(steps)
         require_equal(one, other)
+
+
+MECHANISMS = {
+    "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.smell.normal.coef=0.1"),
+    "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.see.obstacle.over_rays=max"),
+    "inner": ("food.normal.nutrient=1", "food.normal.toxin=5", "reward.relief_coef=1", "sensor.mouth_spread=180"),
+    "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
+}
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_mechanisms_have_the_same_bits(emulated: str, name: str):
+    one, other = pair(emulated, *SHORT, *FEW, *MECHANISMS[name])
+    one.run(35)
+    other.run(35)
+    require_equal(one, other)
+
+
+def test_threads_that_run_at_the_same_time_have_the_same_bits(emulated: str, monkeypatch: pytest.MonkeyPatch):
+    """A barrier that is missing shows where fibers, which take turns, would hide it."""
+    monkeypatch.setenv(EMULATION_VARIABLE, str(build(32, system_threads=True)))
+    short = ("learning.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
+    one, other = pair(emulated, *short, "population.capacity=6", "population.initial_count=4")
+    one.run(5)
+    other.run(5)
+    require_equal(one, other)
 
 
 @pytest.mark.parametrize("worlds", [2, 16])
