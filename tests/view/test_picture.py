@@ -55,6 +55,18 @@ def show_meals(watched):
     watched.until("hedon.source.kept >= 0")
 
 
+def show_twin(watched):
+    """The same world with five times the cost of living beside it."""
+    live(watched, 64)
+    watched.get("hedon.tab('world-panel')")
+    watched.page.locator("#twin-setting").select_option("energy.basic_cost")
+    watched.page.locator("#twin-value").fill("0.005")
+    watched.page.locator("#twin-begin").click()
+    watched.until("hedon.twin.live && hedon.now > 900")
+    watched.get("hedon.play(false)")
+    watched.until("!hedon.source.busy && !hedon.twin.live.busy")
+
+
 def show_settings(watched):
     live(watched, 384)
     watched.get("document.documentElement.dataset.theme = 'dark'")
@@ -74,6 +86,7 @@ def show_plots(watched):
 VIEWS = {
     "view": ("live", show_agent),
     "view-world": ("live", show_meals),
+    "view-twin": ("live", show_twin),
     "view-settings": ("live", show_settings),
     "view-plots": ("site", show_plots),
 }

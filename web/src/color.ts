@@ -82,6 +82,7 @@ export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uin
     if (value > high) high = value;
   }
   if (coloring.low !== undefined) low = coloring.low;
+  if (coloring.high !== undefined) high = coloring.high;
   if (coloring.scale === "diverging") [low, high] = [-Math.max(-low, high, 1e-6), Math.max(-low, high, 1e-6)];
   const stops = coloring.scale === "diverging" ? DIVERGING : RAMP;
   const table = Uint32Array.from({ length: 256 }, (_, i) => pack(along(stops, i / 255)));

@@ -13,7 +13,8 @@ import { Replay } from "./replay";
 import { command, Settings } from "./settings";
 import { events, Timeline } from "./timeline";
 import { Tools } from "./tools";
-import type { Event, Frame, LiveWorld, Source } from "./types";
+import { Twin } from "./twin";
+import type { Event, Frame, LiveWorld, Setting, Source } from "./types";
 
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
 const PICTURE_MS = 13; // of work for a live world between two pictures
@@ -22,6 +23,7 @@ const PANELS = ["agent", "plots", "settings", "world-panel"];
 
 export class App {
   readonly arena = new Arena(by<HTMLCanvasElement>("scene"));
+  readonly twin = new Twin();
   source!: Source;
   frame: Frame | undefined;
   chosen = -1;
@@ -92,7 +94,7 @@ export class App {
   step(by: number): void {
     this.play(false);
     if (this.source instanceof Live && by > 0 && this.now >= this.source.last) {
-      this.source.advance(by, 4000);
+      for (const each of this.running()) each.advance(by, 4000);
       this.now = Infinity;
       return;
     }
@@ -104,7 +106,7 @@ export class App {
   play(on: boolean): void {
     this.playing = on;
     by("play").textContent = on ? "Pause" : "Play";
-    if (!on && this.source instanceof Live) this.source.look();
+    if (!on) for (const each of this.running()) each.look();
   }
 
   faster(by_: number): void {
@@ -132,6 +134,19 @@ export class App {
     }
   }
 
+  /** The live worlds that are shown: one, or two side by side. */
+  private running(): Live[] {
+    return [this.source, this.twin.live].filter((each) => each instanceof Live);
+  }
+
+  /** Begins the world again, and beside it the same one with a setting changed. */
+  private beside(first: Live, setting: Setting, value: string): void {
+    const again = new Live(first.world, first.changes, first.seed);
+    this.watch(again);
+    this.twin.open(again, setting, value);
+    this.tab("world-panel");
+  }
+
   private start(world: LiveWorld, changes: Map<string, string>, seed: number): void {
     this.watch(new Live(world, changes, seed));
     new Settings(world, seed, (other, next) => this.start(world, other, next), changes);
@@ -140,6 +155,7 @@ export class App {
 
   private watch(source: Source): void {
     if (this.source instanceof Live) this.source.close();
+    this.twin.close();
     [this.source, this.chosen, this.frame, this.now] = [source, -1, undefined, source.first];
     if (!source.live) by("settings").replaceChildren(element("p", { text: "Settings can be changed in a live world: choose one above." }));
     const colors = colorings(source);
@@ -149,7 +165,8 @@ export class App {
       this.coloring = colors.find((each) => each.name === by<HTMLSelectElement>("color").value) ?? colors[0]!;
     };
     this.plots = new Plots(source, (step) => this.seek(step));
-    this.tools = new Tools(source instanceof Live ? source : undefined);
+    const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
+    this.tools = new Tools(source instanceof Live ? source : undefined, beside, () => this.twin.close());
     this.panel.forget();
     this.setSpeed(4);
     this.arena.fit(source);
@@ -169,6 +186,7 @@ export class App {
     if (!this.playing) this.skipped = 0;
     else if (this.frame && shown !== undefined && this.frame.step > shown) this.skipped = this.frame.step - shown - 1;
     const legend = this.arena.draw(this.source, this.frame, this.coloring, this.chosen);
+    this.twin.draw(this.arena, this.now, this.coloring, legend);
     if (this.frame) this.pictures++;
     const time = performance.now();
     if (time >= this.panelsDue) {
@@ -181,11 +199,17 @@ export class App {
   private move(): void {
     const { source } = this;
     if (source instanceof Live) {
-      if (this.playing || this.now > source.last) this.now = source.last;
+      const running = this.running();
+      const least = Math.min(...running.filter((each) => !each.over).map((each) => each.last), source.over ? Infinity : source.last);
+      if (this.playing || this.now > source.last) this.now = Math.min(least, Math.max(...running.map((each) => each.last)));
       if (!this.playing) return;
       this.owed = Math.min(this.owed + this.speed, this.speed + 1);
       if (this.owed < 1) return;
-      source.advance(Math.floor(this.owed), this.speed >= 256 ? 120 : PICTURE_MS);
+      // Of two worlds the faster one waits for the other.
+      for (const each of running) {
+        const steps = least + Math.floor(this.owed) - each.last;
+        if (steps > 0) each.advance(steps, this.speed >= 256 ? 120 : PICTURE_MS);
+      }
       this.owed %= 1;
     } else if (this.playing) {
       const ready = this.frame !== undefined || source.around(this.now).before === undefined;
@@ -204,7 +228,8 @@ export class App {
     const skipped = this.skipped > 0 ? `, ${show(Math.round(this.skipped))} steps skipped` : "";
     by("clock").textContent = `step ${show(Math.floor(this.now))} of ${show(source.last)}${population}${skipped}`;
     this.tools?.update();
-    if (!this.playing && source instanceof Live) source.look();
+    if (!this.playing) for (const each of this.running()) each.look();
+    if (source instanceof Live) this.twin.caption(source, this.now);
     by("notice").hidden = !(source instanceof Live && source.error);
     if (source instanceof Live && source.error) by("notice").textContent = source.error;
     if (legend) this.showLegend(legend);

@@ -2,8 +2,8 @@
 import { csvOf, save } from "./csv";
 import { by, element, option, show } from "./element";
 import type { Live } from "./live";
-import { configFile } from "./settings";
-import type { Source } from "./types";
+import { configFile, refusal } from "./settings";
+import type { Setting, Source } from "./types";
 
 export class Tools {
   private readonly host = by<HTMLDivElement>("world-panel");
@@ -12,7 +12,11 @@ export class Tools {
   private readonly refused = element("p", { class: "problem" });
   private readonly kept = element("p", { class: "quiet" });
 
-  constructor(private readonly live: Live | undefined) {
+  constructor(
+    private readonly live: Live | undefined,
+    beside: (setting: Setting, value: string) => void,
+    alone: () => void,
+  ) {
     if (!live) {
       this.host.replaceChildren(element("p", { text: "What was recorded cannot be changed: choose a live world above." }));
       return;
@@ -32,6 +36,8 @@ export class Tools {
       this.kept,
       element("h3", { text: "files" }),
       element("div", { class: "row" }, ...this.files(live)),
+      element("h3", { text: "side by side" }),
+      ...this.pair(live, beside, alone),
     );
     this.hand.append(option("choose", "chooses an agent"));
     live.layout.types.slice(0, live.layout.species.length + live.layout.foods.length).forEach((name, type) => {
@@ -55,6 +61,28 @@ export class Tools {
     this.back.disabled = this.live.kept < 0;
     this.back.textContent = this.live.kept < 0 ? "Go back" : `Go back to step ${show(this.live.kept)}`;
     this.kept.textContent = this.live.kept < 0 ? "Nothing is kept yet." : "";
+  }
+
+  private pair(live: Live, beside: (setting: Setting, value: string) => void, alone: () => void): HTMLElement[] {
+    const { settings } = live.world;
+    const [choice, value, wrong] = [element("select"), element("input"), element("p", { class: "problem" })];
+    [choice.id, value.id] = ["twin-setting", "twin-value"];
+    choice.append(...settings.map((setting) => option(setting.path, setting.path)));
+    const chosen = () => settings.find((setting) => setting.path === choice.value)!;
+    const fill = () => (value.value = live.changes.get(choice.value) ?? String(chosen().value));
+    choice.value = settings.find((setting) => setting.path.endsWith("energy.basic_cost"))?.path ?? choice.value;
+    choice.addEventListener("change", fill);
+    fill();
+    choice.setAttribute("aria-label", "The setting that differs");
+    value.setAttribute("aria-label", "Its value in the second world");
+    wrong.setAttribute("role", "alert");
+    const begin = this.button("twin-begin", "Begin both", () => {
+      wrong.textContent = refusal(chosen(), value.value);
+      if (!wrong.textContent) beside(chosen(), value.value);
+    });
+    const end = this.button("twin-end", "One world again", alone);
+    const said = "The world begins again, and beside it the same one, of the same seed, with this setting changed.";
+    return [element("p", { text: said, class: "quiet" }), choice, element("div", { class: "row" }, value, begin, end), wrong];
   }
 
   private files(live: Live): HTMLElement[] {
