@@ -1,4 +1,6 @@
-"""What does the sequel claim of prey that see predators? Each claim with its rule, written before any long run.
+"""What does the sequel claim of prey that see predators? Each claim with its rule.
+
+The rules were written before any run of full length, but after short assays and two worlds of 425,570 steps were read.
 
 Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992. A weight is
 read as its *score* in its world: where its mean ends among neutral genes of the same pedigree, in standard deviations
