@@ -6,8 +6,10 @@ HEDON_NODES sets how many times a node is killed.
 import os
 import threading
 import time
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sweep_case import assert_same_table, planned, sweep_file, table_of
@@ -43,8 +45,7 @@ def begun(place: Path) -> int:
 @pytest.mark.parametrize("kill", range(KILLS))
 def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
     monkeypatch.setenv("RAY_raylet_start_wait_time_s", "300")  # a busy machine needs more than the usual 30 s
-    from ray.cluster_utils import Cluster  # type: ignore[import-not-found]
-
+    Cluster: Any = import_module("ray.cluster_utils").Cluster
     plan, store = planned(sweep_file(tmp_path, STEPS), str(tmp_path / "ray"))
     place = tmp_path / "ray"
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})

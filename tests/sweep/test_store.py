@@ -4,7 +4,7 @@ import pytest
 from sweep_case import assert_goes_on_elsewhere
 
 from hedon.error import HedonError
-from hedon.sweep.store import PASSING, open_store
+from hedon.sweep.store import PASSING, UrlStore, open_store
 
 
 @pytest.fixture(params=["folder", "file", "memory"])
@@ -35,7 +35,8 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     def die(*_arguments: object, **_options: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(type(store._system), "mv", die)  # type: ignore[attr-defined]
+    assert isinstance(store, UrlStore)
+    monkeypatch.setattr(type(store._system), "mv", die)
     with pytest.raises(KeyboardInterrupt):
         store.write("a/b", b"new")
     assert [path.name for path in (tmp_path / "a").iterdir() if PASSING in path.name]

@@ -1,7 +1,7 @@
 """`hedon export`: the records of a run as files for other tools."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 import typer
 
@@ -44,7 +44,7 @@ def export(
       hedon export phylogeny runs/baseline-corrected-s1 --format newick
     """
     from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
-    from hedon.export.table import table_of, write_new, write_table
+    from hedon.export.table import TableFormat, table_of, write_new, write_table
     from hedon.record.reader import open_run
 
     formats = TREES if what == "phylogeny" else TABLES
@@ -57,7 +57,7 @@ def export(
     ending = {"alife": "csv", "newick": "nwk"}.get(chosen, chosen)
     target = out or Path(f"{run.resolve().name}-{what}.{ending}")
     if what != "phylogeny":
-        write_table(table_of(opened, what), chosen, target)  # type: ignore[arg-type]
+        write_table(table_of(opened, what), cast(TableFormat, chosen), target)
     else:
         agents = pedigree(opened, world, species)
         if chosen == "alife":

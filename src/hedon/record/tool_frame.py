@@ -26,10 +26,7 @@ def require_frame(name: Any) -> None:
         hint = f"; did you mean {close[0]!r}?" if close else ""
         raise ArgumentError(f"frame = {brief(repr(name), 60)}: must be one of {', '.join(FRAMES)}{hint}")
     if name == "pandas":
-        try:
-            import pandas  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise ArgumentError(f"frame = 'pandas' needs {error.name}: pip install \"hedon[pandas]\"") from error
+        _pandas()
 
 
 def to_pandas(table: pl.DataFrame) -> "pd.DataFrame":
@@ -38,6 +35,12 @@ def to_pandas(table: pl.DataFrame) -> "pd.DataFrame":
     Numbers keep their types, but integers with missing values become 64-bit floats, in which these are NaN. Missing
     texts are None.
     """
-    import pandas as pd
+    return _pandas().DataFrame({column.name: column.to_numpy(writable=True) for column in table})
 
-    return pd.DataFrame({column.name: column.to_numpy(writable=True) for column in table})
+
+def _pandas() -> Any:
+    try:
+        import pandas as pd
+    except ModuleNotFoundError as error:
+        raise ArgumentError(f"frame = 'pandas' needs {error.name}: pip install \"hedon[pandas]\"") from error
+    return pd

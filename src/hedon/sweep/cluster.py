@@ -6,7 +6,9 @@ behind the sweep's URL.
 
 import tempfile
 import time
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from hedon.error import HedonError
 from hedon.experiment.interrupt import count_interrupts
@@ -54,8 +56,7 @@ def run_on_ray(
         SweepError: Ray is not installed, or there is no cluster at the address.
     """
     try:
-        import ray  # type: ignore[import-not-found]
-        from ray.exceptions import RayError  # type: ignore[import-not-found]
+        ray: Any = import_module("ray")
     except ImportError:
         raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
     scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}"
@@ -78,7 +79,7 @@ def run_on_ray(
                     job = waiting.pop(done)
                     try:
                         outcome = ray.get(done)
-                    except RayError as error:
+                    except ray.exceptions.RayError as error:
                         if interrupted.count:  # it was called off
                             continue
                         outcome = Outcome("failed", str(error))

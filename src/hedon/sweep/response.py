@@ -63,7 +63,7 @@ def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[P
     """The mean of a response at each combination of some factors' values, over all else that varies."""
     made = []
     for at, rows in table.sort(*factors).group_by(*factors, maintain_order=True):
-        made.append(Point(tuple(at), response_interval(rows[response])))  # type: ignore[arg-type]
+        made.append(Point(tuple(at), response_interval(rows[response])))
     return made
 
 

@@ -5,6 +5,7 @@ Whatever is written is whole or not there: it is written under a passing name an
 
 import secrets
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -90,7 +91,7 @@ class UrlStore:
 
     def __init__(self, url: str) -> None:
         try:
-            import fsspec  # type: ignore[import-not-found, unused-ignore]
+            fsspec: Any = import_module("fsspec")
         except ImportError:
             raise SweepError(f'{url}: a URL needs the optional packages: pip install "hedon[remote]"') from None
         self.location, self.folder = url, None

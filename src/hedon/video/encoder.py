@@ -64,10 +64,10 @@ class Encoder:
     def __init__(self, out: Path, width: int, height: int, rate: int) -> None:
         check_target(out)
         self.out = out
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115
         self._draft = out.with_name(f".{secrets.token_hex(6)}-{os.getpid()}{out.suffix.lower()}")
         given = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-")
         command = (find_ffmpeg(), "-hide_banner", "-loglevel", "error", *given, *FORMATS[out.suffix.lower()])
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the program: `__exit__` closes it
         # In a session of its own, so that Ctrl-C reaches this program alone, which then removes the draft.
         self._program = subprocess.Popen(
             [*command, str(self._draft)], stdin=subprocess.PIPE, stderr=self._log, start_new_session=True

@@ -21,7 +21,7 @@ class SweepDisplay:
 
     Args:
         console: to print on.
-        batches: of this session.
+        batches: to be made now.
         world_steps: of these batches, if no world dies out.
     """
 
