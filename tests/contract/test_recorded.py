@@ -36,7 +36,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def test_the_check_finds_nothing_and_the_ledger_has_the_damage(recorded: Run) -> None:
     assert not check_run(recorded.path).findings
     rows = recorded.population()
-    assert rows["energy_damage"].sum() == pytest.approx(0.2 * rows["obstacles_touched"].sum())
+    assert rows["energy_damage"].sum() == pytest.approx(0.2 * float(rows["obstacles_touched"].sum()))
     assert rows["obstacles_touched"].sum() > 0
     assert rows["nutrient_mean"].is_between(0, 400).all()
     places = recorded.manifest.obstacle_places
