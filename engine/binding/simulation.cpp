@@ -171,6 +171,31 @@ void set_genomes(PythonSimulation& self, int index,
   for (int32_t i = 0; i < from.head().living_count; ++i) express_genes(from, from.state.living[i]);
 }
 
+/// Gives the living of a species of a world other networks, in their order.
+void set_networks(PythonSimulation& self, int index, int species,
+                  nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> networks) {
+  self.slotted(index);
+  World& from = self.get().world(index);
+  if (species < 0 || species >= from.shape->species || !from.shape->of[species].has_network)
+    throw nb::value_error("there is no such species, or it has no networks");
+  std::vector<int32_t> slots;
+  for (int32_t i = 0; i < from.head().living_count; ++i) {
+    if (from.shape->species_of(from.state.living[i]) == species) slots.push_back(from.state.living[i]);
+  }
+  const NetworkShape& network = from.shape->of[species].network;
+  const size_t size = static_cast<size_t>(network.size());
+  if (networks.shape(0) != slots.size() || networks.shape(1) != size)
+    throw nb::value_error("there must be one network for each living agent of the species, with all parameters");
+  for (size_t p = 0; p < slots.size() * size; ++p) {
+    if (!std::isfinite(networks.data()[p])) throw nb::value_error("parameters must be finite");
+  }
+  for (size_t i = 0; i < slots.size(); ++i) {
+    std::copy_n(networks.data() + i * size, size, from.params(slots[i]));
+    from.kernel->pack_weights(network, from.network(slots[i]));
+    keep_initial(from, slots[i]);
+  }
+}
+
 /// Refuses an array of the caller that has not one row for each slot of a species in each world.
 template <class Table>
 void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
@@ -291,6 +316,11 @@ void bind_simulation(nb::module_& module) {
       .def("set_genomes", &set_genomes, nb::arg("world"), nb::arg("genomes"),
            nb::sig("def set_genomes(self, world: int, genomes: numpy.typing.NDArray[numpy.float32]) -> None"),
            "Replaces the genomes of the living: (living, genes). ValueError: wrong shape, or a gene out of bounds.")
+      .def("set_networks", &set_networks, nb::arg("world"), nb::arg("species"), nb::arg("networks"),
+           nb::sig("def set_networks(self, world: int, species: int, networks: "
+                   "numpy.typing.NDArray[numpy.float32]) -> None"),
+           "Replaces the networks of the living of a species: (living, parameters). ValueError: wrong shape, or a "
+           "parameter that is not finite.")
       .def(
           "view", [](nb::handle self, int world, const std::string& path) { return view_state(self, world, path); },
           nb::arg("world"), nb::arg("path"),

@@ -98,9 +98,9 @@ HEDON_FN void sense_and_act(Block& block, World& world, int64_t t) {
     block.once_by_tile([&] { note_start(world, slot); });
     if (species.observes) observe_by_tile(block, world, slot, seen);
     float output[OUTPUTS];
-    if (species.learns) output_of(block, world, slot, seen, output);
+    if (species.has_network) output_of(block, world, slot, seen, output);
     if (thread_lane() != 0) return;
-    if (species.learns)
+    if (species.has_network)
       sample_action(world, slot, row, output);
     else
       act_without_network(world, slot, row);

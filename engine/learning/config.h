@@ -19,8 +19,9 @@ enum class Policy : int32_t {
   random,    ///< by a standard normal, as a network does that has not learned
   still,     ///< the motors never run
   external,  ///< the caller says it, step by step
+  frozen,    ///< by a network that never learns
 };
-inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "still", "external"};
+inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "still", "external", "frozen"};
 
 struct LearningConfig {
   Policy policy;

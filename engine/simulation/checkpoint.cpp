@@ -22,8 +22,7 @@ SavedExtent extent_of(const World& world) {
   }
   extent.filled = head.step % world.shape->steps;
   const int64_t window_start = head.step - extent.filled;
-  extent.learners = learners_of(world, extent.slots);
-  extent.free_learners = learners_of(world, extent.free);
+  list_networks(world, extent);
   for (const int32_t slot : extent.learners) extent.taught += state.life[slot].birth_step <= window_start;
   return extent;
 }

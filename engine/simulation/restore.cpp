@@ -30,8 +30,8 @@ std::vector<int32_t> saved_species(const Inspector& in, size_t living) {
   return in.numbers<int32_t>("species");
 }
 
-/// Reads which of the living are of a species that learns.
-bool read_learners(Inspector& in, SavedExtent& extent, const std::vector<int64_t>& births) {
+/// Reads which of the living have networks, and which of them learn.
+bool read_networks(Inspector& in, SavedExtent& extent, const std::vector<int64_t>& births) {
   const WorldShape& shape = *in.world_.shape;
   if (shape.species > 1 && (!in.has<int32_t>("species", {static_cast<int64_t>(births.size())}) ||
                             !in.within<int32_t>("species", 0, shape.species - 1))) {
@@ -39,15 +39,16 @@ bool read_learners(Inspector& in, SavedExtent& extent, const std::vector<int64_t
   }
   size_t room = 0;
   for (int32_t s = 0; s < shape.species; ++s)
-    room += shape.of[s].learns ? static_cast<size_t>(shape.of[s].capacity()) : 0;
+    room += shape.of[s].has_network ? static_cast<size_t>(shape.of[s].capacity()) : 0;
   const std::vector<int32_t> species = saved_species(in, births.size());
   const int64_t window_start = in.numbers<int64_t>("head.step")[0] - extent.filled;
   for (size_t i = 0; i < births.size(); ++i) {
+    if (shape.of[species[i]].has_network) extent.networks.push_back(-1);  // its slot is not known yet
     if (!shape.of[species[i]].learns) continue;
-    extent.learners.push_back(-1);  // its slot is not known yet
+    extent.learners.push_back(-1);
     extent.taught += births[i] <= window_start;
   }
-  extent.free_learners.resize(room > extent.learners.size() ? room - extent.learners.size() : 0);
+  extent.free_networks.resize(room > extent.networks.size() ? room - extent.networks.size() : 0);
   return true;
 }
 
@@ -73,7 +74,7 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
   extent.slots.resize(births.size());
   extent.free.resize(static_cast<size_t>(shape.capacity) - births.size());
   extent.ghosts = in.numbers<int32_t>("head.ghost_count")[0];
-  if (!read_learners(in, extent, births)) return false;
+  if (!read_networks(in, extent, births)) return false;
   if (shape.newborns == 0) return true;
   extent.newborns = in.numbers<int32_t>("head.births_in_window")[0];
   return in.within<int32_t>("head.births_in_window", 0, shape.newborns);
@@ -314,17 +315,16 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
     state.alive[slot] = 1;
   }
   extent.free = free_slots(target);
-  extent.learners = learners_of(target, extent.slots);
-  extent.free_learners = learners_of(target, extent.free);
+  list_networks(target, extent);
   for_each_saved(target, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
-  for (const int32_t slot : extent.learners)
+  for (const int32_t slot : extent.networks)
     target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   if (inherits_late(target)) {
-    for (const int32_t slot : extent.free_learners)
+    for (const int32_t slot : extent.free_networks)
       target.kernel->pack_weights(target.species(slot).network, target.network(slot));
   }
   restore_pairs(in, target, extent);

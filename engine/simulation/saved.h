@@ -15,9 +15,10 @@ namespace hedon {
 /// Numbers of rows in the arrays of a checkpoint, and their slots.
 struct SavedExtent {
   std::vector<int32_t> slots;          ///< of the living, in the order of their ids
+  std::vector<int32_t> networks;       ///< those of them that act by networks
   std::vector<int32_t> learners;       ///< those of them whose species learns
   std::vector<int32_t> free;           ///< free slots: see `free_slots`
-  std::vector<int32_t> free_learners;  ///< those of them whose species learns
+  std::vector<int32_t> free_networks;  ///< those of them whose species acts by networks
   std::vector<int32_t> foods;          ///< slots of the foods present, ascending
   int64_t newborns;                    ///< births of this window that wait for their genomes
   int64_t ghosts;                      ///< foods just eaten that are still seen
@@ -35,13 +36,20 @@ inline std::vector<int32_t> free_slots(const World& world) {
   return slots;
 }
 
-/// Those of a list of slots whose species learns.
-inline std::vector<int32_t> learners_of(const World& world, const std::vector<int32_t>& slots) {
-  std::vector<int32_t> learners;
+/// Those of a list of slots whose species is so.
+inline std::vector<int32_t> slots_of(const World& world, bool Species::* is_so, const std::vector<int32_t>& slots) {
+  std::vector<int32_t> found;
   for (const int32_t slot : slots) {
-    if (world.species(slot).learns) learners.push_back(slot);
+    if (world.species(slot).*is_so) found.push_back(slot);
   }
-  return learners;
+  return found;
+}
+
+/// Sets the lists of networks and learners from the lists of slots.
+inline void list_networks(const World& world, SavedExtent& extent) {
+  extent.networks = slots_of(world, &Species::has_network, extent.slots);
+  extent.learners = slots_of(world, &Species::learns, extent.slots);
+  extent.free_networks = slots_of(world, &Species::has_network, extent.free);
 }
 
 /// Rows of one array in the memory of a world: row i begins `stride` bytes times index[i] (or i) after `first`.
@@ -90,7 +98,7 @@ class SavedArrays {
     // What depends on a rule that a world does not have is not there.
     if (array.count == 0 && size.rows != Extent::slots) return;
     if (is_by_slot(size.rows)) {
-      by_slot(name, array, width, size.rows == Extent::learner_slots ? extent_.learners : extent_.slots);
+      by_slot(name, array, width, slots_with(size.rows));
     } else if (size.rows == Extent::newborns || size.rows == Extent::mixed_newborns) {
       if (name == "newborn") free_slots();
       columns(name, array.data, nullptr, extent_.newborns, width);
@@ -100,6 +108,11 @@ class SavedArrays {
       columns(name, array.data, nullptr, hedon::extent(shape_, size.rows, 1), width);
       if (name == "food_stock") foods();
     }
+  }
+
+  const std::vector<int32_t>& slots_with(Extent rows) const {
+    if (rows == Extent::network_slots) return extent_.networks;
+    return rows == Extent::learner_slots ? extent_.learners : extent_.slots;
   }
 
   /// Rows of numbers, or each field of rows of structs.
@@ -127,7 +140,7 @@ class SavedArrays {
 
   /// With late inheritance the next newborns find in free slots what the dead have left.
   void free_slots() {
-    if (shape_.learning) by_slot("free.params", state_.params, shape_.params, extent_.free_learners);
+    if (shape_.networks) by_slot("free.params", state_.params, shape_.params, extent_.free_networks);
     by_slot("free.genome", state_.genome, shape_.genes, extent_.free);
   }
 

@@ -53,6 +53,7 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
       for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.command[int64_t{slot} * ACTIONS + a];
       return;
     case Policy::ppo:
+    case Policy::frozen:
     case Policy::still:
       return;
   }
@@ -60,7 +61,7 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
 
 /// The action of the agent in `slot`, into row `t` of its rollout, by the policy of its species.
 HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
-  if (!world.species(slot).learns) return act_without_network(world, slot, t);
+  if (!world.species(slot).has_network) return act_without_network(world, slot, t);
   float output[16];
   world.kernel->forward(world.species(slot).network, world.network(slot), world.observation(slot, t), output);
   sample_action(world, slot, t, output);

@@ -15,6 +15,7 @@ enum class Extent : uint8_t {
   slots,
   mixed_slots,     ///< slots, if there are several species
   old_slots,       ///< slots, if only agents in old slots have children
+  network_slots,   ///< slots, if some species acts by networks; of other species they are not used
   learner_slots,   ///< slots, if some species learns; of other species they are not used
   external_slots,  ///< slots, if some species is told what to do
   ruled_slots,     ///< slots, if some species has a rule of the caller
@@ -69,7 +70,7 @@ enum class Lifetime : uint8_t {
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
-         rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
+         rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
          rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::obstacle_slots ||
          rows == Extent::inner_slots || rows == Extent::instinct_slots || rows == Extent::mating_slots ||
          rows == Extent::hunted_slots;
@@ -91,6 +92,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.species > 1 ? shape.capacity : 0;
     case Extent::old_slots:
       return shape.old_slots ? shape.capacity : 0;
+    case Extent::network_slots:
+      return shape.networks ? shape.capacity : 0;
     case Extent::learner_slots:
       return shape.learning ? shape.capacity : 0;
     case Extent::external_slots:

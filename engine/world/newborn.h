@@ -23,9 +23,9 @@ HEDON_FN void forget_updates(World& world, int32_t slot) {
   state.updates[slot] = 0;
 }
 
-/// Gives the agent in `slot` a new network and the optimizer that belongs to it, if its species learns.
+/// Gives the agent in `slot` a new network and the optimizer that belongs to it, if its species has networks.
 HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& random) {
-  if (!world.species(slot).learns) return;
+  if (!world.species(slot).has_network) return;
   const NetworkShape& network = world.species(slot).network;
   init_network(network, random, world.params(slot));
   world.kernel->pack_weights(network, world.network(slot));
@@ -50,8 +50,9 @@ HEDON_FN void give_own_network(World& world, int32_t slot) {
 HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
   const Species& species = world.species(slot);
   const BirthConfig& birth = species.config->birth;
-  if (!species.learns || birth.network == ChildNetwork::none) return give_own_network(world, slot);
-  const float* from = birth.network == ChildNetwork::learned ? world.params(parent) : world.initial_params(parent);
+  if (!species.has_network || birth.network == ChildNetwork::none) return give_own_network(world, slot);
+  const bool kept = species.learns && birth.network == ChildNetwork::initial;
+  const float* from = kept ? world.initial_params(parent) : world.params(parent);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   DrawSequence draws{RandomStream{world.seed, Purpose::inherited_network, id, 0}, 0};
   const int32_t size = species.network.size();

@@ -51,6 +51,7 @@ struct WorldShape {
   int32_t pairs;     ///< of weights of the largest network
   bool ghosts;       ///< eaten food is seen for one step
   bool old_slots;    ///< only agents in slots that were taken when the window began have children
+  bool networks;     ///< some species acts by networks
   bool learning;     ///< some species learns
   bool external;     ///< some species is told what to do
   bool ruled;        ///< rules of the caller pay some species, or say when it dies or breeds
@@ -132,9 +133,10 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
       grow(shape.memory, own.reward.memory);
       grow(shape.record, species.record);
     }
+    shape.networks |= species.has_network;
     shape.learning |= species.learns;
     shape.external |= own.learning.policy == Policy::external;
-    shape.packed |= species.learns && own.learning.acting_weights == ActingWeights::bfloat16;
+    shape.packed |= species.has_network && own.learning.acting_weights == ActingWeights::bfloat16;
   }
   for (int32_t s = 0; s < shape.species; ++s) shape.of[s].network.observation.lines = shape.lines;
   shape.first_obstacle = walls;

@@ -33,7 +33,8 @@ struct Species {
   NetworkShape network;
   BodyShape body;
   Channels sight, touch, scent;
-  bool learns;                           ///< it has networks, which learn
+  bool has_network;                      ///< its agents act by networks
+  bool learns;                           ///< these networks learn
   bool observes;                         ///< its network, or its reward, reads what its rays meet
   int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
@@ -91,7 +92,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.touch = make_channels(config.sensor.collides, types);
   species.scent = make_channels(config.sensor.smells, types);
   species.learns = config.learning.policy == Policy::ppo;
-  species.observes = species.learns;
+  species.has_network = species.learns || config.learning.policy == Policy::frozen;
+  species.observes = species.has_network;
   species.observes |= has_rule(config);
   species.record = config.reward.terms.count + config.genome.genes.count + 12 + config.reward.memory;
   for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);

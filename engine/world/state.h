@@ -154,7 +154,7 @@ struct WorldState {
   Array<float> command;  // (slots, 2) what the caller told agents to do, before the sigmoid
   Array<double> memory;  // what the rule of its species keeps for each agent
 
-  // Learners, by slot.
+  // Networks and learners, by slot.
   Array<float> params;
   Array<float> initial_params;  // what an agent was born with
   Array<float> folded_bias;     // derived from params
@@ -195,8 +195,8 @@ struct WorldState {
                (mate_id, mating_slots, one, saved), (inner, inner_slots, inner_states, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
                (command, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
-               (params, learner_slots, params, saved), (initial_params, instinct_slots, params, saved),
-               (folded_bias, learner_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
+               (params, network_slots, params, saved), (initial_params, instinct_slots, params, saved),
+               (folded_bias, network_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
                (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),
                (updates, learner_slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
                (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),

@@ -84,6 +84,11 @@ class Simulation:
         Replaces the genomes of the living: (living, genes). ValueError: wrong shape, or a gene out of bounds.
         """
 
+    def set_networks(self, world: int, species: int, networks: numpy.typing.NDArray[numpy.float32]) -> None:
+        """
+        Replaces the networks of the living of a species: (living, parameters). ValueError: wrong shape, or a parameter that is not finite.
+        """
+
     def view(self, world: int, path: str) -> numpy.typing.NDArray[Any]:
         """One array of a world's state, by slot."""
 

@@ -33,6 +33,7 @@ from hedon.record.folder import (
     require_unicode,
 )
 from hedon.record.manifest import Manifest, load_manifest
+from hedon.record.network import NETWORKS, NetworkError, load_networks
 from hedon.record.reader import open_run
 from hedon.record.schema import Columns, columns_of, run_tables
 from hedon.record.snapshot import load_snapshot
@@ -83,9 +84,18 @@ def check_run(path: Path | str) -> Verdict:
     _check_checkpoints(folder)
     _check_tables(folder)
     _check_rows(folder)
+    folder.add(_check_networks(folder))
     folder.add(check_founders(folder.path, folder.config, folder.manifest, folder.tables.get("agents")))
     _check_end(folder)
     return Verdict(tuple(dict.fromkeys(folder.findings)), tuple(folder.notes), tuple(_usable(folder)))
+
+
+def _check_networks(folder: _Folder) -> Iterator[Finding]:
+    try:
+        if folder.config is not None:
+            load_networks(folder.path, folder.config)
+    except NetworkError as error:
+        yield Finding(NETWORKS, f"cannot be used: {str(error).removeprefix(str(folder.path / NETWORKS) + ': ')}")
 
 
 def _check_manifest(folder: _Folder) -> None:

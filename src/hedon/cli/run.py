@@ -52,6 +52,10 @@ def run(
             metavar="SOURCE[:SHARE],…", help="Begin with these genomes: a table (.csv), RUN@STEP, or a point."
         ),
     ] = None,
+    networks: Annotated[
+        str | None,
+        typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "frozen" act by: networks of a run.'),
+    ] = None,
     device: Annotated[str, typer.Option(help="What advances the worlds: cpu, or cuda for a CUDA device.")] = "cpu",
 ) -> None:
     """Run a condition, then write its report.
@@ -71,6 +75,7 @@ def run(
     commands, such as hedon resume.
     """
     from hedon.config.load import load_config
+    from hedon.experiment.network import networks_from
     from hedon.experiment.plan import RunPlan, default_folder
     from hedon.experiment.run import run as run_plan
     from hedon.record.founder_source import read_founders
@@ -81,7 +86,8 @@ def run(
     folder = out or default_folder(config, world_seeds)
     require_no_run(folder)
     begin_with = None if founders is None else read_founders(founders, config)
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, kernel)
+    act_by = None if networks is None else networks_from(networks, config)
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, kernel)
     conduct(plan, lambda display: run_plan(plan, display))
 
 

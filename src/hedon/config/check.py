@@ -130,9 +130,14 @@ def _founders(config: Config) -> Iterator[Problem]:
         if path.endswith(".initial_mean") and abs(value) > config.genome.weight_limit:
             rule = f"must be within ± genome.weight_limit = {config.genome.weight_limit:g}"
             yield Problem(path, rule, format_value(value))
-    if not re.fullmatch(r"([0-9a-f]{64})?", config.genome.founders):
-        message = "must be empty, or the digest of a table of founders, which `--founders` sets"
-        yield Problem("genome.founders", message, format_value(config.genome.founders))
+    digests = {
+        "genome.founders": "a table of founders, which `--founders` sets",
+        "learning.networks": "a file of networks, which `--networks` sets",
+    }
+    for path, what in digests.items():
+        section, name = path.split(".")
+        if not re.fullmatch(r"([0-9a-f]{64})?", getattr(getattr(config, section), name)):
+            yield _problem(config, path, f"must be empty, or the digest of {what}")
 
 
 def _problem(config: Config, path: str, message: str) -> Problem:

@@ -29,6 +29,7 @@ EARLIER = {
     "birth.parents": "all",
     "birth.heading": "own",
     "genome.founders": "",
+    "learning.networks": "",
     "body.collides": ("*",),
     "motor.force_scale": 1.0,
     "sensor.sees": ("*",),

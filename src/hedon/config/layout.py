@@ -193,10 +193,18 @@ def of_species(config: Config, name: str) -> Config:
     return replace(config, **sections, species={name: own} | config.species)
 
 
+def with_section(config: Config, section: str, **changes: Any) -> Config:
+    """A config with other settings of a section, in all of its species."""
+
+    def changed(owner: Any) -> Any:
+        return replace(owner, **{section: replace(getattr(owner, section), **changes)})
+
+    return replace(changed(config), species={name: changed(each) for name, each in config.species.items()})
+
+
 def with_genome(config: Config, **changes: Any) -> Config:
     """A config with other settings of `[genome]`, in all of its species."""
-    species = {name: replace(each, genome=replace(each.genome, **changes)) for name, each in config.species.items()}
-    return replace(config, genome=replace(config.genome, **changes), species=species)
+    return with_section(config, "genome", **changes)
 
 
 def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:

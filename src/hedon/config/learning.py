@@ -11,14 +11,24 @@ class LearningConfig:
     """How agents choose actions, and learn: proximal policy optimization (Schulman et al. 2017) with GAE."""
 
     policy: Annotated[
-        Literal["ppo", "random", "still", "external"],
+        Literal["ppo", "random", "still", "external", "frozen"],
         Doc(
             "how agents choose actions: a network that learns; standard normals before the sigmoid, as a new network "
-            "gives; none, so that no motor runs; or what the caller says (`hedon.env`)",
+            "gives; none, so that no motor runs; what the caller says (`hedon.env`); or a network that never learns",
             "",
             OURS,
         ),
     ] = "ppo"
+    networks: Annotated[
+        str,
+        Doc(
+            'digest of the file that the founders\' networks come from where `policy` is "frozen", `networks.npz` in '
+            "the run's folder; set by `--networks`. Without one they are new networks",
+            "",
+            OURS,
+            Range(form="64 hexadecimal digits"),
+        ),
+    ] = ""
     rollout_steps: Annotated[
         int,
         Doc(

@@ -23,6 +23,7 @@ PYTHON_ONLY = (
     "arena.inner_walls",
     "food.color",
     "genome.founders",
+    "learning.networks",
     "birth.distance_unit",
 )
 """Settings that the engine does not get: names, colors, and what it gets as walls or as lengths in u."""
@@ -96,7 +97,7 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
         "birth": birth | {"rule": _ruled(species.birth.rule), "distance_sd": distance_sd(config, species)},
         "genome": _genome(species, layout),
         "reward": _reward(species, layout),
-        "learning": asdict(species.learning),
+        "learning": {name: value for name, value in asdict(species.learning).items() if name != "networks"},
     }
 
 

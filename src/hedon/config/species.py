@@ -84,5 +84,6 @@ RULES = (
     "genome.founders",
     "genome.mutation_noise",
     "learning.rollout_steps",
+    "learning.networks",
 )
 """Settings in these sections that hold for the whole world: a species cannot have its own."""

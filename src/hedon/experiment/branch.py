@@ -20,6 +20,7 @@ from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG
 from hedon.record.founder_table import load_founders
 from hedon.record.manifest import Manifest, Parent
+from hedon.record.network import load_networks
 from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
@@ -31,6 +32,7 @@ SHAPE = (
     "sensor.scaling",
     "genome.neutral_count",
     "genome.founders",
+    "learning.networks",
     "reward.memory",
     "learning.rollout_steps",
 )
@@ -87,8 +89,8 @@ def plan_branch(
     parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
     place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
-    founders = load_founders(folder, config)
-    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders)
+    founders, networks = load_founders(folder, config), load_networks(folder, config)
+    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders, networks)
     return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from hedon.config.config import Config
-from hedon.config.layout import with_genome
+from hedon.config.layout import with_genome, with_section
 from hedon.config.validate import validated
 from hedon.error import ArgumentError
 from hedon.experiment.argument import (
@@ -23,6 +23,7 @@ from hedon.experiment.rule import pinned
 from hedon.experiment.sample import Rows
 from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.record.founder import Founders
+from hedon.record.network import Networks
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -39,12 +40,14 @@ class RunPlan:
         checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
         founders: Genomes that the worlds begin with; None where they are drawn as the config says. The plan's config
             gets the table's digest.
+        networks: What agents that never learn begin with; None for new networks. The config gets their digest.
         kernel: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
             set.
 
     Raises:
         ConfigError: A setting is wrong.
         FounderError: The founders do not fit the config.
+        NetworkError: The networks do not.
         RuleError: A rule is not there, or is not the one that the config is pinned to.
         ArgumentError: Another value is wrong.
     """
@@ -57,6 +60,7 @@ class RunPlan:
     frames: int
     checkpoint_seconds: float
     founders: Founders | None
+    networks: Networks | None
     kernel: str
 
     def __init__(
@@ -69,10 +73,11 @@ class RunPlan:
         frames: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
         founders: Founders | None = None,
+        networks: Networks | None = None,
         kernel: str = "",
     ) -> None:
         checked = {
-            "config": _with_founders(pinned(_without_caller(validated(config))), founders),
+            "config": _with_networks(_with_founders(pinned(_without_caller(validated(config))), founders), networks),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),
@@ -80,6 +85,7 @@ class RunPlan:
             "frames": integer("frames", frames, 0, MAX_STEPS),
             "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds, 0.0, MAX_SECONDS),
             "founders": founders,
+            "networks": networks,
             "kernel": kernel,
         }
         for name, value in checked.items():
@@ -124,7 +130,7 @@ def _without_caller(config: Config) -> Config:
             place = f"species.{name}.learning.policy" if config.species else "learning.policy"
             raise ArgumentError(
                 f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
-                'hedon.env (docs/guide/environment.md), or choose "ppo", "random" or "still"'
+                'hedon.env (docs/guide/environment.md), or choose "ppo", "frozen", "random" or "still"'
             )
     return config
 
@@ -138,6 +144,19 @@ def _with_founders(config: Config, founders: Founders | None) -> Config:
         raise ArgumentError(
             "founders: the config names a table of founders, so give it, as in --founders RUN/founders.csv, or leave "
             'it out with --set genome.founders=""'
+        )
+    return config
+
+
+def _with_networks(config: Config, networks: Networks | None) -> Config:
+    """The config with the digest of the networks that its agents begin with."""
+    if networks is not None:
+        networks.require(config)
+        return with_section(config, "learning", networks=networks.digest)
+    if config.learning.networks:
+        raise ArgumentError(
+            "networks: the config names a file of networks, so give it, as in --networks RUN/networks.npz, or leave it "
+            'out with --set learning.networks=""'
         )
     return config
 

@@ -13,7 +13,7 @@ from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
-from hedon.experiment.run import drive, run
+from hedon.experiment.run import drive, give_beginning, run
 from hedon.experiment.session import next_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
@@ -22,6 +22,7 @@ from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG, holds_run
 from hedon.record.founder_table import load_founders
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
+from hedon.record.network import load_networks
 from hedon.record.provenance import git_revision
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint, roll_back, verify_parts
@@ -68,6 +69,7 @@ def hold(
             why.
         ConfigError: Its config cannot be read.
         FounderError: Its table of founders cannot be read.
+        NetworkError: Its file of networks cannot be read.
         ArgumentError: A number is out of bounds.
     """
     folder = argument.folder("folder", folder)
@@ -80,8 +82,10 @@ def hold(
             check_head(checkpoint.head, config, manifest.seeds, f"the checkpoint of {folder}")
             verify_parts(folder, checkpoint.head.parts)
         total = manifest.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
-        founders = load_founders(folder, config)
-        plan = RunPlan(config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds, founders)
+        founders, networks = load_founders(folder, config), load_networks(folder, config)
+        plan = RunPlan(
+            config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds, founders, networks
+        )
         notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
         found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
         _check_steps(found)
@@ -162,9 +166,9 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads, same_kernel(found.manifest.kernel))
         start = Start()
-        if checkpoint is None and plan.founders is not None:
-            simulation.set_founders(plan.founders)
-        if checkpoint is not None:
+        if checkpoint is None:
+            give_beginning(simulation, plan)
+        else:
             start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
         parts = checkpoint.head.parts if checkpoint else {}
         roll_back(plan.out, parts, start.step)

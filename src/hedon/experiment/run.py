@@ -15,8 +15,10 @@ from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
+from hedon.record.founder import FOUNDERS
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
+from hedon.record.network import NETWORKS
 from hedon.record.snapshot import save_snapshot
 from hedon.record.writer import Writer
 from hedon.text import brief
@@ -44,9 +46,16 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.kernel)
-        if plan.founders is not None:
-            simulation.set_founders(plan.founders)
+        give_beginning(simulation, plan)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
+
+
+def give_beginning(simulation: Simulation, plan: RunPlan) -> None:
+    """Gives the founders of a new simulation the genomes and the networks that the plan has for them."""
+    if plan.founders is not None:
+        simulation.set_founders(plan.founders)
+    if plan.networks is not None:
+        simulation.set_networks(plan.networks)
 
 
 def begin(
@@ -58,8 +67,18 @@ def begin(
     interrupted: Interrupts,
 ) -> Manifest:
     """Makes a new folder for a simulation that is at `start`, and runs it; see `run`."""
-    with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, founders=plan.founders) as writer:
+    with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, beginning=_beginning(plan)) as writer:
         return drive(simulation, plan, manifest, writer, start, display, interrupted)
+
+
+def _beginning(plan: RunPlan) -> dict[str, bytes]:
+    """The files that hold what the worlds begin with, besides the config."""
+    files = {}
+    if plan.founders is not None:
+        files[FOUNDERS] = plan.founders.content
+    if plan.networks is not None:
+        files[NETWORKS] = plan.networks.content
+    return files
 
 
 def drive(

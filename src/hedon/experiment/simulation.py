@@ -16,6 +16,7 @@ from hedon.experiment.device import device_library
 from hedon.experiment.native import engine_input
 from hedon.experiment.rule import rules
 from hedon.record.founder import Founders
+from hedon.record.network import NetworkError, Networks, frozen_species
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
@@ -104,6 +105,24 @@ class Simulation:
                 at = np.ix_(mine, np.arange(len(layout.genes)))
                 genomes[at] = np.where(np.isnan(given), genomes[at], given)
             self.engine.set_genomes(world.index, genomes.astype(np.float32))
+
+    def set_networks(self, networks: Networks) -> None:
+        """Gives the founders of the species that never learn the networks of a file; call it before the first step.
+
+        Raises:
+            NetworkError: The networks do not fit the config.
+        """
+        networks.require(self.config)
+        names = list(self.config.agents)
+        for world in self.worlds:
+            species = world.agents()["species"]
+            for name in frozen_species(self.config):
+                i = names.index(name)
+                given = networks.draw(name, world.seed, int((species == i).sum()))
+                try:
+                    self.engine.set_networks(world.index, i, given)
+                except ValueError as error:
+                    raise NetworkError(f"networks of {name}: {error}") from None
 
     @property
     def extinct(self) -> bool:

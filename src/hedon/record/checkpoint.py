@@ -1,10 +1,7 @@
 """Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading runs no code."""
 
 import hashlib
-import io
 import json
-import math
-import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
@@ -14,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hedon.record.array_file import read_arrays
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_path, checkpoint_paths
@@ -109,7 +107,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
         RecordError: the file cannot be read, is damaged, or is not a checkpoint.
     """
     try:
-        members = _read_members(path)
+        members = read_arrays(path)
         digest = members.pop(_DIGEST).tobytes().decode()
         if digest != _digest(members):
             raise ValueError("its content does not match its digest")
@@ -119,32 +117,6 @@ def load_checkpoint(path: Path) -> Checkpoint:
         return Checkpoint(head, members)
     except Exception as error:  # a file that is not from hedon can raise any exception
         raise RecordError(f"damaged checkpoint {path}: {error}") from error
-
-
-def _read_members(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz file; checks their sizes before it takes memory."""
-    members: dict[str, NDArray[Any]] = {}
-    with zipfile.ZipFile(path) as archive:
-        entries = archive.infolist()
-        if sum(entry.file_size for entry in entries) > path.stat().st_size:
-            raise ValueError("it is shorter than the sizes that it declares")
-        for entry in entries:
-            if entry.compress_type != zipfile.ZIP_STORED or entry.filename in members:
-                raise ValueError(f"{entry.filename} was not written by hedon")
-            members[entry.filename.removesuffix(".npy")] = _parse_array(archive.read(entry))
-    return members
-
-
-def _parse_array(data: bytes) -> NDArray[Any]:
-    file = io.BytesIO(data)
-    if np.lib.format.read_magic(file) != (1, 0):
-        raise ValueError("an array has an unknown format")
-    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
-    if dtype.kind not in "iuf" or not dtype.isnative or in_columns:
-        raise ValueError(f"an array has type {dtype}, but only plain numbers are allowed")
-    if math.prod(shape) * dtype.itemsize != len(data) - file.tell():
-        raise ValueError("the length of an array does not match its shape")
-    return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape)
 
 
 def _digest(members: Mapping[str, NDArray[Any]]) -> str:

@@ -16,7 +16,6 @@ from hedon.record.atomic import write_atomically
 from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, fault_path, require_no_run
-from hedon.record.founder import FOUNDERS, Founders
 from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
@@ -45,7 +44,7 @@ class Writer:
         part_rows: rows after which a part is written.
         queue_size: calls that may wait for the thread.
         parts: for a resumed run: the SHA-256 of each existing part, in order, by table.
-        founders: the table that a new run begins with, if it has one.
+        beginning: files that a new run begins with besides its config, by name.
 
     Raises:
         RecordError: the folder holds a run already, or cannot be written.
@@ -60,12 +59,12 @@ class Writer:
         part_rows: int = PART_ROWS,
         queue_size: int = 64,
         parts: Mapping[str, Sequence[str]] | None = None,
-        founders: Founders | None = None,
+        beginning: Mapping[str, bytes] | None = None,
     ) -> None:
         self.folder = Path(folder)
         self.tables = run_tables(manifest.columns)
         if parts is None:
-            self._prepare(config_text, manifest, founders)
+            self._prepare(config_text, manifest, beginning or {})
         else:
             save_manifest(self.folder, manifest)
         self._parts = PartWriter(self.folder, self.tables, part_rows, parts)
@@ -179,13 +178,13 @@ class Writer:
             if not isinstance(error, RecordError):  # otherwise the same error is already being raised
                 raise
 
-    def _prepare(self, config_text: str, manifest: Manifest, founders: Founders | None) -> None:
+    def _prepare(self, config_text: str, manifest: Manifest, beginning: Mapping[str, bytes]) -> None:
         require_no_run(self.folder)
         try:
             for table in self.tables:
                 (self.folder / table).mkdir(parents=True, exist_ok=True)
-            if founders is not None:
-                write_atomically(self.folder / FOUNDERS, lambda file: file.write(founders.content))
+            for name, content in beginning.items():
+                write_atomically(self.folder / name, lambda file, content=content: file.write(content))
             write_atomically(self.folder / CONFIG, lambda file: file.write(config_text.encode()))
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {self.folder}: {error}") from error

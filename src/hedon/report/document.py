@@ -24,6 +24,7 @@ Format {FORMAT_VERSION}.
 RUN/
   config.toml                    the complete config; loadable again
   founders.csv                   whose genes the founders have, only with `--founders`
+  networks.npz                   what agents that never learn act by, only with `--networks`
   manifest.json                  with what the run was made
   agents/part-000000.parquet …   agents that have died
   agents/living.parquet          agents alive when records were last written

@@ -1,0 +1,80 @@
+"""Where the networks of agents that never learn come from: a file, or those that had learned at the end of a run."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon import _engine
+from hedon.config.config import Config
+from hedon.config.layout import layouts, observation_columns
+from hedon.config.load import parse_config
+from hedon.record.checkpoint import Checkpoint
+from hedon.record.network import NetworkError, Networks, frozen_species, read_networks
+from hedon.record.reader import open_run
+from hedon.record.rollback import find_checkpoint
+from hedon.text import brief
+
+
+def networks_from(text: str, config: Config) -> Networks:
+    """Networks from a source.
+
+    Args:
+        text: `networks.npz` of a run, or the folder of a run: then the networks of those alive in its newest checkpoint
+            that have learned.
+        config: Of the run that begins with them; only networks of its species that never learn are taken.
+
+    Raises:
+        NetworkError: There are none, or they do not fit the config.
+        RecordError: The run cannot be read.
+    """
+    path = Path(text)
+    found = read_networks(path) if path.is_file() else _of_run(path)
+    found.require(config, text)
+    wanted = frozen_species(config)
+    return Networks({name: found.params[name] for name in wanted}, {name: found.inputs[name] for name in wanted})
+
+
+def _of_run(folder: Path) -> Networks:
+    if not folder.exists():
+        raise NetworkError(
+            f"--networks {brief(str(folder))}: there is no such file or folder: give networks.npz, or a run's folder"
+        )
+    open_run(folder)
+    checkpoint, _ = find_checkpoint(folder)
+    if checkpoint is None:
+        raise NetworkError(f"--networks {brief(str(folder))}: the run has no checkpoint, so no networks")
+    config = parse_config(checkpoint.head.config, f"config in the checkpoint of {folder}")
+    params, inputs = {}, {}
+    for name in config.agents:
+        rows = [_learned(checkpoint, config, name, world) for world in range(len(checkpoint.head.seeds))]
+        if sum(map(len, rows)):
+            params[name] = np.concatenate(rows)
+            inputs[name] = observation_columns(config, name)
+    if not params:
+        raise NetworkError(f"--networks {brief(str(folder))}: nobody alive at its end has learned")
+    return Networks(params, inputs)
+
+
+def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> NDArray[np.float32]:
+    """The networks of those of a species who have learned, (agents, parameters)."""
+    arrays = checkpoint.world(world)
+    policies = [species.learning.policy for species in config.agents.values()]
+    mine = list(config.agents).index(name)
+    if policies[mine] not in ("ppo", "frozen"):
+        return np.zeros((0, 0), np.float32)
+    species = arrays.get("species", np.zeros(len(arrays["life.agent_id"]), np.int32))
+    with_network = species[np.isin(species, [i for i, policy in enumerate(policies) if policy in ("ppo", "frozen")])]
+    rows = arrays["params"][with_network == mine]
+    if policies[mine] == "ppo":
+        learners = species[np.isin(species, [i for i, policy in enumerate(policies) if policy == "ppo"])]
+        rows = rows[arrays["updates"][learners == mine] > 0]
+    return rows[:, : _engine.learning.param_count(_network_shape(config, name))]
+
+
+def _network_shape(config: Config, name: str) -> tuple[int, int, int, int]:
+    """Rays, types that they tell apart, entries of touch, and all others, of what a species' networks read."""
+    sensor, layout = config.agents[name].sensor, layouts(config)[name]
+    touches = len(layout.touches) * sensor.touch_sectors
+    rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches
+    return sensor.ray_count, len(layout.sees), touches, rest

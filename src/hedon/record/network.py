@@ -1,0 +1,141 @@
+"""Files of networks: what agents that never learn act by.
+
+A file holds, for each species, the networks of agents that have learned somewhere, and the names of the inputs that
+they read. The run's folder holds it as `networks.npz`, and the config its digest, so that a run can be repeated and
+checked.
+"""
+
+import hashlib
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config.config import Config
+from hedon.config.layout import observation_columns
+from hedon.error import HedonError
+from hedon.record.array_file import read_arrays
+from hedon.text import brief
+
+NETWORKS = "networks.npz"
+_INPUTS = ".inputs"  # ends the name of the array that holds the names of a species' inputs, as JSON
+
+
+class NetworkError(HedonError):
+    """Networks that cannot be used."""
+
+
+@dataclass(frozen=True, eq=False)
+class Networks:
+    """Networks to begin with, by species; a world with only one has `agent`.
+
+    Attributes:
+        params: (networks, parameters) float32 of each species, as the engine orders them.
+        inputs: what the networks of each species read, in order; see `hedon.config.layout.observation_columns`.
+    """
+
+    params: Mapping[str, NDArray[np.float32]]
+    inputs: Mapping[str, tuple[str, ...]]
+
+    @cached_property
+    def content(self) -> bytes:
+        """The file."""
+        arrays: dict[str, NDArray[Any]] = {}
+        for name, params in self.params.items():
+            arrays[name] = params
+            arrays[name + _INPUTS] = np.frombuffer(json.dumps(self.inputs[name]).encode(), np.uint8)
+        file = io.BytesIO()
+        np.savez(file, allow_pickle=False, **arrays)
+        return file.getvalue()
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the file, 64 hexadecimal digits."""
+        return hashlib.sha256(self.content).hexdigest()
+
+    def draw(self, name: str, seed: int, count: int) -> NDArray[np.float32]:
+        """The network of each founder of a species in a world, (count, parameters).
+
+        The networks are taken in an order that depends on the seed; where there are fewer than founders, each is taken
+        several times.
+        """
+        params = self.params[name]
+        order = sorted(range(len(params)), key=lambda i: hashlib.sha256(f"network {name} {seed} {i}".encode()).digest())
+        return params[np.resize(order, count)]
+
+    def require(self, config: Config, origin: str = "networks") -> None:
+        """Checks that there are networks for each species that acts by networks without learning, and that they read
+        what it observes.
+
+        Raises:
+            NetworkError: A species has none, or they read something else.
+        """
+        fixed = frozen_species(config)
+        if not fixed:
+            raise NetworkError(f'{brief(origin)}: no species has learning.policy = "frozen", so none would use them')
+        for name in fixed:
+            if name not in self.params:
+                there = ", ".join(self.params)
+                raise NetworkError(f"{brief(origin)}: has no networks of the species {brief(name)}, only of: {there}")
+            read, seen = self.inputs[name], observation_columns(config, name)
+            if read != seen:
+                at = next((i for i, pair in enumerate(zip(read, seen, strict=False)) if pair[0] != pair[1]), None)
+                what = (
+                    f"they read {len(read)} inputs, and it has {len(seen)}"
+                    if at is None
+                    else f"their input {at + 1} is {brief(read[at])}, and its is {brief(seen[at])}"
+                )
+                raise NetworkError(f"{brief(origin)}: networks of {brief(name)} do not fit what it observes: {what}")
+
+
+def frozen_species(config: Config) -> list[str]:
+    """The species that act by networks that never learn."""
+    return [name for name, species in config.agents.items() if species.learning.policy == "frozen"]
+
+
+def load_networks(folder: Path, config: Config) -> Networks | None:
+    """The networks that a run began with, from its folder; None if it began with new ones.
+
+    Raises:
+        NetworkError: They are missing, damaged, or not those that the config names.
+    """
+    if not config.learning.networks:
+        return None
+    path = folder / NETWORKS
+    networks = read_networks(path)
+    if networks.digest != config.learning.networks:
+        raise NetworkError(f"{brief(str(path))}: is not the file that the config names: its digest differs")
+    networks.require(config, str(path))
+    return networks
+
+
+def read_networks(path: Path) -> Networks:
+    """Reads a file of networks, which may come from anyone.
+
+    Raises:
+        NetworkError: It cannot be read, or is not such a file.
+    """
+    try:
+        arrays = read_arrays(path)
+        inputs = {
+            name.removesuffix(_INPUTS): tuple(map(str, json.loads(array.tobytes())))
+            for name, array in arrays.items()
+            if name.endswith(_INPUTS)
+        }
+        params = {name: arrays[name] for name in inputs}
+        for name, rows in params.items():
+            if rows.dtype != np.float32 or rows.ndim != 2 or not rows.size or not np.isfinite(rows).all():
+                raise ValueError(f"{name} is not a table of finite numbers")
+        if not params or len(arrays) != 2 * len(params):
+            raise ValueError("it has other arrays than networks and their inputs")
+    except OSError as error:
+        raise NetworkError(f"{brief(str(path))}: cannot be read: {error.strerror or error}") from None
+    except Exception as error:  # a file that is not from hedon can raise any exception
+        raise NetworkError(f"{brief(str(path))}: is not a file of networks: {error}") from None
+    return Networks(params, inputs)
