@@ -52,6 +52,7 @@ MECHANISMS = {
     "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.smell.normal.coef=0.1"),
     "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.see.obstacle.over_rays=max"),
     "inner": ("food.normal.nutrient=1", "food.normal.toxin=5", "reward.relief_coef=1", "sensor.mouth_spread=180"),
+    "frozen": ("learning.policy=frozen", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
 }
 

@@ -101,8 +101,8 @@ class Moment:
         step: Steps completed.
         steps: Total steps of each world.
         seconds: Time since the first step after `first` [s].
-        rows: The last row of the table `population` of each world.
-        extinct: The step at which each world died out, or None.
+        rows: The last row of the table `population` of each world and species, world by world.
+        extinct: For each of these rows the step at which the world died out, or None.
         window: Steps of a window; agents learn at its end.
     """
 

@@ -23,6 +23,7 @@ from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last
 
 _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
 _WIDEST = 10.0  # figure [inch]
+_ROOMY = 4  # columns whose titles fit in full size
 _POINTS = 200  # intervals of the time axis
 _MANY = 8  # courses of neutral genes from which on their range is shaded behind the weights
 _RANGE = (0.025, 0.975)  # quantiles of these
@@ -83,7 +84,7 @@ def draw_histories(
         height = 2.3 * len(settings) + 0.3 if len(settings) > 1 else 2.9 + 0.3 * bool(settings[0].title)
         figure = new_figure(width, height)
         grid = figure.subplots(len(settings), columns, sharex=True, sharey=True, squeeze=False)
-        reach = 0.0
+        reach, size = 0.0, 10.0 if columns <= _ROOMY else 8.0
         for setting, panels in zip(settings, grid, strict=True):
             rows = history(setting.population, (), [*shown, *neutral_names], _POINTS, end)
             reach = max(reach, *(_draw_range(axes, rows, neutral_names, end) for axes in panels[: len(shown)]))
@@ -91,12 +92,12 @@ def draw_histories(
                 draw_zero_line(axes)
                 draw_traces(axes, rows, f"{name}_mean", color, extinct=setting.extinct, end=end)
                 if setting is settings[0]:
-                    axes.set_title(title, color=color)
+                    axes.set_title(title, color=color, fontsize=size)
             if neutral_names:
                 draw_zero_line(panels[-1])
                 _draw_neutral(panels[-1], rows, neutral_names, end)
                 if setting is settings[0]:
-                    panels[-1].set_title("neutral genes", color=NEUTRAL_COLOR)
+                    panels[-1].set_title("neutral genes", color=NEUTRAL_COLOR, fontsize=size)
             if setting is settings[-1]:
                 for axes in panels:
                     draw_time_axis(axes, rows, end)

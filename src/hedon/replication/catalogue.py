@@ -14,9 +14,10 @@ from hedon.replication.study.entropy import ENTROPY
 from hedon.replication.study.fault import FAULTS
 from hedon.replication.study.noise import NOISE
 from hedon.replication.study.released import RELEASED
+from hedon.replication.study.sequel import SEQUEL
 from hedon.replication.study.supply import SUPPLY
 
 _PAPER = (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS)
 _STUDIES = (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY, *ACTING)
 
-ITEMS: dict[str, Item] = {item.name: item for item in (*_PAPER, *_STUDIES)}
+ITEMS: dict[str, Item] = {item.name: item for item in (*_PAPER, *SEQUEL, *_STUDIES)}

@@ -8,8 +8,9 @@ from hedon.replication.catalogue import ITEMS
 from hedon.replication.item.item import Item
 
 GROUPS = {
-    "paper": tuple(name for name, item in ITEMS.items() if item.kind != "study"),
+    "paper": tuple(name for name, item in ITEMS.items() if item.kind in ("figure", "table")),
     "studies": tuple(name for name, item in ITEMS.items() if item.kind == "study"),
+    "sequel": tuple(name for name, item in ITEMS.items() if item.kind == "sequel"),
     "all": tuple(ITEMS),
 }
 """Names that stand for several items."""

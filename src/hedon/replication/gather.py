@@ -1,8 +1,10 @@
 """From run folders to what items are made from: the worlds that were asked for, as far as they are there."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import polars as pl
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import ConfigError, digest, load_config
@@ -21,35 +23,50 @@ class Gathered:
     Attributes:
         request: what was asked.
         runs: that hold some of the worlds.
-        worlds: per setting's digest and seed, as far as their records reach.
+        worlds: per setting's digest, seed and species, as far as their records reach.
+        frames: per setting's digest and seed the positions that were recorded.
         snapshots: per setting's digest the last state of one world, where there is one.
         faults: what could not be read, and why.
     """
 
     request: Request
     runs: tuple[Run, ...]
-    worlds: dict[tuple[str, int], WorldRecord]
+    worlds: dict[tuple[str, int, str], WorldRecord]
+    frames: dict[tuple[str, int], pl.LazyFrame]
     snapshots: dict[str, Snapshot]
     faults: tuple[str, ...]
 
     def material(self, item: Item) -> Material:
         """What one item is made from."""
         scale, fidelity = self.request.scale(item), self.request.fidelity
-        digests = {arm.label: digest(arm.config(fidelity)) for arm in item.arms}
+        configs = {arm.label: arm.config(fidelity) for arm in item.arms}
+        digests = {label: digest(config) for label, config in configs.items()}
+        shown = {arm.label: arm.species or next(iter(configs[arm.label].agents)) for arm in item.arms}
         worlds = {
-            label: [self.worlds[key, seed].until(scale.steps) for seed in scale.seeds if (key, seed) in self.worlds]
+            label: [
+                self.worlds[key, seed, shown[label]].until(scale.steps)
+                for seed in scale.seeds
+                if (key, seed, shown[label]) in self.worlds
+            ]
             for label, key in digests.items()
         }
         snapshots = {label: self.snapshots[key] for label, key in digests.items() if key in self.snapshots}
-        return Material(fidelity, {label: group for label, group in worlds.items() if group}, snapshots)
+        until = pl.col("step") <= scale.steps
+        frames = {
+            label: [self.frames[key, seed].filter(until) for seed in scale.seeds if (key, seed) in self.frames]
+            for label, key in digests.items()
+            if item.frames
+        }
+        return Material(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
 
     def demanded(self) -> list[WorldRecord]:
         """Every world once, as long as the most demanding item asks for."""
         return [
-            self.worlds[need.digest, seed].until(steps)
+            self.worlds[need.digest, seed, species].until(steps)
             for need in needs(self.request)
             for seed, steps in need.steps.items()
-            if (need.digest, seed) in self.worlds
+            for species in need.config.agents
+            if (need.digest, seed, species) in self.worlds
         ]
 
 
@@ -81,17 +98,31 @@ def gather(request: Request, folder: Path) -> Gathered:
     faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
     status = {run.path.name: run.manifest.status for run in runs}
     needed = {need.digest: need for need in wanted}
-    kept: dict[tuple[str, int], WorldRecord] = {}
+    digests = {run.path.name: run.manifest.config_digest or "" for run in runs}
+    kept: dict[tuple[str, int, str], WorldRecord] = {}
     # Whole runs first, since of two worlds that are equally long the first is kept.
     for world in read_worlds(sorted(runs, key=lambda run: bool(damaged[run.path.name]))):
-        need = needed.get(digest(world.config))
+        need = needed.get(digests[world.run])
         if need is not None and world.seed in need.steps:
             known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
             # Equal settings can be written in several ways, so the need names them, not each run.
-            kept[need.digest, world.seed] = replace(known, condition=setting_name(need.config))
+            name = setting_name(need.config) + (f": {world.species}" if len(need.config.agents) > 1 else "")
+            kept[need.digest, world.seed, world.species] = replace(known, condition=name)
     used = {world.run for world in kept.values()}
     snapshots = _snapshots(request, runs, faults)
-    return Gathered(request, tuple(run for run in runs if run.path.name in used), kept, snapshots, tuple(faults))
+    shown = tuple(run for run in runs if run.path.name in used)
+    return Gathered(request, shown, kept, _frames(needed, shown), snapshots, tuple(faults))
+
+
+def _frames(needed: Mapping[str, Need], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
+    """The positions of each world that an item needs, from the run that goes furthest."""
+    found: dict[tuple[str, int], pl.LazyFrame] = {}
+    for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
+        need = needed[run.manifest.config_digest or ""]
+        if need.frames and need.has_frames(run):
+            for index, seed in enumerate(run.manifest.seeds):
+                found[need.digest, seed] = run.frames().filter(pl.col("world") == index)
+    return found
 
 
 def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:

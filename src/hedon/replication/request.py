@@ -1,10 +1,12 @@
 """What is asked of a reproduction: which items, at which scale, and hence which worlds."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from hedon.config import PRESETS, Config, diff, digest, load_config
 from hedon.config.problem import format_value
+from hedon.record.reader import Run
 from hedon.replication.item.item import Item, Scale
 
 
@@ -31,7 +33,7 @@ class Request:
         return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Need:
     """A setting that worlds are needed of, by one item or several.
 
@@ -39,11 +41,18 @@ class Need:
         config: the setting.
         digest: of the config: settings of equal digest share their worlds.
         steps: of each seed [step].
+        frames: steps between two records of all positions; 0 where no item needs them.
     """
 
     config: Config
     digest: str
     steps: dict[int, int] = field(default_factory=dict)
+    frames: int = 0
+
+    def has_frames(self, run: Run) -> bool:
+        """Whether a run recorded the positions that are needed."""
+        every = run.manifest.frames
+        return self.frames == 0 or (every > 0 and self.frames % every == 0)
 
 
 def needs(request: Request) -> list[Need]:
@@ -53,6 +62,7 @@ def needs(request: Request) -> list[Need]:
         key = digest(config)
         need = found.setdefault(key, Need(config, key))
         scale = request.scale(item)
+        need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
         for seed in scale.seeds:
             need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
     return list(found.values())

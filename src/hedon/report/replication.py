@@ -87,7 +87,7 @@ def _worlds_table(item: Item, material: Material, gathered: Gathered) -> ResultT
     rows = [_worlds_row(arm.label, material.worlds.get(arm.label, ()), len(scale.seeds)) for arm in item.arms]
     count = len(scale.seeds)
     note = f"Asked for: {count} world{'s' if count > 1 else ''} of {scale.steps:,} steps"
-    if item.kind != "study":
+    if item.kind in ("figure", "table"):
         note += f"; the paper has {len(item.scale.seeds)} of {item.scale.steps:,}"
     return table(f"{item.name}-worlds", "Made of", rows, note + ".")
 

@@ -188,7 +188,7 @@ def test_a_word_that_names_nothing_is_told_with_the_nearest() -> None:
 
 
 def test_groups_hold_every_item_once() -> None:
-    names = [item.name for item in choose_items(["paper", "studies"])]
+    names = [item.name for item in choose_items(["paper", "sequel", "studies"])]
     assert names == [item.name for item in choose_items(["all"])]
     assert len(names) == len(set(names))
     assert [item.name for item in choose_items([])] == [item.name for item in choose_items(["paper"])]

@@ -35,8 +35,7 @@ def history(
         births_failed_space per 1000 steps; eaten_<kind> per 1000 steps lived. What has no value, since
         nobody lived, is null.
     """
-    width = max((max(_last_step(population), end) + 1) / points, 1.0)
-    groups = population.group_by("world", ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin"))
+    groups = population.group_by("world", _bin(population, points, end))
     means = ("alive", "energy_mean", "generation_mean", *(f"{name}_mean" for name in weight_names))
     eaten = [f"eaten_{kind}" for kind in food_kinds]
     sums = ("steps", "agent_steps", *_COUNTS, *eaten)
@@ -88,6 +87,34 @@ def extinct_step(population: pl.DataFrame) -> int | None:
     """End of the first interval at whose end nobody lived [step]; None while somebody lives."""
     empty = population.filter(pl.col("alive") == 0)
     return None if empty.is_empty() else int(empty["step"][0])
+
+
+def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
+    """How often the agents of a species that may be eaten die, and of what, in at most `points` intervals.
+
+    Args:
+        population: table `population` of one species, of worlds with several.
+        points: rows per world at most.
+
+    Returns:
+        By world and bin: step (its end [step]); age_energy, starved and eaten, deaths per 10,000 steps lived, null
+        where nobody lived.
+    """
+    counted = ("deaths", "deaths_starved", "deaths_eaten", "agent_steps")
+    rows = population.group_by("world", _bin(population, points)).agg(
+        pl.col("step").max(), pl.col(counted).cast(pl.Int64).sum()
+    )
+    per = 10_000.0 / pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
+    starved, eaten = pl.col("deaths_starved"), pl.col("deaths_eaten")
+    rates = {"age_energy": pl.col("deaths") - starved - eaten, "starved": starved, "eaten": eaten}
+    found = rows.sort("world", "bin").with_columns((count * per).alias(name) for name, count in rates.items())
+    return found.select("world", "bin", "step", *rates)
+
+
+def _bin(population: pl.DataFrame, points: int, end: float = 0.0) -> pl.Expr:
+    """The index of the interval of a row, of at most `points` from 0 to its end or a later one [step]."""
+    width = max((max(_last_step(population), end) + 1) / points, 1.0)
+    return ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin")
 
 
 def _last_step(population: pl.DataFrame) -> int:

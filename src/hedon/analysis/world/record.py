@@ -10,6 +10,7 @@ import polars as pl
 from hedon.analysis.world.population import extinct_step
 from hedon.config import Config, load_config
 from hedon.config.layout import layouts, of_species
+from hedon.config.species import ONLY
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
@@ -49,6 +50,11 @@ class WorldRecord:
     last_step: int
     extinct_step: int | None
     apart_step: int | None = None
+
+    @property
+    def species(self) -> str:
+        """The name of the species whose record it is; `agent` where there is only one, without a name."""
+        return next(iter(self.config.species), ONLY)
 
     @property
     def weight_names(self) -> tuple[str, ...]:

@@ -56,7 +56,7 @@ class PlanDisplay:
     def update(self, job: Job, moment: Moment) -> None:
         """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
         self._moments[job.folder] = moment
-        living = sum(extinct is None for extinct in moment.extinct)
+        living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.
         self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
         now = time.monotonic()
@@ -80,8 +80,7 @@ class PlanDisplay:
         words = [f"{job.folder}: {outcome.status}"]
         if moment is not None:
             words.append(f"step {moment.step:,}")
-            ends = zip(job.seeds, moment.extinct, strict=True)
-            words += [f"seed {seed} died out" for seed, step in ends if step is not None]
+            words += [f"seed {seed} died out" for seed, step in _ends(job, moment).items() if step is not None]
         if outcome.fault:
             words.append(outcome.fault)
         self._console.print(", ".join(words), soft_wrap=True)
@@ -109,6 +108,12 @@ class PlanDisplay:
         hint = Text("Ctrl-C ends all runs after their current windows; the same command continues.", style="dim")
         bar = ProgressBar(total=max(self._total, 1), completed=done, width=72)
         return Group(Text(self._head()), bar, table, hint)
+
+
+def _ends(job: Job, moment: Moment) -> dict[int, int | None]:
+    """The step at which the world of each seed died out, or None."""
+    species = len(moment.extinct) // len(job.seeds)
+    return dict(zip(job.seeds, moment.extinct[::species], strict=True))
 
 
 def _alive(moment: Moment) -> str:

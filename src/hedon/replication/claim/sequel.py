@@ -13,7 +13,6 @@ from functools import partial
 
 from hedon.analysis.world.record import WorldRecord
 from hedon.config.layout import hunters
-from hedon.config.species import ONLY
 from hedon.replication.claim.claim import Claim, score
 from hedon.replication.claim.order import Order
 
@@ -31,13 +30,12 @@ FAMILY_LEVEL = 1.0 - 0.05 / FAMILY
 
 def own_score(world: WorldRecord) -> float | None:
     """Score of the weight for seeing one's own species; None without a whole pedigree."""
-    return score(f"w_see_{next(iter(world.config.species), ONLY)}", world)
+    return score(f"w_see_{world.species}", world)
 
 
 def hunter_score(world: WorldRecord) -> float | None:
     """Score of the weight for seeing who eats one's species, the lowest if there are several; None as for `score`."""
-    own = next(iter(world.config.species), ONLY)
-    scores = [score(f"w_see_{name}", world) for name in hunters(world.config, own)]
+    scores = [score(f"w_see_{name}", world) for name in hunters(world.config, world.species)]
     return min((each for each in scores if each is not None), default=None)
 
 

@@ -19,9 +19,10 @@ _READ = (
 _AGAINST_ACTION = tuple(against_action(("w_normal",)))
 
 
-def _draw(
+def draw_last(
     name: str, question: str, arms: Sequence[Arm], panels: Sequence[tuple[str, str]], material: Material
 ) -> Iterator[NamedFigure]:
+    """The weights of those born last in the worlds of some arms: the panels of each arm side by side."""
     worlds = present(arms, material)
     caption = sentences(_READ, missing(arms, material))
     if not worlds:
@@ -39,7 +40,7 @@ def _draw(
 def _item(
     name: str, title: str, paper: str, question: str, *arms: Arm, panels: Sequence[tuple[str, str]] = _AGAINST_ACTION
 ) -> Item:
-    return Item(name, title, "figure", paper, partial(_draw, name, question, arms, panels), arms, PAPER_SCALE)
+    return Item(name, title, "figure", paper, partial(draw_last, name, question, arms, panels), arms, PAPER_SCALE)
 
 
 WEIGHTS: tuple[Item, ...] = (

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Literal
 
+import polars as pl
+
 from hedon.analysis.table import ResultTable
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config, load_config
@@ -21,12 +23,14 @@ class Arm:
         preset: that it starts from.
         overrides: what it changes, as for `--set`.
         fidelity: its own; None for that of the reproduction.
+        species: whose records are shown, where the setting has several; by default the first.
     """
 
     label: str
     preset: str = "baseline"
     overrides: tuple[str, ...] = ()
     fidelity: str | None = None
+    species: str = ""
 
     def config(self, fidelity: str) -> Config:
         """The settings, in a reproduction of some fidelity."""
@@ -59,11 +63,14 @@ class Material:
         fidelity: of the reproduction.
         worlds: per label of an arm the worlds that there are, up to the steps asked for; none for an arm without.
         snapshots: per label the last state of a world of that arm, where there is one.
+        frames: per label the positions of all species in each world, a table `frames` of one world each, as far as they
+            were recorded.
     """
 
     fidelity: str
     worlds: Mapping[str, Sequence[WorldRecord]] = field(default_factory=dict)
     snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
+    frames: Mapping[str, Sequence[pl.LazyFrame]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -73,19 +80,22 @@ class Item:
     Attributes:
         name: what the command line calls it.
         title: its heading.
-        kind: "figure" or "table" of the paper; or "study", of a question that the paper leaves open.
-        paper: what the paper shows or says there; for a study, what it asks.
+        kind: "figure" or "table" of the paper; "study", of a question that the paper leaves open; or "sequel", of the
+            paper's sequel on predators and prey.
+        paper: what the paper, or its sequel, shows or says there; for a study, what it asks.
         make: makes its figures and tables, in the order in which they are shown.
         arms: the settings that it needs worlds of; none where settings alone are enough.
         scale: how much is run of each arm unless asked otherwise; for an item of the paper, the paper's.
         pictures: whether it only shows the last state of a world of each arm, for which any run is long enough.
+        frames: steps between two records of all positions that it needs; 0 if it needs none.
     """
 
     name: str
     title: str
-    kind: Literal["figure", "table", "study"]
+    kind: Literal["figure", "table", "study", "sequel"]
     paper: str
     make: Callable[[Material], Iterable[NamedFigure | ResultTable]]
     arms: tuple[Arm, ...] = ()
     scale: Scale = Scale((), 0)
     pictures: bool = False
+    frames: int = 0

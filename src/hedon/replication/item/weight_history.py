@@ -16,7 +16,8 @@ _READ = (
 )
 
 
-def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
+def draw_courses(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
+    """The mean weights of the worlds of some arms, which must have the same genes, over time: a row per arm."""
     worlds = present(arms, material)
     caption = sentences(_READ, missing(arms, material))
     if not worlds:
@@ -38,7 +39,7 @@ def _draw(name: str, question: str, arms: Sequence[Arm], material: Material) -> 
 
 
 def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
-    return Item(name, title, "figure", paper, partial(_draw, name, question, arms), arms, PAPER_SCALE)
+    return Item(name, title, "figure", paper, partial(draw_courses, name, question, arms), arms, PAPER_SCALE)
 
 
 HISTORIES: tuple[Item, ...] = (

@@ -27,6 +27,7 @@ class Job:
         steps: total for each world [step].
         world_steps: steps still to run, summed over its worlds [step].
         begun: whether the run is to be continued.
+        frames: steps between two records of all positions, of a run to begin; 0 for none.
     """
 
     folder: Path
@@ -35,6 +36,7 @@ class Job:
     steps: int
     world_steps: int
     begun: bool
+    frames: int = 0
 
 
 def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list[Job]:
@@ -49,7 +51,7 @@ def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list
     """
     jobs: list[Job] = []
     for need in wanted:
-        mine = [run for run in runs if run.manifest.config_digest == need.digest]
+        mine = [run for run in runs if run.manifest.config_digest == need.digest and need.has_frames(run)]
         reach = {run.path: _reach(run) for run in mine}
         too_short: dict[Path, int] = {}
         missing: dict[int, list[int]] = {}
@@ -67,7 +69,7 @@ def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list
         for steps, seeds in missing.items():
             name = f"{folder_name(need.config)}-{seed_span(seeds)}"
             free = free_folder(folder / name, [job.folder for job in jobs])
-            jobs.append(Job(free, need.config, tuple(seeds), steps, steps * len(seeds), False))
+            jobs.append(Job(free, need.config, tuple(seeds), steps, steps * len(seeds), False, need.frames))
     return sorted(jobs, key=lambda job: -job.world_steps)
 
 
@@ -88,4 +90,7 @@ def _reach(run: Run) -> dict[int, float]:
         ]
         return dict(zip(manifest.seeds, done, strict=True))
     # The manifest of a run that is still running, or was killed, does not say how far it came; its records do.
-    return {world.seed: float(world.recorded_step()) for world in read_worlds([run])}
+    reach: dict[int, float] = {}
+    for world in read_worlds([run]):  # one for each species
+        reach[world.seed] = min(reach.get(world.seed, math.inf), world.recorded_step())
+    return reach

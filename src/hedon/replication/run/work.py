@@ -79,4 +79,4 @@ def answer(link: Connection, make: Callable[[Display], str]) -> None:
 def _make(job: "Job", threads: int, display: Display) -> Manifest:
     if job.begun:
         return resume(job.folder, job.steps, threads, display)
-    return run(RunPlan(job.config, job.seeds, job.steps, job.folder, threads), display)
+    return run(RunPlan(job.config, job.seeds, job.steps, job.folder, threads, job.frames), display)

@@ -1,6 +1,7 @@
 """Study: over all of the paper's conditions, which weights went further, or more in one direction, than drift?"""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from hedon.figure.drift import draw_scores
 from hedon.figure.named import NamedFigure
 from hedon.replication.item.census import present, sentences
 from hedon.replication.item.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
-from hedon.replication.item.item import Item, Material
+from hedon.replication.item.item import Arm, Item, Material, Scale
 from hedon.replication.study.study import missing_note
 from hedon.statistic.interval import SHOWN_FROM
 
@@ -29,7 +30,7 @@ _TESTS = (
     "the root mean square score, 1 under drift, below 1 where a weight was held back, with the chi-squared p of a "
     "larger one (distance) or of a smaller one (held). Intervals are Student's t and chi-squared; drift_low and "
     "drift_high are those of the mean score by the spread of drift itself, 1, as p takes it. p_holm is corrected for "
-    "both weights and all three tests."
+    "all weights and all three tests."
 )
 _SHARED = (
     "Worlds of one seed share founders and the mutations of agents of equal number in all conditions, so that they are "
@@ -44,29 +45,43 @@ Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
 """Per arm and seed, the drift of each weight; worlds without a whole pedigree are left out."""
 
 
-def make_drift(material: Material) -> Iterator[NamedFigure | ResultTable]:
-    """The figure and the tables of the study."""
-    worlds = present(ARMS, material)
+def make_drift(
+    arms: Sequence[Arm], rewards: Mapping[str, str], scale: Scale, name: str, material: Material
+) -> Iterator[NamedFigure | ResultTable]:
+    """The figure and the tables of scores against drift.
+
+    Args:
+        arms: whose worlds are read.
+        rewards: the weights that are asked about and that all arms have, with what they are called.
+        scale: how much was asked for.
+        name: of the figure; begins the names of the tables.
+        material: what there is.
+    """
+    worlds = present(arms, material)
     scores = {label: {w.seed: found for w in group if (found := standard_drift(w))} for label, group in worlds.items()}
-    note = missing_note(material, ARMS, PAPER_SCALE)
+    note = missing_note(material, arms, scale)
     groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
     groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}
-    tests = {label: list(_test_rows(label, group)) for label, group in groups.items()}
+    tests = {label: list(_test_rows(label, group, rewards)) for label, group in groups.items()}
     question = "Which weights went further, or more in one direction, than drift?"
     if groups[ALL]:
         means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
-        yield NamedFigure("drift", question, draw_scores(_points(scores), REWARDS | MARKER, means), _DRAWN)
-    yield table("drift_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note))
+        yield NamedFigure(name, question, draw_scores(_points(scores), {**rewards, **MARKER}, means), _DRAWN)
+    yield table(
+        f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
+    )
     by_condition = [row for rows in tests.values() for row in rows if row["test"] == "direction"]
-    yield table("drift_condition", "Weights against drift, by condition", by_condition, _TESTS)
-    yield table("drift_world", "Weights against drift, world by world", _world_rows(scores))
+    yield table(f"{name}_condition", "Weights against drift, by condition", by_condition, _TESTS)
+    yield table(f"{name}_world", "Weights against drift, world by world", _world_rows(scores))
 
 
-def _test_rows(label: str, worlds: Sequence[Sequence[WorldDrift]]) -> Iterator[dict[str, Any]]:
+def _test_rows(
+    label: str, worlds: Sequence[Sequence[WorldDrift]], rewards: Mapping[str, str]
+) -> Iterator[dict[str, Any]]:
     """Both tests of each weight, without bounds below three worlds."""
-    names = REWARDS | MARKER
+    names = {**rewards, **MARKER}
     known = [[found for found in world if found.weight in names] for world in worlds]
-    for test in drift_tests(known, list(REWARDS), list(MARKER), np.random.default_rng(SEED)):
+    for test in drift_tests(known, list(rewards), list(MARKER), np.random.default_rng(SEED)):
         if test.test == "marker":
             continue
         positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
@@ -97,7 +112,7 @@ DRIFT: tuple[Item, ...] = (
         "study",
         "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
         "the weights of food and of action?",
-        make_drift,
+        partial(make_drift, ARMS, REWARDS, PAPER_SCALE, "drift"),
         ARMS,
         PAPER_SCALE,
     ),
