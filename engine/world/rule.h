@@ -84,6 +84,12 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   *record++ = static_cast<double>(body.y[slot]);
   *record++ = static_cast<double>(world.head().step);
   *record++ = static_cast<double>(species.capacity() - world.state.free_count[s]);
+  const int32_t present[] = {config.nutrient.present, config.toxin.present};
+  for (int32_t i = 0; i < 2; ++i) {
+    if (present[i] == 0) continue;
+    *record++ = world.inner_before(slot)[i];
+    *record++ = world.inner(slot)[i];
+  }
   *record++ = own_answer(world, slot, use, inputs);
   const double* memory = &world.state.memory[int64_t{slot} * world.shape->memory];
   for (int32_t m = 0; m < config.reward.memory; ++m) *record++ = memory[m];

@@ -95,7 +95,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.has_network = species.learns || config.learning.policy == Policy::frozen;
   species.observes = species.has_network;
   species.observes |= has_rule(config);
-  species.record = config.reward.terms.count + config.genome.genes.count + 12 + config.reward.memory;
+  const int32_t inner = (config.nutrient.present != 0) + (config.toxin.present != 0);
+  species.record = config.reward.terms.count + config.genome.genes.count + 12 + 2 * inner + config.reward.memory;
   for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);
   const int32_t dense = own_entries(config) + config.sensor.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, config.sensor.sees.count,

@@ -78,6 +78,26 @@ def recording(file, name, left_out=()):
     return paid(file, "both", *settings, memory=16), columns
 
 
+def test_the_record_has_the_inner_states_of_the_species(file):
+    names = ("nutrient_before", "nutrient", "toxin_before", "toxin")
+    file.write_text(
+        "def copy(agent):\n"
+        + "".join(f"    agent.memory_{i} = agent.{n}\n" for i, n in enumerate(names, 1))
+        + "    return agent.linear\n"
+    )
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, "food.normal.nutrient=1", "food.normal.toxin=5")
+    simulation = paid(file, "copy", *settings, memory=4)
+    simulation.run(30)
+    world = simulation.worlds[0]
+    before = world.agents()
+    simulation.run(1)
+    after, record = world.agents(), world.view("memory")[world.living].T
+    for state, (then, now) in {"nutrient": record[:2], "toxin": record[2:]}.items():
+        np.testing.assert_array_equal(then, before[state])
+        np.testing.assert_array_equal(now, after[state])
+    assert (after["toxin"] > before["toxin"]).any() or (before["toxin"] > 0).any()
+
+
 PLACED = ("x", "y", "step", "alive")
 MOVING = ("force_left", "force_right", "moved", "nearness")
 

@@ -161,12 +161,15 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     """Names of the fields of the record that a rule of a species gets of each agent, in order.
 
     An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `relief`.
-    What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
+    What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth. Where there are
+    other inner states than energy, they stand before it, each as it was at the start of the step and as it is.
     """
     layout, memory = layouts(config)[name], config.agents[name].reward.memory
+    inner = inner_states(config, config.agents[name])[1:]
+    states = (column for state in inner for column in (f"{state}_before", state))
     inputs = ("relief" if term.input == "relief" else term.gene.removeprefix("w_") for term in layout.terms)
     own = "linear" if use == "reward" else "chance"
-    return (*inputs, *layout.gene_names, *RULE_INPUTS, own, *(f"memory_{i + 1}" for i in range(memory)))
+    return (*inputs, *layout.gene_names, *RULE_INPUTS, *states, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
 def choose_species(name: str | None, config: Config) -> str | None:
