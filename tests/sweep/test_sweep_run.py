@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from hedon.cli.main import app
 from hedon.error import HedonError
 from hedon.sweep.conduct import Silent, open_batches, run_sweep
+from hedon.sweep.error import SweepError
 from hedon.sweep.part import parse_part
 from hedon.sweep.plan import load_plan
 from hedon.sweep.status import sweep_status
@@ -156,3 +157,17 @@ def said(*words: str) -> str:
     done = CliRunner().invoke(app, list(words))
     assert done.exit_code == 0, done.output + str(done.exception)
     return done.output
+
+
+def test_a_script_for_slurm_has_a_task_for_each_batch_at_most(tmp_path):
+    place = tmp_path / "a sweep"
+    words = ["sweep", "script", str(sweep_file(tmp_path)), "--out", str(place)]
+    refused = CliRunner().invoke(app, words)
+    assert isinstance(refused.exception, SweepError)
+    assert "say for which system" in str(refused.exception)
+    done = CliRunner().invoke(app, [*words, "--slurm", "--jobs", "100", "--workers", "3", "--hours", "2"])
+    assert done.exit_code == 0, done.output
+    text = (tmp_path / "a sweep.sh").read_text()
+    assert "#SBATCH --array=1-2\n#SBATCH --cpus-per-task=3\n#SBATCH --time=2:00:00\n" in text
+    assert f"sweep resume '{place}' --workers 3 --part \"$SLURM_ARRAY_TASK_ID/2\"" in text
+    assert load_plan(open_store(str(place))).steps == 320

@@ -179,6 +179,42 @@ def report(
     make_console().print(f"wrote {files[0]} and {len(files) - 1} figures beside it", soft_wrap=True)
 
 
+@app.command()
+def script(
+    file: File,
+    slurm: Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")] = False,
+    out: Out = None,
+    jobs: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
+    workers: Annotated[int, typer.Option(help="Processes of each task, one processor each.", min=1)] = 1,
+    hours: Annotated[int, typer.Option(help="Hours that a task may take.", min=1, max=10_000)] = 24,
+) -> None:
+    """Write a sweep, and a script that runs it on a cluster: FOLDER.sh.
+
+    The folder must be one that all nodes share, or a URL. A task that runs out of time saves where it is; submit the
+    script again to go on.
+
+    \b
+    Example:
+      hedon sweep script cost.toml --slurm --out /shared/cost --jobs 100
+    """
+    from hedon.record.atomic import write_atomically
+    from hedon.sweep.error import SweepError
+    from hedon.sweep.plan import write_plan
+    from hedon.sweep.read import read_sweep
+    from hedon.sweep.slurm import slurm_script
+    from hedon.sweep.store import open_store
+
+    if not slurm:
+        raise SweepError("say for which system: --slurm is the only one")
+    asked = read_sweep(file)
+    store = open_store(out or str(Path("sweeps") / asked.name))
+    made = write_plan(asked, store)
+    path = Path(f"{asked.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
+    text = slurm_script(made, store, jobs, workers, hours).encode()
+    write_atomically(path, lambda content: content.write(text))
+    make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
+
+
 def _say_size(made: "SweepPlan", console: "Console") -> None:
     console.print(
         f"hedon: sweep {made.name}: {len(made.settings):,} settings x {len(made.seeds):,} seeds x "
