@@ -23,7 +23,7 @@ from hedon.sweep.store import open_store
 from hedon.sweep.work import RESULTS, WORK, Task, make_batch
 
 START = "from hedon.cli.start import main; main()"
-STEPS = 20_480
+STEPS = 6_400
 """Of each world: some seconds."""
 
 

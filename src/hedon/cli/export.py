@@ -8,7 +8,9 @@ import typer
 from hedon.error import HedonError
 
 TABLES = ("csv", "parquet", "arrow")
-TREES = ("alife", "newick")
+TREES = ("alife", "newick", "png")
+OF_A_WORLD = ("phylogeny", "indices")
+POINTS = 50
 
 
 class ExportArgumentError(HedonError):
@@ -17,20 +19,24 @@ class ExportArgumentError(HedonError):
 
 def export(
     what: Annotated[
-        Literal["agents", "population", "frames", "phylogeny"],
-        typer.Argument(help="A table of all worlds, or the pedigree of one."),
+        Literal["agents", "population", "frames", "phylogeny", "indices"],
+        typer.Argument(help="A table of all worlds; or of one its pedigree, or indices of the pedigree's shape."),
     ],
     run: Annotated[Path, typer.Argument(help="Folder of the run; it is only read.")],
     file_format: Annotated[
-        Literal["csv", "parquet", "arrow", "alife", "newick"] | None,
+        Literal["csv", "parquet", "arrow", "alife", "newick", "png"] | None,
         typer.Option(
             "--format",
             help="Of a table: csv (default), parquet or arrow. Of a phylogeny: alife (default), the ALife data "
-            "standard with all agents and their genes, or newick, a tree of the living.",
+            "standard with all agents and their genes; newick, a tree of the living; or png, a picture of it.",
         ),
     ] = None,
     world: Annotated[int | None, typer.Option(metavar="SEED", help="Whose pedigree, by the world's seed.")] = None,
     species: Annotated[str | None, typer.Option(help="Only the pedigree of this species.")] = None,
+    color: Annotated[
+        str | None, typer.Option(metavar="GENE", help="What colors the picture; by default the first gene.")
+    ] = None,
+    points: Annotated[int, typer.Option(help="Indices at so many times.", min=1, max=10_000)] = POINTS,
     out: Annotated[
         Path | None, typer.Option(help="The new file; by default RUN-WHAT with the format's ending, here.")
     ] = None,
@@ -42,8 +48,11 @@ def export(
       hedon export agents runs/baseline-corrected-s1
       hedon export population runs/baseline-corrected-s1 --format parquet --out population.parquet
       hedon export phylogeny runs/baseline-corrected-s1 --format newick
+      hedon export phylogeny runs/baseline-corrected-s1 --format png --color w_action
+      hedon export indices runs/baseline-corrected-s1 --points 100
     """
-    from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
+    from hedon.export.indices import index_table
+    from hedon.export.phylogeny import alife_table, last_step, newick, pedigree, picture
     from hedon.export.table import TableFormat, table_of, write_new, write_table
     from hedon.record.reader import open_run
 
@@ -51,18 +60,23 @@ def export(
     chosen = file_format or formats[0]
     if chosen not in formats:
         raise ExportArgumentError(f"--format {chosen}: of {what} there is " + ", ".join(formats))
-    if what != "phylogeny" and (world is not None or species is not None):
+    if color is not None and chosen != "png":
+        raise ExportArgumentError("--color is of a picture: export phylogeny --format png")
+    if what not in OF_A_WORLD and (world is not None or species is not None):
         raise ExportArgumentError(f"--world and --species choose a pedigree: {what} has all worlds and species")
     opened = open_run(run)
     ending = {"alife": "csv", "newick": "nwk"}.get(chosen, chosen)
     target = out or Path(f"{run.resolve().name}-{what}.{ending}")
-    if what != "phylogeny":
+    if what not in OF_A_WORLD:
         write_table(table_of(opened, what), cast(TableFormat, chosen), target)
     else:
         agents = pedigree(opened, world, species)
-        if chosen == "alife":
+        now = last_step(opened, agents)
+        if what == "indices":
+            write_table(index_table(agents, now, points).lazy(), cast(TableFormat, chosen), target)
+        elif chosen == "alife":
             write_table(alife_table(agents, opened.weight_names).lazy(), "csv", target)
         else:
-            trees = newick(agents, last_step(opened, agents))
-            write_new(target, lambda file: file.write(trees.encode()))
+            content = picture(agents, now, opened.weight_names, color) if chosen == "png" else newick(agents, now)
+            write_new(target, lambda file: file.write(content))
     typer.echo(f"wrote {target}")

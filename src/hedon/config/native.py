@@ -7,6 +7,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.food import FoodConfig
 from hedon.config.layout import FAMILY_GENES, INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
+from hedon.config.learning import LearningConfig
 from hedon.config.life import HazardConfig
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
@@ -49,6 +50,11 @@ def engine_config(config: Config) -> dict[str, Any]:
         "food": [_food(food) for food in config.food.values()],
         "species": [_species(config, species, made[name]) for name, species in config.agents.items()],
     }
+
+
+def engine_learning(learning: LearningConfig) -> dict[str, Any]:
+    """The settings of learning as the engine takes them."""
+    return {name: value for name, value in asdict(learning).items() if f"learning.{name}" not in PYTHON_ONLY}
 
 
 def distance_sd(config: Config, species: SpeciesConfig) -> tuple[float, float]:
@@ -97,7 +103,7 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
         "birth": birth | {"rule": _ruled(species.birth.rule), "distance_sd": distance_sd(config, species)},
         "genome": _genome(species, layout),
         "reward": _reward(species, layout),
-        "learning": {name: value for name, value in asdict(species.learning).items() if name != "networks"},
+        "learning": engine_learning(species.learning),
     }
 
 

@@ -6,7 +6,10 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.descent.genealogy import ALIVE, Genealogy, ancestry, genealogy
+from hedon.config.problem import nearest
 from hedon.export.table import ExportError
+from hedon.figure.style import png_bytes
+from hedon.figure.tree import draw_tree
 from hedon.record.reader import Run
 from hedon.text import brief
 
@@ -74,7 +77,7 @@ def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     )
 
 
-def newick(agents: pl.DataFrame, now: int) -> str:
+def newick(agents: pl.DataFrame, now: int) -> bytes:
     """Trees of the living in Newick's format, one on a line for each founder with living descendants.
 
     A tip is an agent that lives, called by its agent_id. A fork is a birth: one branch is the child's, the other the
@@ -88,9 +91,7 @@ def newick(agents: pl.DataFrame, now: int) -> str:
     Raises:
         ExportError: children have two parents, so that there is no tree.
     """
-    if "mate_id" in agents.columns and agents["mate_id"].is_not_null().any():
-        raise ExportError("children of this run have two parents: there is no tree; --format alife has both parents")
-    tree = genealogy(agents)
+    tree = require_tree(agents)
     ids = agents["agent_id"].to_numpy()
     kept = ancestry(tree, np.flatnonzero(tree.alive))
     found: dict[int, Subtree] = {}
@@ -100,7 +101,41 @@ def newick(agents: pl.DataFrame, now: int) -> str:
         if tree.parent[i] >= 0:
             young.setdefault(int(tree.parent[i]), []).append(i)
     roots = [i for i in sorted(found) if tree.parent[i] < 0]
-    return "".join(f"{found[i].text}:{found[i].top - tree.birth[i]};\n" for i in roots)
+    return "".join(f"{found[i].text}:{found[i].top - tree.birth[i]};\n" for i in roots).encode()
+
+
+def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | None) -> bytes:
+    """The tree of the living as a picture (PNG), colored by a gene; see `hedon.figure.tree`.
+
+    Args:
+        agents: table `agents` of one world, by agent_id, without gaps.
+        now: the last step.
+        genes: columns of the genome.
+        gene: one of them; None for the first that these agents have.
+
+    Raises:
+        ExportError: there is no such gene, or children have two parents, so that there is no tree.
+    """
+    tree = require_tree(agents)
+    known = [name for name in genes if name in agents.columns and agents[name].is_not_null().any()]
+    name = gene if gene is not None else known[0]
+    if name not in known:
+        near = nearest(name, known)
+        hint = f"; did you mean {near}?" if near else ""
+        raise ExportError(f"--color {brief(name)}: there is no such gene (there are {', '.join(known)}){hint}")
+    weight = agents[name].cast(pl.Float64).fill_null(0.0).to_numpy()
+    return png_bytes(draw_tree(tree, weight, name, now))
+
+
+def require_tree(agents: pl.DataFrame) -> Genealogy:
+    """The pedigree of agents who have one parent each.
+
+    Raises:
+        ExportError: children have two parents, so that there is no tree.
+    """
+    if "mate_id" in agents.columns and agents["mate_id"].is_not_null().any():
+        raise ExportError("children of this run have two parents: there is no tree; --format alife has both parents")
+    return genealogy(agents)
 
 
 def _life(tree: Genealogy, i: int, name: str, now: int, young: list[int], found: dict[int, Subtree]) -> Subtree:

@@ -93,6 +93,15 @@ def save_figure(figure: Figure, path: Path) -> Path:
     return path
 
 
+def png_bytes(figure: Figure) -> bytes:
+    """A figure as PNG."""
+    buffer = io.BytesIO()
+    with styled():
+        _lay_out(figure)
+        FigureCanvasAgg(figure).print_png(buffer)
+    return buffer.getvalue()
+
+
 def svg_bytes(figure: Figure) -> bytes:
     """A figure as SVG with letters as outlines, the same bytes each time and on each machine."""
     buffer = io.BytesIO()

@@ -74,7 +74,7 @@ def family() -> pl.DataFrame:
 
 def test_the_tree_of_a_family() -> None:
     # 0 forks when 1 is born; its own life leads on to 2 alone, who forks when 4 is born.
-    assert newick(family(), now=100) == "(1:90,(4:60,2:60):30):10;\n5:100;\n"
+    assert newick(family(), now=100) == b"(1:90,(4:60,2:60):30):10;\n5:100;\n"
 
 
 def test_the_alife_standard_of_a_family() -> None:
@@ -117,6 +117,6 @@ def test_the_time_of_a_common_ancestor_is_that_of_a_birth(folder: Path) -> None:
     run = open_run(folder)
     agents, now = pedigree(run, 1), run.manifest.steps_done[0]
     births = set(agents["birth_step"])
-    tree = dendropy.TreeList.get(data=newick(agents, now), schema="newick")[0]
+    tree = dendropy.TreeList.get(data=newick(agents, now).decode(), schema="newick")[0]
     tree.calc_node_ages()
     assert {now - round(node.age) for node in tree.internal_nodes()} <= births

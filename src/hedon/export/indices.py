@@ -1,0 +1,72 @@
+"""How the phylogeny of a world changes: indices of its shape over time, computed by phylotrackpy."""
+
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.descent.genealogy import ALIVE
+from hedon.export.phylogeny import require_tree
+from hedon.export.table import ExportError
+
+INDICES = {
+    "phylogenetic_diversity": ("get_phylogenetic_diversity", ()),
+    "mean_pairwise_distance": ("get_mean_pairwise_distance", (False,)),
+    "sackin_index": ("sackin_index", ()),
+    "mean_depth": ("get_ave_depth", ()),
+}
+"""Columns, the methods of phylotrackpy's `Systematics` that give them, and their arguments."""
+
+
+def index_table(agents: pl.DataFrame, now: int, points: int) -> pl.DataFrame:
+    """Indices of the phylogeny of the living at times evenly apart.
+
+    Each agent is a taxon; edges lead from parents to children and have the length 1. Ancestors are kept as long as a
+    descendant lives.
+
+    Args:
+        agents: table `agents` of one world, by agent_id, without gaps.
+        now: the last step.
+        points: how many times, the last at `now`.
+
+    Returns:
+        step; living; phylogenetic_diversity, the edges of the tree of the living (Faith 1992), families of different
+        founders joined by one edge each; mean_pairwise_distance, edges between two of the living, over pairs with a
+        common ancestor; sackin_index (Shao and Sokal 1990), which grows with the tree and as it gets out of balance;
+        mean_depth, generations since the founders. Null where nobody lives.
+
+    Raises:
+        ExportError: phylotrackpy is not installed, or children have two parents, so that there is no tree.
+    """
+    tree = require_tree(agents)
+    try:
+        systematics = import_module("phylotrackpy.systematics")
+    except ImportError:
+        raise ExportError("indices need phylotrackpy: pip install 'hedon[phylogeny]'") from None
+    living = systematics.Systematics(lambda organism: organism)
+    taxa: dict[int, Any] = {}
+    times = np.unique(np.linspace(0, now, points + 1).round().astype(np.int64)[1:])
+    born = np.argsort(tree.birth, kind="stable")
+    dead = np.argsort(tree.death, kind="stable")
+    begun = ended = 0
+    rows = []
+    for time in times.tolist():
+        # In the order of time, since who is dead cannot be a parent any more; births of a step come before its deaths.
+        while True:
+            birth = tree.birth[born[begun]] if begun < tree.size else ALIVE
+            death = tree.death[dead[ended]] if ended < tree.size else ALIVE
+            if min(birth, death) > time or min(birth, death) == ALIVE:
+                break
+            if birth <= death:
+                agent = int(born[begun])
+                parent = int(tree.parent[agent])
+                taxa[agent] = living.add_org(agent, taxa[parent]) if parent >= 0 else living.add_org(agent)
+                begun += 1
+            else:
+                living.remove_org(taxa[int(dead[ended])])
+                ended += 1
+        count = living.get_num_active()
+        found = {name: getattr(living, method)(*given) if count else None for name, (method, given) in INDICES.items()}
+        rows.append({"step": time, "living": count} | found)
+    return pl.DataFrame(rows, schema={"step": pl.Int64, "living": pl.Int64} | dict.fromkeys(INDICES, pl.Float64))

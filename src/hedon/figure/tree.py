@@ -1,0 +1,96 @@
+"""How do those who live descend from the founders, and how did a weight change on the way?"""
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from hedon.analysis.descent.genealogy import ALIVE, Genealogy, ancestry
+from hedon.figure.style import (
+    BLUE,
+    ORANGE,
+    PALE,
+    SKY,
+    VERMILION,
+    draw_message,
+    new_figure,
+    step_unit,
+    styled,
+    weight_title,
+)
+
+MOST = 300
+"""Most tips that are drawn; of more, so many evenly by birth."""
+_COLORS = LinearSegmentedColormap.from_list("weight", [BLUE, SKY, PALE, ORANGE, VERMILION])
+"""Gray in the middle, so that lines of weights near 0 can be seen on white."""
+_SHARE = 0.98  # of the agents within the ends of the colors; the few beyond have the color of an end
+
+
+def draw_tree(tree: Genealogy, weight: NDArray[np.float64], name: str, now: int) -> Figure:
+    """The tree of those who live, colored by a weight: a line for the life of each agent, from its birth to the last
+    birth of an ancestor of a tip, and for tips to the end.
+
+    Args:
+        tree: pedigree of one world.
+        weight: of each agent, (agents,).
+        name: genome column of the weight.
+        now: the last step.
+    """
+    alive = np.flatnonzero(tree.alive)
+    if not len(alive):
+        return draw_message("nobody lives at the end")
+    tips = alive[np.unique(np.linspace(0, len(alive) - 1, min(len(alive), MOST)).round().astype(int))]
+    kept = np.flatnonzero(ancestry(tree, tips))
+    place, until = _layout(tree, kept, tips, now)
+    reach = max(float(np.quantile(np.abs(weight[kept]), _SHARE)), 1e-6)
+    unit, unit_name = step_unit(now)
+    with styled():
+        figure = new_figure(8.6, min(2.0 + 0.02 * len(tips), 7.0))
+        axes = figure.subplots()
+        lives = [[(tree.birth[i] / unit, place[i]), (until[i] / unit, place[i])] for i in kept]
+        heirs = [i for i in kept if tree.parent[i] >= 0]
+        births = [[(tree.birth[i] / unit, place[i]), (tree.birth[i] / unit, place[tree.parent[i]])] for i in heirs]
+        for lines, owners, width in ((births, heirs, 0.5), (lives, kept, 1.0)):
+            drawn = LineCollection(lines, cmap=_COLORS, linewidths=width)
+            drawn.set_array(weight[owners])
+            drawn.set_clim(-reach, reach)
+            axes.add_collection(drawn)
+        axes.set_xlim(0, now / unit)
+        axes.set_ylim(-1, len(tips))
+        axes.set_yticks([])
+        axes.grid(visible=False)
+        axes.set_xlabel(f"time [{unit_name}]")
+        shown = f"{len(tips)} of {len(alive)}" if len(tips) < len(alive) else f"all {len(alive)}"
+        axes.set_title(f"{shown} who live, and their ancestors")
+        figure.colorbar(drawn, ax=axes, label=weight_title(name), extend="both", shrink=0.8)
+    return figure
+
+
+def _layout(
+    tree: Genealogy, kept: NDArray[np.int64], tips: NDArray[np.int64], now: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The height of each agent's line, and the step at which it ends, (agents,) each; of those that are kept."""
+    young: dict[int, list[int]] = {}
+    until = np.where(tree.death == ALIVE, now, tree.birth)
+    for i in kept.tolist():
+        if (parent := int(tree.parent[i])) >= 0:
+            young.setdefault(parent, []).append(i)
+            until[parent] = max(until[parent], tree.birth[i])
+    is_tip = np.zeros(tree.size, bool)
+    is_tip[tips] = True
+    until[kept] = np.where(is_tip[kept], now, until[kept])
+    place = np.full(tree.size, np.nan)
+    height = 0
+    for root in [i for i in kept.tolist() if tree.parent[i] < 0]:
+        stack = [root]
+        while stack:  # those below first, the latest birth nearest to the line
+            agent = stack.pop()
+            if is_tip[agent]:
+                place[agent] = height
+                height += 1
+            stack += young.get(agent, [])
+    for i in kept[::-1].tolist():  # children come after their parents
+        if not is_tip[i]:
+            place[i] = np.mean([place[child] for child in young[i]])
+    return place, until
