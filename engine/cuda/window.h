@@ -89,6 +89,7 @@ struct CloseWindows {
     Block block;
     World& world = on.worlds[b];
     if (world.over()) return;
+    block.barrier();  // all threads have seen that the world goes on, so it may end
     block.once([&] { close_window(world, count_taught(world)); });
     audit(block, world);
   }

@@ -150,8 +150,10 @@ inline constexpr int MAX_REPEATS = 8;
 ///
 /// A step is tried in scratch memory. If a body moves further than the neighbor list allows, the list is built with
 /// twice the skin and the step is tried again, so that no contact is ever missed.
+///
+/// Returns whether there is no fault: after that, any member may set one, so none may look at it.
 template <class Group, class Visitor>
-HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const BodyTable& table, const PhysicsState& state,
+HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const BodyTable& table, const PhysicsState& state,
                            const PhysicsScratch& scratch, const Array<int32_t>& order, int32_t count,
                            const BodyForce& force, Visitor& visitor, Fault& fault) {
   NeighborHead& head = state.neighbors.head[0];
@@ -165,7 +167,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
   for (;; ++repeat) {
     if (build) {
       group.once([&] { build_neighbors(state, table, scratch, order.data, count, skin, fault); });
-      if (fault.status != Status::ok) return;
+      if (fault.status != Status::ok) return false;
     }
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
@@ -189,8 +191,9 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
         raise_fault(fault, finite ? Status::contact_outside_skin : Status::not_finite, report.squared_moved);
         head.stale = 1;
       });
-      return;
+      return false;
     }
+    group.barrier();  // all members have read the reports, so a new list may come
     // If the list was new, its skin was too small. If it was used before, the same skin may be enough in a new list.
     skin = build ? 2.0f * skin : usual_skin;
     build = true;
@@ -214,6 +217,7 @@ HEDON_FN void physics_step(Group& group, const PhysicsConfig& config, const Body
       head.repeats += repeat;
     }
   });
+  return true;
 }
 
 }  // namespace hedon

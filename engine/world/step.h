@@ -64,9 +64,9 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   lap(Part::sense_and_act);
 
   TouchVisitor touch{&world};
-  physics_step(group, world.config->physics, world.shape->bodies, state.physics, world.physics_scratch, state.living,
-               head.living_count, BodyForce{scratch.force_x, scratch.force_y, scratch.torque}, touch, world.fault());
-  if (world.fault().status != Status::ok) {
+  const BodyForce force{scratch.force_x, scratch.force_y, scratch.torque};
+  if (!physics_step(group, world.config->physics, world.shape->bodies, state.physics, world.physics_scratch,
+                    state.living, head.living_count, force, touch, world.fault())) {
     group.once([&] { name_fault(world); });
     return;
   }
