@@ -25,7 +25,7 @@ test: sync
 static: sync
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
-	$(RUN) clang-format --dry-run -Werror $(shell find engine -name '*.h' -o -name '*.cpp' -o -name '*.cu')
+	$(RUN) clang-format --dry-run -Werror $(shell find engine tests/native -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
 	$(RUN) pyright
 	$(RUN) --group cuda python tests/cuda.py
@@ -40,6 +40,8 @@ test-long: sync
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view
 	$(RUN) python tests/soak.py
+	$(RUN) python tests/sanitize.py asan --cuda
+	$(RUN) python tests/sanitize.py tsan --cuda
 	$(RUN) python tests/sanitize.py tsan
 
 sync: tools $(UV)

@@ -1,9 +1,15 @@
-"""Builds the engine with sanitizers and runs tests on it: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`."""
+"""Builds the engine with sanitizers and runs tests on it: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`.
+
+With `--cuda` instead of pytest's arguments, windows of the emulated CUDA kernels: see `cuda_windows.py`.
+"""
 
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
+
+from cuda_windows import run_windows
 
 ROOT = Path(__file__).parents[1]
 RUNTIMES = {"asan": ("libasan.so", "libubsan.so"), "tsan": ("libtsan.so",)}
@@ -53,6 +59,9 @@ def runtime(name: str) -> str:
 
 def main(preset: str, arguments: list[str]) -> int:
     """Builds, then runs the tests in a process that loads the sanitizer's runtime first."""
+    if arguments == ["--cuda"]:
+        with tempfile.TemporaryDirectory() as folder:
+            return run_windows(preset, OPTIONS, Path(folder))
     module = build(preset)
     libraries = [runtime(name) for name in (*RUNTIMES[preset], "libstdc++.so")]
     environment = os.environ | OPTIONS | {"LD_PRELOAD": " ".join(libraries)}

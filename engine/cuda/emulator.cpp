@@ -17,6 +17,9 @@
 #include "base/float_mode.h"
 #else
 #include <ucontext.h>
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
+#endif
 #endif
 
 namespace hedon {
@@ -55,6 +58,7 @@ struct Thread {
   EmulatedBlock* block;
   int rank;
   int turn = 0;
+  int64_t barriers = 0;  ///< of the block, reached so far
 };
 
 thread_local Thread* self = nullptr;
@@ -100,9 +104,29 @@ void run_threads(EmulatedBlock& block, const std::function<void()>& body) {
 
 constexpr size_t STACK_BYTES = 256 * 1024;
 
+/// A stack that is left for a while; the address sanitizer wants to know which one is in use.
+struct Stack {
+  const void* first = nullptr;
+  size_t bytes = 0;
+#if defined(__SANITIZE_ADDRESS__)
+  void* frames = nullptr;
+
+  /// Leaves this stack for another one; `last` if for good.
+  void leave_for(const Stack& to, bool last = false) {
+    __sanitizer_start_switch_fiber(last ? nullptr : &frames, to.first, to.bytes);
+  }
+  /// Arrives on this stack; learns where the stack lies that was left.
+  void arrive(Stack& from) { __sanitizer_finish_switch_fiber(frames, &from.first, &from.bytes); }
+#else
+  void leave_for(const Stack&, bool = false) {}
+  void arrive(Stack&) {}
+#endif
+};
+
 /// One thread of a block: it runs until it waits, then the next one does.
 struct Fiber {
   Thread thread;
+  Stack place;
   ucontext_t begin;
   jmp_buf at;
   std::unique_ptr<char[]> stack{new char[STACK_BYTES]};
@@ -110,15 +134,18 @@ struct Fiber {
 };
 
 jmp_buf scheduler;
+Stack scheduler_place;
 std::vector<std::unique_ptr<Fiber> > fibers;
 Fiber* running = nullptr;
 const std::function<void()>* job = nullptr;
 bool moved = false;  ///< whether any fiber came further in this round
 
 void begin_fiber() {
+  running->place.arrive(scheduler_place);
   (*job)();
   running->done = true;
   moved = true;
+  running->place.leave_for(scheduler_place, true);
   _longjmp(scheduler, 1);
 }
 
@@ -131,7 +158,11 @@ void Barrier::wait() {
     return;
   }
   while (phase_ == phase) {
-    if (_setjmp(running->at) == 0) _longjmp(scheduler, 1);
+    if (_setjmp(running->at) == 0) {
+      running->place.leave_for(scheduler_place);
+      _longjmp(scheduler, 1);
+    }
+    running->place.arrive(scheduler_place);
   }
   moved = true;
 }
@@ -139,7 +170,8 @@ void Barrier::wait() {
 void resume(Fiber& fiber) {
   running = &fiber;
   self = &fiber.thread;
-  if (_setjmp(scheduler) != 0) return;
+  if (_setjmp(scheduler) != 0) return scheduler_place.arrive(fiber.place);
+  scheduler_place.leave_for(fiber.place);
   if (fiber.begun) _longjmp(fiber.at, 1);
   fiber.begun = true;
   setcontext(&fiber.begin);
@@ -151,6 +183,7 @@ void run_threads(EmulatedBlock& block, const std::function<void()>& body) {
   for (int rank = 0; rank < block.threads; ++rank) {
     Fiber& fiber = *fibers[static_cast<size_t>(rank)];
     fiber.thread = {&block, rank};
+    fiber.place = {fiber.stack.get(), STACK_BYTES};
     fiber.begun = fiber.done = false;
     getcontext(&fiber.begin);
     fiber.begin.uc_stack.ss_sp = fiber.stack.get();
@@ -181,7 +214,9 @@ void run_threads(EmulatedBlock& block, const std::function<void()>& body) {
 
 int thread_rank() { return self->rank; }
 int thread_count() { return self->block->threads; }
-void block_barrier() { self->block->barrier.wait(); }
+void block_barrier() {
+  if (self->barriers++ != lost_barrier) self->block->barrier.wait();
+}
 void tile_barrier() { self->block->tiles[static_cast<size_t>(self->rank / TILE)].barrier.wait(); }
 float* shared_memory() { return self->block->shared.get(); }
 

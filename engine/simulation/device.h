@@ -35,7 +35,7 @@ struct DeviceWorlds {
 /// Functions of a library for a device. Those that return a text return "" or what went wrong.
 struct DeviceProgram {
   const char* name;
-  int64_t layout;                   ///< `device_layout()` of the sources that it was built from
+  uint64_t layout;                  ///< `device_layout()` of the sources that it was built from
   int32_t widest_network;           ///< inputs of the widest network that its updates can hold
   const char* (*open)();            ///< finds the device
   int32_t (*learners_at_once)();    ///< blocks of updates that run side by side
@@ -51,11 +51,11 @@ struct DeviceProgram {
 using DeviceEntry = const DeviceProgram* (*)();
 
 /// A number that differs where the library and the engine come from sources with other data.
-constexpr int64_t device_layout() {
-  int64_t sum = 0;
+constexpr uint64_t device_layout() {
+  uint64_t sum = 0;
   for (const size_t size : {sizeof(World), sizeof(WorldState), sizeof(WorldShape), sizeof(WorldConfig), sizeof(Kernel),
                             sizeof(DeviceWorlds), sizeof(DeviceProgram), sizeof(PhysicsScratch)})
-    sum = sum * 1009 + static_cast<int64_t>(size);
+    sum = sum * 1009 + size;
   return sum;
 }
 

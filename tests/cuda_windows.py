@@ -1,0 +1,93 @@
+"""Windows of the emulated CUDA kernels under a sanitizer: `native/cuda_windows.cpp`, as `sanitize.py` runs it.
+
+In the thread sanitizer's build, every thread of a block is a thread of the system. So it sees what a device might do:
+two threads that use the same number with no barrier between them, and the same of the teams of the processor's threads,
+with which the kernels are compared. In the other build, a block has a device's 256
+threads, and the address sanitizer knows each one's stack.
+"""
+
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+from project_files import ROOT
+
+from hedon.config.load import load_config
+from hedon.view.engine_text import engine_text
+
+WINDOW = 16
+SHORT = (f"learning.rollout_steps={WINDOW}", "learning.minibatch_size=8", "learning.update_epochs=2")
+FEW = (*SHORT, "population.capacity=16", "population.initial_count=10")
+TINY = ("learning.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
+TINY_FEW = (*TINY, "population.capacity=6", "population.initial_count=4")
+BOTH = tuple(
+    f"species.{name}.population.{size}" for name in ("prey", "predator") for size in ("capacity=8", "initial_count=6")
+)
+WORLDS = {
+    "baseline": ("baseline", FEW),
+    "poison": ("poison", FEW),
+    "relocation": ("relocation", FEW),
+    "predators": ("predator", (*SHORT, *BOTH, "arena.width=300", "arena.height=300")),
+    "obstacles": ("small", (*FEW, "obstacle.count=8", "obstacle.damage=0.5", 'sensor.smells=["*"]', "sensor.noses=2")),
+    "crowd": ("small", (*FEW, 'physics.solver="jacobi"', "arena.width=120", "arena.height=120")),
+    # Bodies that leave their lists of neighbors within a step, so that it is tried again.
+    "fast": ("baseline", (*FEW, "physics.neighbor_skin=0.5", "physics.max_speed=30", "motor.max_force=300")),
+    "pairs": (
+        "baseline",
+        (*FEW, "birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=200"),
+    ),
+}
+"""Presets and overrides of the worlds that run."""
+BARRIERS = 12
+FOUND = 9
+"""Of the first 12 barriers of every block, as many must be reported if they are left out; the others may part phases
+that share nothing in so small a world."""
+REPORTED = 66
+"""The exit status by which the thread sanitizer says that it has found something."""
+PATIENCE_SECONDS = 20
+"""A barrier that is left out can also let threads go separate ways, and wait for ever."""
+
+
+def build(preset: str) -> Path:
+    """The program, built with a preset of CMakePresets.json."""
+    configure = ["cmake", "--preset", preset, f"-DPython_EXECUTABLE={sys.executable}"]
+    subprocess.run(configure, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    folder = ROOT / "build" / preset
+    subprocess.run(["cmake", "--build", str(folder), "--target", "cuda_windows"], check=True, stdout=subprocess.DEVNULL)
+    return folder / "cuda_windows"
+
+
+def write_worlds(folder: Path) -> list[str]:
+    """Writes the worlds' texts; returns the files, the tiny one first."""
+    worlds = {"tiny": ("baseline", TINY_FEW), **WORLDS}
+    for name, (preset, overrides) in worlds.items():
+        (folder / f"{name}.txt").write_text(engine_text(load_config(preset, overrides=overrides), 1))
+    return [str(folder / f"{name}.txt") for name in worlds]
+
+
+def finds(program: Path, world: str, barrier: int, environment: dict[str, str]) -> bool:
+    """Whether the thread sanitizer reports that a barrier is missing, or the program never ends."""
+    command = [str(program), "--without", str(barrier), "5", world]
+    try:
+        done = subprocess.run(command, env=environment, timeout=PATIENCE_SECONDS, capture_output=True, check=False)
+    except subprocess.TimeoutExpired:
+        return True
+    return done.returncode == REPORTED
+
+
+def run_windows(preset: str, options: dict[str, str], folder: Path) -> int:
+    """Builds and runs; returns an exit status."""
+    if platform.machine() != "x86_64":
+        print("cuda_windows: nothing run, since the kernels are compared with AVX2")
+        return 0
+    program = build(preset)
+    environment = os.environ | options
+    tiny, *files = write_worlds(folder)
+    status = subprocess.run([str(program), str(WINDOW + 1), *files], env=environment, check=False).returncode
+    if status == 0 and preset == "tsan":
+        found = sum(finds(program, tiny, barrier, environment) for barrier in range(BARRIERS))
+        print(f"cuda_windows: of {BARRIERS} barriers that were left out, {found} were reported")
+        status = 0 if found >= FOUND else 1
+    return status
