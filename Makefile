@@ -11,7 +11,7 @@ SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
 
-.PHONY: run test test-long static sanitized sync stubs viewer docs clean
+.PHONY: run test test-long static sanitized sync cuda stubs viewer docs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
@@ -65,6 +65,10 @@ tools:
 	  echo "Debian and Ubuntu: apt-get install python3-pip    Fedora: dnf install python3-pip    Or install uv yourself." >&2; exit 2; }
 	@echo "uv is not installed: putting it into .uv (for uv commands of your own: export PATH=\"\$$PWD/.uv/bin:\$$PATH\")"
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --root-user-action=ignore --target .uv uv
+
+# The library of CUDA devices, for `--device cuda`. The compiler is a package, 350 MB; no device is needed to build.
+cuda: sync
+	$(RUN) --group cuda python engine/cuda/build.py
 
 # The engine's type stubs, after a change of its bindings.
 stubs: sync

@@ -4,7 +4,6 @@
 is used.
 """
 
-import importlib.util
 import json
 import re
 import subprocess
@@ -13,15 +12,11 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "engine" / "cuda"))
+
+import build  # noqa: E402
+
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
-OPTIONS = (
-    "-std=c++20",
-    "-arch=sm_90",
-    "--fmad=false",  # a product and a sum stay two roundings, as on the CPU
-    "--expt-relaxed-constexpr",
-    "--extended-lambda",
-    "--diag-suppress=1675",  # pragmas of other compilers
-)
 THREADS = 256
 # Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
@@ -29,13 +24,6 @@ REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 
 SHARED = {"StepWorlds": 16 * 2 * 64 * 4, "LearnWorlds": 223_808}
 MAY_SPILL = {"StepWorlds"}
 SLACK = 8  # registers: another version of the compiler may take a few more or fewer
-
-
-def find_nvcc() -> Path | None:
-    """The compiler in this environment, or None: there is no package for every machine."""
-    spec = importlib.util.find_spec("nvidia")
-    places = list(spec.submodule_search_locations or ()) if spec else []
-    return next((path for place in places for path in sorted(Path(place).glob("*/bin/nvcc"))), None)
 
 
 def resident_blocks(registers: int, shared: int) -> int:
@@ -76,17 +64,15 @@ def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) 
 
 
 def main() -> int:
-    nvcc = find_nvcc()
+    nvcc = build.find_nvcc()
     if nvcc is None:
         print("cuda: no nvcc in this environment, nothing compiled: uv sync --group cuda")
         return 0
     with tempfile.TemporaryDirectory() as folder:
         binary = Path(folder) / "device.cubin"
         source = ROOT / "engine" / "cuda" / "device.cu"
-        command = [str(nvcc), *OPTIONS, "-cubin", "-Xptxas=-v", "-Werror=all-warnings", f"-I{ROOT / 'engine'}"]
-        done = subprocess.run(
-            [*command, "-o", str(binary), str(source)], stderr=subprocess.PIPE, text=True, check=False
-        )
+        command = build.command(nvcc, "-cubin", "-Xptxas=-v", "-Werror=all-warnings", "-o", str(binary), str(source))
+        done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
             print(done.stderr, file=sys.stderr)
             return done.returncode

@@ -13,12 +13,17 @@ EMULATED = "cuda-emulated"
 EMULATION_VARIABLE = "HEDON_CUDA_EMULATION"
 """Environment variable with the file of that library."""
 LIBRARY = "_cuda.so"
-"""The library of the device, beside the engine; docs/gpu.md says how to build it."""
+"""The library of the device, beside the engine; `make cuda` builds it."""
 
 
 def is_device(kernel: str) -> bool:
     """Whether this is the name of a device, not of an instruction set."""
     return kernel in (*DEVICES, EMULATED)
+
+
+def library_path() -> Path:
+    """Where the library of the devices is, if it is built."""
+    return Path(_engine.__file__).with_name(LIBRARY)
 
 
 def device_library(kernel: str) -> str:
@@ -34,9 +39,10 @@ def device_library(kernel: str) -> str:
         if not path.is_file():
             raise EngineError(f"{EMULATED} is for tests: {EMULATION_VARIABLE} must name its library")
         return str(path.resolve())
-    path = Path(_engine.__file__).with_name(LIBRARY)
+    path = library_path()
     if not path.is_file():
         raise EngineError(
-            f"device {kernel}: its library is not built, so it cannot be used: see docs/gpu.md, or leave --device out"
+            f"device '{kernel}' cannot be used: its library is not built: call `make cuda` (docs/gpu.md), or leave "
+            "--device out"
         )
     return str(path)
