@@ -99,7 +99,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
                       "): use fewer, or check the limits `ulimit -u` and `ulimit -v`");
   }
   raise_faults();
-  need(simulation_->device_complaint());
+  need_working();
 }
 
 Simulation& PythonSimulation::get() {
@@ -115,6 +115,18 @@ World& PythonSimulation::world(int index) {
   Simulation& simulation = get();
   if (index < 0 || index >= simulation.world_count()) throw nb::index_error("no world has this index");
   return simulation.numbers(index);
+}
+
+void PythonSimulation::need_working() {
+  const std::string complaint = simulation_->device_complaint();
+  if (complaint.empty()) return;
+  throw EngineError("device '" + std::string(simulation_->kernel_name()) + "': " + complaint);
+}
+
+void PythonSimulation::need_whole(int index) {
+  world(index);
+  simulation_->complete(index);
+  need_working();
 }
 
 World& PythonSimulation::slotted(int index) {
@@ -140,7 +152,7 @@ void PythonSimulation::run(int64_t steps) {
     }
     steps -= count;
     raise_faults();
-    need(simulation.device_complaint());
+    need_working();
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     // Approach the full time by at most a factor of four: the time of a piece with learning says little about the next.

@@ -35,6 +35,9 @@ class PythonSimulation {
   /// `Simulation::numbers`.
   World& world(int index);
 
+  /// Brings a world's networks and rollouts to the host. EngineError: the device that had them has failed.
+  void need_whole(int index);
+
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
@@ -48,6 +51,7 @@ class PythonSimulation {
 
  private:
   void raise_faults();
+  void need_working();
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};

@@ -291,6 +291,7 @@ void bind_simulation(nb::module_& module) {
           "save",
           [](S& s, int world) {
             s.slotted(world);
+            s.need_whole(world);
             return to_arrays(s.get().save(world));
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
@@ -341,6 +342,7 @@ void bind_simulation(nb::module_& module) {
           "digest",
           [](S& s, int world) {
             s.slotted(world);
+            s.need_whole(world);
             return s.get().digest(world);
           },
           nb::arg("world"))
@@ -353,6 +355,17 @@ void bind_simulation(nb::module_& module) {
             return out;
           },
           nb::arg("world"), "Seconds spent in each part by the world's first thread.")
+      .def_prop_ro(
+          "device_seconds",
+          [](S& s) {
+            const DeviceSeconds seconds = s.get().device_seconds();
+            nb::dict out;
+            for (size_t p = 0; p < DEVICE_PARTS; ++p) out[DEVICE_PART_NAMES[p]] = seconds.kernel[p];
+            out["copying"] = seconds.copying;
+            return out;
+          },
+          "Seconds that devices spent in each kernel, and copying; zeros where there is no device.")
+      .def_prop_ro("device_count", [](S& s) { return s.get().device_count(); })
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })
       .def_prop_ro("kernel", [](S& s) { return s.get().kernel_name(); })

@@ -32,7 +32,7 @@ bool is_large(const std::string& wanted) {
 nb::object view_state(nb::handle self, int index, const std::string& path) {
   PythonSimulation& simulation = nb::cast<PythonSimulation&>(self);
   World& world = simulation.world(index);
-  if (is_large(path)) simulation.get().complete(index);
+  if (is_large(path)) simulation.need_whole(index);
   const size_t capacity = static_cast<size_t>(world.shape->capacity);
   nb::object out;
   for_each_array(world.state, "", [&]<class T>(const std::string& name, Array<T>& array) {

@@ -3,12 +3,24 @@
 #include "cuda/emulator.h"
 #include "cuda/window.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <type_traits>
 
 namespace hedon {
 namespace {
 
 constexpr int32_t LEARNERS_AT_ONCE = 2;  ///< several, so that blocks take learners in turn
+constexpr int32_t DEVICES = 2;           ///< several, so that worlds are dealt out
+
+int32_t used = 0;
+double seconds_of[DEVICES][DEVICE_PARTS];
+int64_t runs_left = -1;   ///< until the device is lost; negative for never
+int64_t most_bytes = -1;  ///< that are given at once; negative for any number
+
+bool lost() { return runs_left == 0; }
+
+const char* answer() { return lost() ? "the emulated device is lost" : ""; }
 
 /// Runs a kernel as CUDA does: all its blocks.
 template <class Kernel>
@@ -17,8 +29,39 @@ void emulate(const Kernel& kernel, int64_t floats) {
 }
 
 const char* advance(const DeviceWorlds& worlds, int64_t step, int64_t steps) {
+  using Clock = std::chrono::steady_clock;
+  if (runs_left > 0) --runs_left;
+  if (lost()) return "";        // as on a device: a failure shows when one waits
   const FloatMode mode(false);  // a device keeps denormals
-  advance_worlds(worlds, step, steps, [](const auto& kernel, int64_t floats) { emulate(kernel, floats); });
+  advance_worlds(worlds, step, steps, [](const auto& kernel, int64_t floats) {
+    const Clock::time_point begun = Clock::now();
+    emulate(kernel, floats);
+    const int32_t part = static_cast<int32_t>(std::remove_cvref_t<decltype(kernel)>::PART);
+    seconds_of[used][part] += std::chrono::duration<double>(Clock::now() - begun).count();
+  });
+  return "";
+}
+
+const char* finish(double* seconds) {
+  for (int32_t part = 0; part < DEVICE_PARTS; ++part) {
+    seconds[part] += seconds_of[used][part];
+    seconds_of[used][part] = 0.0;
+  }
+  return answer();
+}
+
+void* reserve(int64_t bytes) {
+  if (most_bytes >= 0 && bytes > most_bytes) return nullptr;
+  return aligned_alloc(64, static_cast<size_t>((bytes + 63) / 64 * 64));
+}
+
+const char* copy(void* to, const void* from, int64_t bytes) {
+  if (!lost()) memcpy(to, from, static_cast<size_t>(bytes));
+  return answer();
+}
+
+const char* fill_kernel(Kernel* kernel) {
+  emulate(FillKernel{kernel}, FillKernel::FLOATS);
   return "";
 }
 
@@ -27,25 +70,26 @@ const DeviceProgram PROGRAM = {
     device_layout(),
     WIDEST_NETWORK,
     [] { return ""; },
+    [] { return DEVICES; },
+    [](int32_t device) { used = device; },
+    [] { return "{\"name\": \"emulation on the processor\"}"; },
     [] { return LEARNERS_AT_ONCE; },
-    [](int64_t bytes) { return aligned_alloc(64, static_cast<size_t>((bytes + 63) / 64 * 64)); },
+    reserve,
     free,
-    [](void* to, const void* from, int64_t bytes) {
-      memcpy(to, from, static_cast<size_t>(bytes));
-      return "";
-    },
-    [](void* to, const void* from, int64_t bytes) {
-      memcpy(to, from, static_cast<size_t>(bytes));
-      return "";
-    },
-    [](Kernel* kernel) {
-      emulate(FillKernel{kernel}, FillKernel::FLOATS);
-      return "";
-    },
+    copy,
+    copy,
+    fill_kernel,
     advance,
+    finish,
 };
 
 }  // namespace
 }  // namespace hedon
 
 extern "C" __attribute__((visibility("default"))) const hedon::DeviceProgram* hedon_device() { return &hedon::PROGRAM; }
+
+/// For tests of failures: the devices are lost in the N-th run from now, and give at most so many bytes at once.
+extern "C" __attribute__((visibility("default"))) void hedon_emulation_fails(int64_t run, int64_t bytes) {
+  hedon::runs_left = run;
+  hedon::most_bytes = bytes;
+}

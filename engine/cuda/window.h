@@ -34,6 +34,7 @@ HEDON_FN void bootstrap_by_block(Block& block, World& world, float* bootstrap) {
 
 /// Advances world b by up to `steps` steps, which do not go past the end of its window.
 struct StepWorlds {
+  static constexpr DevicePart PART = DevicePart::step;
   DeviceWorlds on;
   int64_t steps;
 
@@ -54,6 +55,7 @@ struct StepWorlds {
 
 /// Updates the learners of all worlds, in blocks that each take every n-th one.
 struct LearnWorlds {
+  static constexpr DevicePart PART = DevicePart::learn;
   DeviceWorlds on;
 
   HEDON_FN int32_t blocks() const { return on.learners_at_once; }
@@ -80,6 +82,7 @@ struct LearnWorlds {
 
 /// Closes the window of world b, checks the world, and begins the next window.
 struct CloseWindows {
+  static constexpr DevicePart PART = DevicePart::close;
   DeviceWorlds on;
 
   static constexpr int64_t FLOATS = 0;

@@ -1,6 +1,7 @@
 #include "simulation/device.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 
 namespace hedon {
@@ -36,19 +37,35 @@ int64_t update_scratch(const WorldConfig& config) {
   return (most + 15) / 16 * 16;
 }
 
+/// Adds the time of its life to a sum.
+class Timer {
+ public:
+  explicit Timer(double& sum) : sum_(sum), begun_(std::chrono::steady_clock::now()) {}
+  ~Timer() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count(); }
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point begun_;
+};
+
 }  // namespace
 
-Device::Device(const DeviceProgram& program, std::vector<World>& worlds, const std::vector<Memory>& memory)
+Device::Device(const DeviceProgram& program, int32_t number, std::vector<World>& worlds,
+               const std::vector<Memory>& memory, int first, int last)
     : program_(program),
+      number_(number),
       worlds_(worlds),
       memory_(memory),
-      blocks_(worlds.size()),
-      changed_(worlds.size(), true),
-      fetched_(worlds.size(), true) {
+      first_(first),
+      last_(last),
+      blocks_(static_cast<size_t>(last - first)),
+      changed_(blocks_.size(), true),
+      fetched_(blocks_.size(), true) {
+  program_.use(number_);
   const WorldShape& shape = *worlds[0].shape;
   const WorldConfig& config = *worlds[0].config;
   const Common at;
-  const int64_t count = static_cast<int64_t>(worlds.size());
+  const int64_t count = last - first;
   const int64_t stride = update_scratch(config);
   on_.learners_at_once = program.learners_at_once();
   const int64_t values = (count * shape.capacity + 15) / 16 * 16;
@@ -56,9 +73,9 @@ Device::Device(const DeviceProgram& program, std::vector<World>& worlds, const s
   common_ = static_cast<char*>(program.reserve(at.worlds + count * static_cast<int64_t>(sizeof(World))));
   learning_ = static_cast<char*>(program.reserve(floats * static_cast<int64_t>(sizeof(float))));
   bool all = common_ != nullptr && learning_ != nullptr;
-  for (size_t i = 0; i < worlds.size() && all; ++i) {
-    blocks_[i] = static_cast<char*>(program.reserve(memory[i].size()));
-    all = blocks_[i] != nullptr;
+  for (int i = first; i < last && all; ++i) {
+    blocks_[this->at(i)] = static_cast<char*>(program.reserve(this->memory(i).size()));
+    all = home(i) != nullptr;
   }
   if (!all) {
     complaint_ = "the device has too little memory for these worlds: use fewer seeds, or lower population.capacity";
@@ -81,11 +98,12 @@ Device::Device(const DeviceProgram& program, std::vector<World>& worlds, const s
   note(program.copy_in(common_ + at.config, &config, sizeof config));
   note(program.copy_in(common_ + at.shape, &there, sizeof there));
   note(program.fill_kernel(on_.kernel));
-  list_pieces(worlds[0]);
-  for (size_t i = 0; i < worlds.size(); ++i) place(static_cast<int>(i));
+  list_pieces();
+  for (int i = first; i < last; ++i) place(i);
 }
 
 Device::~Device() {
+  program_.use(number_);
   for (char* block : blocks_) {
     if (block != nullptr) program_.release(block);
   }
@@ -99,30 +117,40 @@ void Device::note(const char* problem) {
 
 /// The pieces of the state that the host reads and writes between runs; neighboring ones as one. What only a step
 /// needs stays on the device.
-void Device::list_pieces(World& world) {
-  const char* const base = memory_[0].data();
-  const auto add = [&](const auto& array, bool large) {
+void Device::list_pieces() {
+  World& world = this->world(first_);
+  const char* const base = memory(first_).data();
+  const auto add = [&](const auto& array, Kind kind, int64_t row) {
     const int64_t first = reinterpret_cast<const char*>(array.data) - base, bytes = laid_out_bytes(array);
-    if (!pieces_.empty() && pieces_.back().large == large && pieces_.back().first + pieces_.back().bytes == first)
+    if (array.count == 0) return;
+    const bool joins = kind != Kind::events && !pieces_.empty() && pieces_.back().kind == kind &&
+                       pieces_.back().first + pieces_.back().bytes == first;
+    if (joins)
       pieces_.back().bytes += bytes;
     else
-      pieces_.push_back({first, bytes, large});
+      pieces_.push_back({first, bytes, row, kind});
   };
-  WorldState::for_each_shape([&](const char*, auto member, ArrayShape size) {
+  WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
     auto& field = world.state.*member;
-    if constexpr (IsArray<std::remove_cvref_t<decltype(field)>>::value)
-      add(field, is_large(size));
-    else
-      for_each_array(field, "", [&](const std::string&, auto& array) { add(array, false); });
+    if constexpr (IsArray<std::remove_cvref_t<decltype(field)>>::value) {
+      const bool events = size.rows == Extent::events || size.rows == Extent::mating_events;
+      const int64_t rows = world.shape->events;
+      const Kind kind = strcmp(name, "head") == 0 ? Kind::head
+                        : events                  ? Kind::events
+                        : is_large(size)          ? Kind::large
+                                                  : Kind::small;
+      add(field, kind, events ? field.count / rows * static_cast<int64_t>(sizeof field[0]) : 0);
+    } else {
+      for_each_array(field, "", [&](const std::string&, auto& array) { add(array, Kind::small, 0); });
+    }
   });
 }
 
 /// Writes the device's version of a world, and its whole memory: also of what only a step needs.
 void Device::place(int index) {
   const Common at;
-  const size_t i = static_cast<size_t>(index);
-  World there = worlds_[i];
-  const int64_t shift = home(index) - memory_[i].data();
+  World there = world(index);
+  const int64_t shift = home(index) - memory(index).data();
   for_each_world_array(there, [&]<class T>(Array<T>& array) {
     array.data = reinterpret_cast<T*>(reinterpret_cast<char*>(array.data) + shift);
   });
@@ -132,41 +160,67 @@ void Device::place(int index) {
   there.config = reinterpret_cast<const WorldConfig*>(common_ + at.config);
   there.shape = reinterpret_cast<const WorldShape*>(common_ + at.shape);
   there.kernel = on_.kernel;
-  note(program_.copy_in(on_.worlds + index, &there, sizeof there));
-  note(program_.copy_in(home(index), memory_[i].data(), memory_[i].size()));
+  note(program_.copy_in(on_.worlds + this->at(index), &there, sizeof there));
+  note(program_.copy_in(home(index), memory(index).data(), memory(index).size()));
 }
 
-void Device::copy(int index, bool in, bool small, bool large) {
-  char* const here = memory_[static_cast<size_t>(index)].data();
+/// all   if not, only what the host may change without saying so
+void Device::copy_in(int index, bool all) {
   for (const Piece& piece : pieces_) {
-    if (!(piece.large ? large : small)) continue;
-    char* const there = home(index) + piece.first;
-    note(in ? program_.copy_in(there, here + piece.first, piece.bytes)
-            : program_.copy_out(here + piece.first, there, piece.bytes));
+    if (all || piece.kind == Kind::head)
+      note(program_.copy_in(home(index) + piece.first, memory(index).data() + piece.first, piece.bytes));
   }
 }
 
-void Device::run(int64_t steps) {
+/// Copies the pieces of a kind. Of events, those rows that the head counts, so the head must be there.
+void Device::copy_out(int index, Kind kind) {
+  for (const Piece& piece : pieces_) {
+    if (piece.kind != kind) continue;
+    int64_t bytes = piece.bytes;
+    if (kind == Kind::events)
+      bytes = piece.row * std::clamp(world(index).head().event_count, 0, world(index).shape->events);
+    if (bytes > 0) note(program_.copy_out(memory(index).data() + piece.first, home(index) + piece.first, bytes));
+  }
+}
+
+void Device::start(int64_t steps) {
+  running_ = false;
+  if (!complaint_.empty()) return;
+  program_.use(number_);
   int64_t step = -1;
-  for (size_t i = 0; i < worlds_.size(); ++i) {
-    copy(static_cast<int>(i), true, true, changed_[i]);
-    changed_[i] = false;
-    if (worlds_[i].over()) continue;
-    if (step >= 0 && worlds_[i].head().step != step) note("the worlds on a device must all be at the same step");
-    step = worlds_[i].head().step;
+  {
+    const Timer timer(seconds_.copying);
+    for (int i = first_; i < last_; ++i) {
+      copy_in(i, changed_[at(i)]);
+      changed_[at(i)] = false;
+      if (world(i).over()) continue;
+      if (step >= 0 && world(i).head().step != step) note("the worlds on a device must all be at the same step");
+      step = world(i).head().step;
+    }
   }
   if (step < 0 || !complaint_.empty()) return;
   note(program_.advance(on_, step, steps));
-  for (size_t i = 0; i < worlds_.size(); ++i) {
-    copy(static_cast<int>(i), false, true, false);
-    fetched_[i] = false;
+  running_ = true;
+}
+
+void Device::finish() {
+  if (!running_) return;
+  program_.use(number_);
+  note(program_.finish(seconds_.kernel));
+  if (!complaint_.empty()) return;
+  const Timer timer(seconds_.copying);
+  for (int i = first_; i < last_; ++i) {
+    for (const Kind kind : {Kind::head, Kind::small, Kind::events}) copy_out(i, kind);
+    fetched_[at(i)] = false;
   }
 }
 
 void Device::fetch(int index) {
-  if (fetched_[static_cast<size_t>(index)]) return;
-  copy(index, false, false, true);
-  fetched_[static_cast<size_t>(index)] = true;
+  if (fetched_[at(index)] || !complaint_.empty()) return;
+  program_.use(number_);
+  const Timer timer(seconds_.copying);
+  copy_out(index, Kind::large);
+  fetched_[at(index)] = true;
 }
 
 }  // namespace hedon

@@ -32,19 +32,28 @@ struct DeviceWorlds {
   int32_t params[MAX_SPECIES];  ///< of the networks of each species; 0 if it has none
 };
 
-/// Functions of a library for a device. Those that return a text return "" or what went wrong.
+/// The kernels of a window, for their times.
+enum class DevicePart : int32_t { step, learn, close, count };
+inline constexpr int32_t DEVICE_PARTS = static_cast<int32_t>(DevicePart::count);
+inline constexpr const char* DEVICE_PART_NAMES[] = {"step", "learn", "close"};
+
+/// Functions of a library for devices of one kind. Those that return a text return "" or what went wrong.
 struct DeviceProgram {
   const char* name;
   uint64_t layout;                  ///< `device_layout()` of the sources that it was built from
   int32_t widest_network;           ///< inputs of the widest network that its updates can hold
-  const char* (*open)();            ///< finds the device
+  const char* (*open)();            ///< finds the devices
+  int32_t (*count)();               ///< devices there are, after `open`
+  void (*use)(int32_t device);      ///< the following calls of this thread are for this one
+  const char* (*describe)();        ///< what the device is, and what its kernels need: an object of JSON
   int32_t (*learners_at_once)();    ///< blocks of updates that run side by side
   void* (*reserve)(int64_t bytes);  ///< null if there is too little memory
   void (*release)(void* block);
   const char* (*copy_in)(void* to, const void* from, int64_t bytes);
   const char* (*copy_out)(void* to, const void* from, int64_t bytes);
   const char* (*fill_kernel)(Kernel* kernel);
-  const char* (*advance)(const DeviceWorlds& worlds, int64_t step, int64_t steps);
+  const char* (*advance)(const DeviceWorlds& worlds, int64_t step, int64_t steps);  ///< begins, and does not wait
+  const char* (*finish)(double* seconds);  ///< waits; adds the seconds of each `DevicePart` since the last call
 };
 
 /// The function `hedon_device` that such a library exports.
@@ -59,10 +68,18 @@ constexpr uint64_t device_layout() {
   return sum;
 }
 
+/// Seconds of the kernels, and of copies in either direction.
+struct DeviceSeconds {
+  double kernel[DEVICE_PARTS];
+  double copying;
+};
+
 class Device {
  public:
-  /// Copies worlds of one config to the device; each lies in one block of memory. `complaint` says if that failed.
-  Device(const DeviceProgram& program, std::vector<World>& worlds, const std::vector<Memory>& memory);
+  /// Copies the worlds [first, last), of one config, to the device with this number; each lies in one block of memory.
+  /// `complaint` says if that failed.
+  Device(const DeviceProgram& program, int32_t number, std::vector<World>& worlds, const std::vector<Memory>& memory,
+         int first, int last);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -74,33 +91,56 @@ class Device {
   }
 
   const DeviceProgram& program() const { return program_; }
+  const DeviceSeconds& seconds() const { return seconds_; }
+
+  /// "", or what went wrong. Then the host's worlds stay as they were after the last run, without their networks.
   const std::string& complaint() const { return complaint_; }
 
-  /// Advances all worlds that are not over; they are all at the same step. Then the host has all that is small.
-  void run(int64_t steps);
+  bool holds(int index) const { return index >= first_ && index < last_; }
+
+  /// Begins to advance all worlds that are not over; they are all at the same step.
+  void start(int64_t steps);
+
+  /// Waits for that; then the host has all that is small.
+  void finish();
 
   /// Brings a world's networks and rollouts to the host, unless they are there already.
   void fetch(int index);
 
   /// Says that the host changes a world, networks and rollouts included: the next run copies all of it.
-  void change(int index) { changed_[static_cast<size_t>(index)] = true; }
+  void change(int index) { changed_[at(index)] = true; }
 
  private:
+  /// Which arrays are copied together.
+  enum class Kind : uint8_t {
+    head,    ///< the host may change it between any two runs
+    small,   ///< read after each run
+    events,  ///< the same, of which only the rows in use are copied
+    large    ///< networks and rollouts: copied when somebody wants them
+  };
+
   /// A part of a world's memory.
   struct Piece {
     int64_t first, bytes;
-    bool large;  ///< networks and rollouts
+    int64_t row;  ///< bytes of a row of events
+    Kind kind;
   };
 
-  void list_pieces(World& world);
+  size_t at(int index) const { return static_cast<size_t>(index - first_); }
+  World& world(int index) const { return worlds_[static_cast<size_t>(index)]; }
+  const Memory& memory(int index) const { return memory_[static_cast<size_t>(index)]; }
+  char* home(int index) const { return blocks_[at(index)]; }
+  void list_pieces();
   void place(int index);
-  void copy(int index, bool in, bool small, bool large);
+  void copy_in(int index, bool all);
+  void copy_out(int index, Kind kind);
   void note(const char* problem);
-  char* home(int index) const { return blocks_[static_cast<size_t>(index)]; }
 
   const DeviceProgram& program_;
+  const int32_t number_;
   std::vector<World>& worlds_;
   const std::vector<Memory>& memory_;
+  const int first_, last_;
   std::vector<Piece> pieces_;
   std::vector<char*> blocks_;  ///< each world's memory on the device
   char* common_ = nullptr;     ///< config, shape, table, worlds
@@ -108,6 +148,8 @@ class Device {
   DeviceWorlds on_{};
   std::vector<bool> changed_;  ///< by the host
   std::vector<bool> fetched_;  ///< the host has the networks and rollouts of this moment
+  bool running_ = false;
+  DeviceSeconds seconds_{};
   std::string complaint_;
 };
 

@@ -77,7 +77,35 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
   pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
-  if (program != nullptr) device_ = std::make_unique<Device>(*program, worlds_, memory_);
+  if (program == nullptr) return;
+  const int worlds = world_count(), devices = std::min(program->count(), worlds);
+  for (int d = 0; d < devices; ++d)
+    devices_.push_back(
+        std::make_unique<Device>(*program, d, worlds_, memory_, worlds * d / devices, worlds * (d + 1) / devices));
+}
+
+Device* Simulation::device_of(int index) const {
+  for (const std::unique_ptr<Device>& device : devices_) {
+    if (device->holds(index)) return device.get();
+  }
+  return nullptr;
+}
+
+std::string Simulation::device_complaint() const {
+  for (const std::unique_ptr<Device>& device : devices_) {
+    if (!device->complaint().empty()) return device->complaint();
+  }
+  return "";
+}
+
+DeviceSeconds Simulation::device_seconds() const {
+  DeviceSeconds sum{};
+  for (const std::unique_ptr<Device>& device : devices_) {
+    const DeviceSeconds& seconds = device->seconds();
+    for (int32_t part = 0; part < DEVICE_PARTS; ++part) sum.kernel[part] += seconds.kernel[part];
+    sum.copying += seconds.copying;
+  }
+  return sum;
 }
 
 MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
@@ -164,7 +192,11 @@ void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
 }
 
 void Simulation::run(int64_t steps) {
-  if (device_) return device_->run(steps);
+  if (!devices_.empty()) {
+    for (const std::unique_ptr<Device>& device : devices_) device->start(steps);
+    for (const std::unique_ptr<Device>& device : devices_) device->finish();
+    return;
+  }
   std::vector<int> going;
   for (int i = 0; i < world_count(); ++i) {
     if (!numbers(i).over()) going.push_back(i);

@@ -54,7 +54,7 @@ class Simulation {
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   /// flush   whether denormals are flushed to zero; it changes no result
-  /// program  of the device that advances the worlds; null for the threads
+  /// program  of the devices that advance the worlds, which are dealt out to them; null for the threads
   /// The arguments must have passed `check_config` and `check_company`.
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
@@ -97,23 +97,27 @@ class Simulation {
   /// A world, of which the caller may change everything.
   World& world(int index) {
     complete(index);
-    if (device_) device_->change(index);
+    if (Device* device = device_of(index)) device->change(index);
     return numbers(index);
   }
   /// A world, of which the caller reads everything.
   const World& complete(int index) {
-    if (device_) device_->fetch(index);
+    if (Device* device = device_of(index)) device->fetch(index);
     return numbers(index);
   }
-  /// A world, of which the caller reads or changes anything but networks and rollouts: they may be the device's.
+  /// A world, of which the caller reads anything but networks and rollouts, which may be the device's, and changes
+  /// nothing but the head.
   World& numbers(int index) { return worlds_[static_cast<size_t>(index)]; }
-  /// What went wrong on the device; "" if nothing did.
-  std::string device_complaint() const { return device_ ? device_->complaint() : ""; }
+  /// What went wrong on a device; "" if nothing did.
+  std::string device_complaint() const;
+  /// Of all devices together; they work at the same time.
+  DeviceSeconds device_seconds() const;
+  int device_count() const { return static_cast<int>(devices_.size()); }
   const WorldShape& shape() const { return shape_; }
   const WorldConfig& config() const { return config_; }
   bool flush() const { return flush_; }
   /// What advances the worlds: the name of an instruction set or of a device.
-  const char* kernel_name() const { return device_ ? device_->program().name : kernel_->name; }
+  const char* kernel_name() const { return devices_.empty() ? kernel_->name : devices_[0]->program().name; }
   const Pool& pool() const { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
   /// The block that holds all of a world, `bytes_per_world` long: who puts a copy of it back has the world as it was.
@@ -123,6 +127,7 @@ class Simulation {
  private:
   void begin(World& world);
   void empty(World& world);
+  Device* device_of(int index) const;
   void advance_with(Team team, int thread, int world, int64_t steps);
 
   WorldConfig config_;
@@ -138,7 +143,7 @@ class Simulation {
   Memory learn_scratch_;
   int64_t learn_stride_;
   std::unique_ptr<Pool> pool_;
-  std::unique_ptr<Device> device_;
+  std::vector<std::unique_ptr<Device>> devices_;  ///< each has a range of the worlds; none if the threads have them
 };
 
 }  // namespace hedon

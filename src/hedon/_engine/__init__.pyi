@@ -106,6 +106,15 @@ class Simulation:
         """Seconds spent in each part by the world's first thread."""
 
     @property
+    def device_seconds(self) -> dict:
+        """
+        Seconds that devices spent in each kernel, and copying; zeros where there is no device.
+        """
+
+    @property
+    def device_count(self) -> int: ...
+
+    @property
     def world_count(self) -> int: ...
 
     @property

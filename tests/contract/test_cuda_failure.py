@@ -1,0 +1,89 @@
+"""What goes wrong with a device, and what is left of a run then: on the emulated one, which can be told to fail."""
+
+import ctypes
+import os
+import platform
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from cuda_emulation import emulated as emulated
+from resumed_run import WINDOW, small_run
+from worlds import QUICK, make_simulation
+
+from hedon.check.run import check_run
+from hedon.error import EngineError
+from hedon.experiment.device import EMULATION_VARIABLE
+from hedon.experiment.resume import resume
+from hedon.experiment.simulation import KERNEL_VARIABLE
+from hedon.record.manifest import load_manifest
+
+pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
+
+FEW = ("population.capacity=24", "population.initial_count=12")
+NEVER = -1
+Fails = Callable[[int, int], None]
+
+
+@pytest.fixture
+def fails(emulated: str) -> Iterator[Fails]:
+    """fails(run, bytes): the devices are lost in the N-th run from now, and give at most so many bytes at once."""
+    set_failure = ctypes.CDLL(os.environ[EMULATION_VARIABLE]).hedon_emulation_fails
+    set_failure.argtypes = (ctypes.c_int64, ctypes.c_int64)
+    yield set_failure
+    set_failure(NEVER, NEVER)
+
+
+def test_too_little_memory_is_one_sentence_and_leaves_the_device_usable(emulated: str, fails: Fails):
+    fails(NEVER, 1_000_000)
+    with pytest.raises(EngineError, match="device 'cuda-emulated': the device has too little memory for these"):
+        make_simulation(*QUICK, *FEW, kernel=emulated)
+    fails(NEVER, NEVER)
+    make_simulation(*QUICK, *FEW, kernel=emulated).run(3)
+
+
+def test_a_device_that_is_lost_takes_nothing_with_it_that_the_host_has(emulated: str, fails: Fails):
+    simulation = make_simulation(*QUICK, *FEW, seeds=(1, 2, 3), kernel=emulated)
+    simulation.run(5)
+    alive = [world.alive for world in simulation.worlds]
+    fails(1, NEVER)
+    for _ in range(2):
+        with pytest.raises(EngineError, match="device 'cuda-emulated': the emulated device is lost"):
+            simulation.run(5)
+    assert [(world.step, world.alive) for world in simulation.worlds] == [(5, count) for count in alive]
+    for lost in (simulation.worlds[0].digest, lambda: simulation.worlds[0].view("params")):
+        with pytest.raises(EngineError, match="is lost"):
+            lost()
+
+
+def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
+    emulated: str, fails: Fails, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """And has the bits of a run that lost nothing."""
+    whole = small_run(tmp_path / "whole", 6 * WINDOW)
+    assert small_run(tmp_path / "run", 2 * WINDOW, kernel=emulated).status == "finished"
+    with monkeypatch.context() as asked:
+        asked.setenv(KERNEL_VARIABLE, emulated)
+        fails(4, NEVER)
+        with pytest.raises(EngineError, match="is lost"):
+            resume(tmp_path / "run", 6 * WINDOW)
+    failed = load_manifest(tmp_path / "run")
+    assert failed.status == "failed"
+    assert "is lost" in (failed.fault or "")
+    again = resume(tmp_path / "run", 6 * WINDOW)
+    assert again.world_digests == whole.world_digests
+    assert again.records_digest == whole.records_digest
+    assert check_run(tmp_path / "run").findings == ()
+
+
+@pytest.mark.parametrize("worlds", [1, 2, 5])
+def test_worlds_are_dealt_out_to_all_devices(emulated: str, worlds: int):
+    simulation = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), kernel=emulated)
+    assert simulation.engine.device_count == min(worlds, 2)
+    simulation.run(70)
+    same = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), kernel="avx2")
+    same.run(70)
+    assert [world.digest() for world in simulation.worlds] == [world.digest() for world in same.worlds]
+    seconds = simulation.engine.device_seconds
+    assert min(seconds.values()) > 0.0
+    assert set(seconds) == {"step", "learn", "close", "copying"}
