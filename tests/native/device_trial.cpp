@@ -1,0 +1,160 @@
+/// Trials of a CUDA device, or of its emulation, without Python: `tests/device.py` builds and calls it.
+///
+///     device_trial describe                        what the device is
+///     device_trial same STEPS WORLDS FILE          bits against the processor's, after steps in two pieces
+///     device_trial repeat STEPS WORLDS FILE        bits of the first world again, and among WORLDS of them
+///     device_trial resume STEPS FILE               from the device to the processor and back, by checkpoints
+///     device_trial time SECONDS WORLDS FILE        whole windows, for about so long
+///
+/// Each prints one object of JSON. Exit status 1 where bits differ or a world has a fault, 2 for what cannot be tried.
+#include <chrono>
+#include <cstring>
+
+#include "base/float_mode.h"
+#include "world_file.h"
+
+namespace hedon {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int MAX_WINDOWS = 16;
+
+double since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
+
+/// Advances; ends the program where the device fails.
+void advance(Simulation& simulation, int64_t steps) {
+  simulation.run(steps);
+  if (simulation.device_complaint().empty()) return;
+  fprintf(stderr, "%s\n", simulation.device_complaint().c_str());
+  exit(2);
+}
+
+std::unique_ptr<Simulation> on_device(const WorldInput& input, int64_t worlds) {
+  auto simulation = make_worlds(input, worlds, true);
+  advance(*simulation, 0);
+  return simulation;
+}
+
+/// Whether a world has no fault and these bits.
+bool sound(Simulation& simulation, int index, uint64_t digest) {
+  return simulation.numbers(index).fault().status == Status::ok && simulation.digest(index) == digest;
+}
+
+int report_same(int64_t steps, int64_t worlds, const WorldInput& input) {
+  const auto here = make_worlds(input, worlds, false), there = on_device(input, worlds);
+  Clock::time_point begun = Clock::now();
+  here->run(steps);
+  const double processor = since(begun);
+  begun = Clock::now();
+  advance(*there, steps / 3);
+  advance(*there, steps - steps / 3);
+  const double device = since(begun);
+  int equal = 0;
+  for (int i = 0; i < worlds; ++i) equal += sound(*there, i, here->digest(i));
+  printf(
+      "{\"worlds\": %lld, \"steps\": %lld, \"equal\": %d, \"alive\": %d, \"device_seconds\": %.3f, "
+      "\"processor_seconds\": %.3f}\n",
+      static_cast<long long>(worlds), static_cast<long long>(steps), equal, there->numbers(0).head().living_count,
+      device, processor);
+  return equal == worlds ? 0 : 1;
+}
+
+int report_repeat(int64_t steps, int64_t worlds, const WorldInput& input) {
+  const auto one = on_device(input, 1), again = on_device(input, 1), many = on_device(input, worlds);
+  for (Simulation* simulation : {one.get(), again.get(), many.get()}) advance(*simulation, steps);
+  const uint64_t digest = one->digest(0);
+  const bool repeated = sound(*again, 0, digest), among = sound(*many, 0, digest);
+  printf("{\"steps\": %lld, \"repeated\": %s, \"among_%lld\": %s}\n", static_cast<long long>(steps),
+         repeated ? "true" : "false", static_cast<long long>(worlds), among ? "true" : "false");
+  return repeated && among ? 0 : 1;
+}
+
+/// Three thirds: device, processor, device; against the processor alone.
+int report_resume(int64_t steps, const WorldInput& input) {
+  const auto whole = make_worlds(input, 1, false);
+  whole->run(3 * steps);
+  Checkpoint checkpoint;
+  std::string wrong;
+  std::unique_ptr<Simulation> last;
+  for (const bool device : {true, false, true}) {
+    last = make_worlds(input, 1, device);
+    if (!checkpoint.empty()) wrong += last->restore(0, checkpoint);
+    advance(*last, steps);
+    checkpoint = last->save(0);
+  }
+  const bool equal = wrong.empty() && sound(*last, 0, whole->digest(0));
+  printf("{\"steps\": %lld, \"equal\": %s, \"complaint\": \"%s\"}\n", static_cast<long long>(3 * steps),
+         equal ? "true" : "false", wrong.c_str());
+  return equal ? 0 : 1;
+}
+
+int report_time(double seconds, int64_t worlds, const WorldInput& input) {
+  Clock::time_point begun = Clock::now();
+  const auto simulation = on_device(input, worlds);
+  const double made = since(begun);
+  const int64_t window = simulation->shape().steps;
+  advance(*simulation, window);
+  const DeviceSeconds before = simulation->device_seconds();
+  begun = Clock::now();
+  int windows = 0;
+  int64_t alive = 0;
+  while (windows < MAX_WINDOWS && (windows == 0 || since(begun) < seconds)) {
+    advance(*simulation, window);
+    ++windows;
+    for (int i = 0; i < worlds; ++i) alive += simulation->numbers(i).head().living_count;
+  }
+  const double taken = since(begun);
+  const DeviceSeconds after = simulation->device_seconds();
+  begun = Clock::now();
+  simulation->complete(0);
+  const double fetched = since(begun);
+  const double steps = static_cast<double>(windows * worlds * window);
+  printf("{\"worlds\": %lld, \"windows\": %d, \"alive\": %.1f, \"seconds\": %.4f, \"world_steps_per_second\": %.0f",
+         static_cast<long long>(worlds), windows, static_cast<double>(alive) / static_cast<double>(windows * worlds),
+         taken, steps / taken);
+  for (int32_t part = 0; part < DEVICE_PARTS; ++part)
+    printf(", \"%s_seconds\": %.4f", DEVICE_PART_NAMES[part], after.kernel[part] - before.kernel[part]);
+  printf(
+      ", \"copying_seconds\": %.4f, \"making_seconds\": %.3f, \"fetch_one_world_seconds\": %.4f, "
+      "\"bytes_per_world\": %lld}\n",
+      after.copying - before.copying, made, fetched, static_cast<long long>(simulation->bytes_per_world()));
+  for (int i = 0; i < worlds; ++i) {
+    if (simulation->numbers(i).fault().status != Status::ok) return 1;
+  }
+  return 0;
+}
+
+int report(const std::string& what, const std::vector<std::string>& given) {
+  const DeviceProgram& program = *hedon_device();
+  const std::string problem = program.open();
+  if (!problem.empty()) {
+    fprintf(stderr, "%s\n", problem.c_str());
+    return 2;
+  }
+  if (what == "describe" && given.empty()) {
+    program.use(0);
+    printf("%s\n", program.describe());
+    return 0;
+  }
+  const bool three = given.size() == 3;
+  if (!three && !(what == "resume" && given.size() == 2)) {
+    fprintf(stderr,
+            "device_trial describe | same|repeat STEPS WORLDS FILE | resume STEPS FILE | time SECONDS WORLDS FILE\n");
+    return 2;
+  }
+  const int64_t worlds = three ? atoll(given[1].c_str()) : 1;
+  const WorldInput input = read_world(given.back(), worlds);
+  if (what == "same") return report_same(atoll(given[0].c_str()), worlds, input);
+  if (what == "repeat") return report_repeat(atoll(given[0].c_str()), worlds, input);
+  if (what == "resume") return report_resume(atoll(given[0].c_str()), input);
+  return report_time(atof(given[0].c_str()), worlds, input);
+}
+
+}  // namespace
+}  // namespace hedon
+
+int main(int count, char** arguments) {
+  const hedon::FloatMode mode;
+  return hedon::report(count > 1 ? arguments[1] : "",
+                       std::vector<std::string>(arguments + std::min(count, 2), arguments + count));
+}
