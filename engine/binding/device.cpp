@@ -27,7 +27,7 @@ void need_fit(const DeviceProgram& program, const WorldConfig& config) {
 
 }  // namespace
 
-const DeviceProgram* need_device(const std::string& file, const WorldConfig& config) {
+const DeviceProgram* open_device(const std::string& file) {
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw EngineError("the library of the device cannot be loaded: " + std::string(dlerror()));
   const DeviceEntry entry = reinterpret_cast<DeviceEntry>(dlsym(library, "hedon_device"));
@@ -37,8 +37,13 @@ const DeviceProgram* need_device(const std::string& file, const WorldConfig& con
     throw EngineError(file + " was built from other sources than the engine: build both again");
   const std::string problem = program.open();
   if (!problem.empty()) throw EngineError("device '" + std::string(program.name) + "' cannot be used: " + problem);
-  need_fit(program, config);
   return &program;
+}
+
+const DeviceProgram* need_device(const std::string& file, const WorldConfig& config) {
+  const DeviceProgram* const program = open_device(file);
+  need_fit(*program, config);
+  return program;
 }
 
 }  // namespace hedon

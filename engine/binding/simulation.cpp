@@ -12,6 +12,7 @@
 #include "base/float_mode.h"
 #include "binding/checkpoint.h"
 #include "binding/config.h"
+#include "binding/device.h"
 #include "binding/parts.h"
 #include "binding/python_simulation.h"
 #include "binding/state_view.h"
@@ -262,6 +263,9 @@ void bind_simulation(nb::module_& module) {
       nb::sig(
           "def memory_needed(config: dict[str, typing.Any], walls: int, worlds: int, threads: int) -> dict[str, int]"),
       "Bytes that a simulation would reserve, by purpose; 0 threads for all processors.");
+  module.def(
+      "open_device", [](const std::string& file) { open_device(file); }, nb::arg("file"),
+      "Loads the library of a device and finds the device. EngineError: why it cannot be used.");
   nb::class_<PythonFloatMode>(module, "FloatMode",
                               "Context manager: this thread computes with floats as the engine does.")
       .def(nb::init<>())

@@ -70,6 +70,7 @@ def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
     failed = load_manifest(tmp_path / "run")
     assert failed.status == "failed"
     assert "is lost" in (failed.fault or "")
+    fails(NEVER, NEVER)
     again = resume(tmp_path / "run", 6 * WINDOW)
     assert again.world_digests == whole.world_digests
     assert again.records_digest == whole.records_digest

@@ -23,6 +23,11 @@ def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int)
     Bytes that a simulation would reserve, by purpose; 0 threads for all processors.
     """
 
+def open_device(file: str) -> None:
+    """
+    Loads the library of a device and finds the device. EngineError: why it cannot be used.
+    """
+
 class FloatMode:
     """Context manager: this thread computes with floats as the engine does."""
 

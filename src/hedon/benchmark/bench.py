@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.benchmark import growth, network, physics, rays, records, rule, startup, world
+from hedon.benchmark import device, growth, network, physics, rays, records, rule, startup, world
 from hedon.benchmark.machine import Calibration, calibrate, describe
 from hedon.benchmark.measure import Row, Table
 from hedon.benchmark.plan import Plan, PlanError
@@ -40,24 +40,28 @@ PARTS = {
     "records": Part("writing a run's tables", records.measure, records.table),
     "startup": Part("from the start of a process to its first step", startup.measure, startup.table),
     "rule": Part("rules in Python, beside the formulas of a config", rule.measure, rule.table),
+    "device": Part("whole worlds on a device, by numbers of worlds; needs --device", device.measure, device.table),
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
 }
-DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("growth", "rule"))
-"""Growth takes minutes and gigabytes, and a rule needs an optional package, so they run only if asked for."""
+DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("device", "growth", "rule"))
+"""Growth takes minutes and gigabytes, a rule needs an optional package, and a device is not everywhere: they run only
+if asked for."""
 
 
-def choose(names: Sequence[str]) -> tuple[str, ...]:
-    """The parts with these names, or the default parts if there are no names.
+def choose(names: Sequence[str], device: str = "") -> tuple[str, ...]:
+    """The parts with these names; without names, the part of the device if one is named, or the default parts.
 
     Raises:
-        PlanError: There is no such part.
+        PlanError: There is no such part, or it needs a device.
     """
     for name in names:
         if name not in PARTS:
             near = nearest(name, PARTS)
             hint = f"; did you mean {near}?" if near else ""
             raise PlanError(f"{name!r} is not a part (there are {', '.join(PARTS)}){hint}")
-    return tuple(dict.fromkeys(names)) or DEFAULT_PARTS
+    if "device" in names and not device:
+        raise PlanError("the part device needs a device: --device cuda")
+    return tuple(dict.fromkeys(names)) or (("device",) if device else DEFAULT_PARTS)
 
 
 def need_writable(path: Path) -> None:

@@ -34,6 +34,7 @@ class Plan:
         kernels: Instruction sets, best first.
         windows: Timed windows of whole worlds.
         quick: Whether sizes are tiny: this shows only that the part works; the numbers have no meaning.
+        device: Name of a device; empty for none.
     """
 
     preset: str
@@ -43,6 +44,7 @@ class Plan:
     kernels: tuple[str, ...]
     windows: int
     quick: bool = False
+    device: str = ""
 
     def config(self, *overrides: str) -> Config:
         """The preset with overrides `path=value`, and with short windows if the plan is quick."""
@@ -75,6 +77,7 @@ def make_plan(
     kernel: str = "",
     windows: int = 8,
     quick: bool = False,
+    device: str = "",
 ) -> Plan:
     """A plan from arguments of the command line; an empty one means the default for this machine.
 
@@ -86,6 +89,7 @@ def make_plan(
         kernel: An instruction set; by default all that this processor has.
         windows: Timed windows.
         quick: Tiny sizes.
+        device: Name of a device that can be used here.
 
     Raises:
         PlanError: A list is not valid, a number is out of range, or this processor lacks the instruction set.
@@ -105,6 +109,7 @@ def make_plan(
         kernels=(kernel,) if kernel else known,
         windows=min(windows, 2) if quick else windows,
         quick=quick,
+        device=device,
     )
 
 

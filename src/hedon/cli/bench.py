@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
+from hedon.cli.run import kernel_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 def bench(
     parts: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PART]...", help="What to measure; by default all except growth and rule."),
+        typer.Argument(metavar="[PART]...", help="What to measure; by default all except device, growth and rule."),
     ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write all raw numbers to this file.")
@@ -35,6 +36,7 @@ def bench(
     ] = "",
     kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
     windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
+    device: Annotated[str, typer.Option(help="Measure the part device on this: cuda.")] = "cpu",
     quick: Annotated[
         bool, typer.Option("--quick", help="Tiny sizes, to see that everything works; the numbers have no meaning.")
     ] = False,
@@ -51,6 +53,7 @@ def bench(
       records   writing a run's tables
       startup   from the start of a process to its first step
       rule      rules in Python, beside the formulas of a config; needs hedon[rules]
+      device    whole worlds on a device, by numbers of worlds; needs --device, and is then the only part by default
       growth    one world without learning, up to 500 times as large; takes minutes and 21 GB
 
     Other programs may use the machine too. So the cases are measured in turn, several times, and times are
@@ -63,14 +66,18 @@ def bench(
       hedon bench world --threads 1,2,4 --worlds 1,4 --windows 20
       hedon bench rays forward update --kernel avx2
       hedon bench growth --json growth.json
+      hedon bench --device cuda --worlds 1,64,256
     """
     from hedon.benchmark.bench import Bench, choose, need_writable
     from hedon.benchmark.check import CheckError
     from hedon.benchmark.machine import drifts
     from hedon.benchmark.plan import make_plan
 
-    chosen = choose(parts or ())
-    plan = make_plan(preset, threads=threads, worlds=worlds, slots=slots, kernel=kernel, windows=windows, quick=quick)
+    on = kernel_of(device)
+    chosen = choose(parts or (), on)
+    plan = make_plan(
+        preset, threads=threads, worlds=worlds, slots=slots, kernel=kernel, windows=windows, quick=quick, device=on
+    )
     if json_file is not None:
         need_writable(json_file)
     measured = Bench(plan)

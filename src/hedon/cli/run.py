@@ -72,7 +72,8 @@ def run(
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
     HEDON_KERNEL forces an instruction set: avx512, avx2 or portable. HEDON_KERNEL=cuda is --device cuda, also for other
-    commands, such as hedon resume.
+    commands, such as hedon sweep run and hedon reproduce run. hedon resume goes on with the device of the run where it
+    can be used, and else on the processor, with the same bits.
     """
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from
@@ -123,15 +124,17 @@ def kernel_of(device: str) -> str:
     """The kernel for `--device`: empty for the processor.
 
     Raises:
-        RunError: There is no such device, or its library cannot be there.
+        RunError: There is no such device, or it cannot be used here.
     """
-    from hedon.experiment.device import DEVICES, device_library
+    from hedon.experiment.device import DEVICES, EMULATED, device_problem
 
     if device == "cpu":
         return ""
-    if device not in DEVICES:
+    if device not in (*DEVICES, EMULATED):
         raise RunError(f"--device: {brief(repr(device))} is none of: cpu, {', '.join(DEVICES)}")
-    device_library(device)
+    problem = device_problem(device)
+    if problem:
+        raise RunError(problem)
     return device
 
 

@@ -8,7 +8,7 @@ from hedon.config.config import Config
 from hedon.config.dump import diff
 from hedon.config.load import parse_config
 from hedon.config.problem import format_value
-from hedon.experiment.device import EMULATED
+from hedon.experiment.device import EMULATED, device_problem, is_device
 from hedon.experiment.recorder import Start
 from hedon.experiment.sample import PopulationSampler
 from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
@@ -50,7 +50,8 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
 
 
 def same_kernel(kernel: str | None) -> str:
-    """The instruction set to continue with after `kernel`: the best one on this processor with the same bits.
+    """The kernel to continue with after `kernel`: HEDON_KERNEL's, the same device where it can be used, or the best
+    instruction set of this processor with the same bits.
 
     Raises:
         RecordError: HEDON_KERNEL names one with different bits.
@@ -62,6 +63,8 @@ def same_kernel(kernel: str | None) -> str:
             f"the run was made with the instruction set {kernel}, and {KERNEL_VARIABLE} asks for {asked}, which "
             f"computes different results: unset {KERNEL_VARIABLE}"
         )
+    if not asked and kernel is not None and is_device(kernel) and not device_problem(kernel):
+        return kernel
     known = [name for name in _engine.kernel.kernel_names() if name in family]
     return asked or (known[0] if known else kernel or "")
 

@@ -26,6 +26,15 @@ def library_path() -> Path:
     return Path(_engine.__file__).with_name(LIBRARY)
 
 
+def device_problem(kernel: str) -> str:
+    """Why a device cannot be used here, as a sentence; empty if it can."""
+    try:
+        _engine.open_device(device_library(kernel))
+    except EngineError as error:
+        return str(error)
+    return ""
+
+
 def device_library(kernel: str) -> str:
     """The file of the library for a device; empty for an instruction set.
 

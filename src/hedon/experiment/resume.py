@@ -1,5 +1,6 @@
 """Continues a run that was interrupted, killed, or finished; with the same bits as if it had never stopped."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -9,13 +10,14 @@ from hedon.config.dump import digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.device import device_problem, is_device
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
 from hedon.experiment.run import drive, give_beginning, run
 from hedon.experiment.session import next_manifest
-from hedon.experiment.simulation import Simulation
+from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG, holds_run
@@ -87,7 +89,8 @@ def hold(
             config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds, founders, networks
         )
         notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
-        found = Resumption(plan, manifest, checkpoint, (*notes, *_source_notes(manifest)))
+        notes += [*_device_notes(manifest), *_source_notes(manifest)]
+        found = Resumption(plan, manifest, checkpoint, tuple(notes))
         _check_steps(found)
         yield found
 
@@ -175,6 +178,15 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
         manifest = next_manifest(found.manifest, plan, simulation, start.step)
         with Writer(plan.out, "", manifest, parts=parts) as writer:
             return drive(simulation, plan, manifest, writer, start, display, interrupted)
+
+
+def _device_notes(manifest: Manifest) -> list[str]:
+    """What is to be known if the run's device cannot go on with it."""
+    kernel = manifest.kernel
+    if kernel is None or not is_device(kernel) or os.environ.get(KERNEL_VARIABLE):
+        return []
+    problem = device_problem(kernel)
+    return [f"{problem}: continuing on the processor, with the same bits"] if problem else []
 
 
 def _check_steps(found: Resumption) -> None:
