@@ -108,28 +108,34 @@ struct RowSum {
   }
 };
 
-/// Backward through the first layer. A thread has 4 units of one ray, of one dense entry, of the bias, or of touch.
+/// Backward through the first layer. A thread has 4 units of one ray, of one dense entry, of the bias, or of touch;
+/// each kind has a loop over the samples of its own.
 HEDON_FN void first_layer_backward_by_block(const Block& block, const BlockUpdate& on,
                                             const PackedObservation* observation, int count) {
   const ObservationShape& sizes = on.shape.observation;
   const int32_t touch = sizes.ray_entries(), dense = touch + sizes.touches;
   block.each((sizes.rays + sizes.dense + 2) * 16, [&](int task) {
     const int input = task / 16, unit = task % 16 * 4;
+    const int32_t d = input - sizes.rays;
     RowSum sum{on.gradient + unit, on.hidden1 + unit, -1, {}};
-    for (int s = 0; s < count; ++s) {
-      const PackedObservation& seen = *observation_at(sizes, observation, on.index[s]);
-      const int32_t d = input - sizes.rays;
-      if (d < 0) {
-        sum.add(sizes.ray_entry(input, seen.ray_type[input]), s, seen.ray[input]);
-      } else if (d < sizes.dense) {
-        sum.add(dense + d, s, d < MAX_DENSE ? seen.dense[d] : extra_of(seen).dense[d - MAX_DENSE]);
-      } else if (d == sizes.dense) {
-        sum.add(sizes.size(), s, 1.0f);  // the bias is the row after the inputs
-      } else {
-        for (uint64_t bits = seen.touch; bits != 0; bits &= bits - 1) sum.add(touch + lowest_bit(bits), s, 1.0f);
-        if (!sizes.wide()) continue;
-        for (uint64_t bits = extra_of(seen).touch; bits != 0; bits &= bits - 1)
-          sum.add(touch + 64 + lowest_bit(bits), s, 1.0f);
+    const auto seen = [&](int s) -> const PackedObservation& {
+      return *observation_at(sizes, observation, on.index[s]);
+    };
+    if (d < 0) {
+      for (int s = 0; s < count; ++s) sum.add(sizes.ray_entry(input, seen(s).ray_type[input]), s, seen(s).ray[input]);
+    } else if (d < sizes.dense && d < MAX_DENSE) {
+      for (int s = 0; s < count; ++s) sum.add(dense + d, s, seen(s).dense[d]);
+    } else if (d < sizes.dense) {
+      for (int s = 0; s < count; ++s) sum.add(dense + d, s, extra_of(seen(s)).dense[d - MAX_DENSE]);
+    } else if (d == sizes.dense) {
+      for (int s = 0; s < count; ++s) sum.add(sizes.size(), s, 1.0f);  // the bias is the row after the inputs
+    } else {
+      const auto add_touched = [&](uint64_t touched, int32_t first, int s) {
+        for (uint64_t bits = touched; bits != 0; bits &= bits - 1) sum.add(first + lowest_bit(bits), s, 1.0f);
+      };
+      for (int s = 0; s < count; ++s) {
+        add_touched(seen(s).touch, touch, s);
+        if (sizes.wide()) add_touched(extra_of(seen(s)).touch, touch + 64, s);
       }
     }
     sum.finish();
