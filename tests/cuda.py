@@ -1,4 +1,5 @@
-"""Compiles the CUDA part, and compares what the compiler says of each kernel with the table that is kept.
+"""Compiles the CUDA part, and compares what the compiler says of each kernel, and what its machine code costs, with the
+tables that are kept.
 
 `python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`. No device is needed, and none
 is used.
@@ -14,9 +15,13 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "engine" / "cuda"))
 
+from cuda_cost import count_costs, read_code  # noqa: E402
+
 import build  # noqa: E402
 
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
+COSTS = ROOT / "tests" / "data" / "cuda_cost.json"
+COST_SLACK = 0.15
 THREADS = 256
 # Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
@@ -63,6 +68,28 @@ def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) 
     return out
 
 
+def costs_of(nvcc: Path, binary: Path) -> dict[str, dict[str, float]]:
+    """What the phases of an update cost, from the machine code."""
+    disassembler = nvcc.with_name("nvdisasm")
+    listing = subprocess.run(
+        [str(disassembler), "--print-line-info-inline", str(binary)], capture_output=True, text=True, check=True
+    ).stdout
+    return count_costs(read_code(listing, "LearnWorlds", ROOT / "engine" / "cuda" / "learning.h"))
+
+
+def dearer(found: dict[str, dict[str, float]], kept: dict[str, dict[str, float]]) -> list[str]:
+    """Phases of an update that are not in the table, or cost other than it says."""
+    out = [f"{name}: it is in one of code and table alone" for name in sorted(found.keys() ^ kept.keys())]
+    for name in sorted(found.keys() & kept.keys()):
+        now, then = found[name]["clocks"], kept[name]["clocks"]
+        if abs(now - then) > COST_SLACK * then:
+            out.append(
+                f"{name}: {now:.0f} clocks, and the table has {then:.0f}: call `python tests/cuda.py --write` if "
+                "that is right"
+            )
+    return out
+
+
 def main() -> int:
     nvcc = build.find_nvcc()
     if nvcc is None:
@@ -71,18 +98,22 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         binary = Path(folder) / "device.cubin"
         source = ROOT / "engine" / "cuda" / "device.cu"
-        command = build.command(nvcc, "-cubin", "-Xptxas=-v", "-Werror=all-warnings", "-o", str(binary), str(source))
+        options = ("-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings")
+        command = build.command(nvcc, *options, "-o", str(binary), str(source))
         done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
             print(done.stderr, file=sys.stderr)
             return done.returncode
-        found = read_kernels(done.stderr)
+        found, costs = read_kernels(done.stderr), costs_of(nvcc, binary)
         if "--write" in sys.argv:
             TABLE.write_text(json.dumps(found, indent=2) + "\n")
-        wrong = problems(found, json.loads(TABLE.read_text()))
+            COSTS.write_text(json.dumps(costs, indent=2) + "\n")
+        wrong = problems(found, json.loads(TABLE.read_text())) + dearer(costs, json.loads(COSTS.read_text()))
         for line in wrong:
             print(f"cuda: {line}", file=sys.stderr)
-        print(f"cuda: {len(found)} kernels for sm_90, {binary.stat().st_size / 1e6:.1f} MB")
+        clocks = sum(cost["clocks"] for cost in costs.values())
+        size = binary.stat().st_size / 1e6
+        print(f"cuda: {len(found)} kernels for sm_90, {size:.1f} MB; {clocks:,.0f} clocks for 64 samples of an update")
         return 1 if wrong else 0
 
 
