@@ -72,7 +72,7 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
   const RayCandidates candidates = {{all.get(), all.get()}, {candidate_count, candidate_count}};
   alignas(64) float reading[PACKED_RAYS];
   uint8_t hit[PACKED_RAYS];
-  for (int64_t i = 0; i < repeats; ++i) kernel.cast_rays(targets, fan, candidates, reading, hit);
+  for (int64_t i = 0; i < repeats; ++i) kernel.rays.cast_rays(targets, fan, candidates, reading, hit);
   return nb::make_tuple(to_numpy(reading, {rays}), to_numpy(hit, {rays}));
 }
 
@@ -81,7 +81,7 @@ double calibrate(const std::string& kernel_name, int64_t rounds) {
   const Kernel& kernel = kernel_by_name(kernel_name);
   float result = 0.5f;
   const auto before = std::chrono::steady_clock::now();
-  const int64_t operations = kernel.multiply_adds(rounds, &result);
+  const int64_t operations = kernel.rates.multiply_adds(rounds, &result);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
   if (!(result > 0.0f)) throw std::runtime_error("a sum of positive numbers is not positive");
   return static_cast<double>(operations) / seconds.count() * 1e-9;
@@ -94,9 +94,9 @@ double read_rate(const std::string& kernel_name, int64_t bytes, int64_t rounds) 
   const int64_t count = bytes / BLOCK * 64;
   const Aligned<float> values(static_cast<size_t>(count));
   for (int64_t i = 0; i < count; ++i) values.get()[i] = 1.0f;
-  float total = kernel.sum_floats(values.get(), count);
+  float total = kernel.rates.sum_floats(values.get(), count);
   const auto before = std::chrono::steady_clock::now();
-  for (int64_t i = 0; i < rounds; ++i) total += kernel.sum_floats(values.get(), count);
+  for (int64_t i = 0; i < rounds; ++i) total += kernel.rates.sum_floats(values.get(), count);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
   if (!(total > 0.0f)) throw std::runtime_error("a sum of ones is not positive");
   return static_cast<double>(rounds * count * static_cast<int64_t>(sizeof(float))) / seconds.count() * 1e-9;

@@ -16,8 +16,8 @@
 #include "binding/parts.h"
 #include "kernel/kernel.h"
 #include "learning/init.h"
-#include "learning/ppo.h"
 #include "learning/weight_pair.h"
+#include "simulation/learn.h"
 
 namespace nb = nanobind;
 
@@ -178,9 +178,9 @@ FloatsOut forward_all(const std::string& kernel_name, ObservationSizes sizes, Fl
   Aligned<float> packed_weights(static_cast<size_t>(shape.pairs()));
   const ActingNetwork network = {weights.get(), folded_bias.get(), rounded ? packed_weights.get() : nullptr};
   std::vector<float> output(count * OUTPUTS);
-  kernel.pack_weights(shape, network);
+  kernel.network.pack_weights(shape, network);
   for (size_t i = 0; i < count; ++i) {
-    kernel.forward(shape, network, observation.at(i), output.data() + i * OUTPUTS);
+    kernel.network.forward(shape, network, observation.at(i), output.data() + i * OUTPUTS);
   }
   return to_numpy(output.data(), {count, size_t{OUTPUTS}});
 }
@@ -199,7 +199,7 @@ nb::tuple gradient(const std::string& kernel_name, ObservationSizes sizes, nb::d
   const Aligned<float> scratch(static_cast<size_t>(ppo_scratch_size(shape)));
   const Aligned<float> out(params.size());
   const PpoLoss loss =
-      kernel.gradient(shape, config, weights.get(), arrays.batch, order.data(), scratch.get(), out.get());
+      kernel.network.gradient(shape, config, weights.get(), arrays.batch, order.data(), scratch.get(), out.get());
   return nb::make_tuple(to_numpy(out.get(), {params.size()}), nb::make_tuple(loss.policy, loss.value, loss.entropy));
 }
 
@@ -210,7 +210,7 @@ nb::tuple adam(const std::string& kernel_name, nb::dict settings, Floats gradien
   check_length(gradient.size(), params.size(), "gradient");
   const Aligned<float> slope(gradient.data(), gradient.size());
   LearnerArrays learner(params, first_moment, second_moment, updates);
-  kernel.adam(config, static_cast<int32_t>(params.size()), slope.get(), learner.view());
+  kernel.network.adam(config, static_cast<int32_t>(params.size()), slope.get(), learner.view());
   return learner.result({});
 }
 
@@ -229,7 +229,7 @@ nb::tuple update(const std::string& kernel_name, ObservationSizes sizes, nb::dic
   arrays.batch.order = order.data();
   const Aligned<float> scratch(static_cast<size_t>(ppo_scratch_size(shape)));
   LearnerArrays learner(params, first_moment, second_moment, updates);
-  return learner.result(kernel.update(shape, config, arrays.batch, scratch.get(), learner.view()));
+  return learner.result(kernel.network.update(shape, config, arrays.batch, scratch.get(), learner.view()));
 }
 
 nb::tuple learn_once(const std::string& kernel_name, ObservationSizes sizes, nb::dict settings, Floats params,
@@ -248,8 +248,8 @@ nb::tuple learn_once(const std::string& kernel_name, ObservationSizes sizes, nb:
       arrays.batch.count};
   const Aligned<float> scratch(static_cast<size_t>(learn_scratch_size(shape, config)));
   LearnerArrays learner(params, first_moment, second_moment, updates);
-  return learner.result(
-      learn(kernel, shape, config, rollout, {seed, Purpose::minibatch, agent_id, step}, scratch.get(), learner.view()));
+  return learner.result(learn(kernel.network, shape, config, rollout, {seed, Purpose::minibatch, agent_id, step},
+                              scratch.get(), learner.view()));
 }
 
 }  // namespace

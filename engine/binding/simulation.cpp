@@ -192,7 +192,7 @@ void set_networks(PythonSimulation& self, int index, int species,
   }
   for (size_t i = 0; i < slots.size(); ++i) {
     std::copy_n(networks.data() + i * size, size, from.params(slots[i]));
-    from.kernel->pack_weights(network, from.network(slots[i]));
+    from.kernel->network.pack_weights(network, from.network(slots[i]));
     keep_initial(from, slots[i]);
   }
 }

@@ -9,7 +9,7 @@
 #include "cuda/network.h"
 #include "kernel/ppo_update.h"
 #include "learning/gae.h"
-#include "learning/ppo.h"
+#include "learning/rollout.h"
 
 namespace hedon {
 namespace {
@@ -164,7 +164,8 @@ HEDON_FN PpoBatch prepare_update(const Block& block, const LearningConfig& confi
   return {rollout.observation, rollout.action, rollout.log_prob, advantage, target, orders, count};
 }
 
-/// One learner's whole update: the same as `learn`, then `Kernel::pack_weights`. All threads of a block call it.
+/// One learner's whole update: the same as `learn`, then `NetworkKernels::pack_weights`. All threads of a block call
+/// it.
 HEDON_FN void learn_by_block(const Block& block, const NetworkShape& shape, const LearningConfig& config,
                              const Rollout& rollout, const RandomStream& stream, float* scratch, const Learner& home,
                              const ActingNetwork& network) {

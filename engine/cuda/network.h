@@ -41,7 +41,7 @@ HEDON_FN float unpack_weight(const float* packed, int32_t row, int unit) {
   return second;
 }
 
-/// See `Kernel::pack_weights`. params   those of the network, possibly in shared memory
+/// See `NetworkKernels::pack_weights`. params   those of the network, possibly in shared memory
 template <class Group>
 HEDON_FN void pack_weights_by(const Group& group, const NetworkShape& shape, const float* params,
                               const ActingNetwork& network) {
@@ -60,7 +60,7 @@ HEDON_FN void pack_weights_by(const Group& group, const NetworkShape& shape, con
                [&](int32_t row, int unit) { return unpack_weight(network.packed_weights, row, unit); });
 }
 
-/// For `Kernel::pack_weights`: what a birth calls.
+/// For `NetworkKernels::pack_weights`: what a birth calls.
 HEDON_FN void pack_weights_alone(const NetworkShape& shape, const ActingNetwork& network) {
   pack_weights_by(OneThread{}, shape, network.params, network);
 }

@@ -105,7 +105,7 @@ struct FillKernel {
   static constexpr int64_t FLOATS = 0;
   HEDON_FN int32_t blocks() const { return 1; }
   HEDON_FN void operator()(int32_t) const {
-    if (thread_rank() == 0) kernel->pack_weights = pack_weights_alone;
+    if (thread_rank() == 0) kernel->network.pack_weights = pack_weights_alone;
   }
 };
 

@@ -8,7 +8,7 @@
 namespace hedon {
 namespace {
 
-/// See `Kernel::multiply_adds`. As many independent chains as fit the registers, so that latency does not matter.
+/// See `RateKernels::multiply_adds`. As many independent chains as fit the registers, so that latency does not matter.
 template <class Shape>
 HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   constexpr int chains = Shape::chains;
@@ -26,7 +26,7 @@ HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   return rounds * chains * 16 * 2;
 }
 
-/// See `Kernel::sum_floats`. Four partial sums, so that additions do not wait for one another.
+/// See `RateKernels::sum_floats`. Four partial sums, so that additions do not wait for one another.
 HEDON_FN float sum_floats(const float* values, int64_t count) {
   constexpr int sums = 4, stride = sums * 16;
   Lanes total[sums];

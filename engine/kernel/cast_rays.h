@@ -1,7 +1,8 @@
 /// Nearest hit of an agent's rays among circles and segments. Lanes are the rays of one arc.
 #pragma once
 
-#include "kernel/kernel.h"
+#include "kernel/ray_table.h"
+#include "learning/network.h"
 #include "lanes/elementary.h"
 
 namespace hedon {
@@ -85,7 +86,7 @@ HEDON_INLINE void cast_at_segments(const RayTargets& targets, const RayFan& fan,
   }
 }
 
-/// See `Kernel::cast_rays`.
+/// See `RayKernels::cast_rays`.
 HEDON_FN void cast_rays(const RayTargets& targets, const RayFan& fan, const RayCandidates& candidates, float* reading,
                         uint8_t* type) {
   const Lanes forward_x = broadcast(fan.forward_x), forward_y = broadcast(fan.forward_y);

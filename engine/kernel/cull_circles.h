@@ -1,13 +1,13 @@
 /// Which circles the rays of an agent may hit. Lanes are circles.
 #pragma once
 
-#include "kernel/kernel.h"
+#include "kernel/ray_table.h"
 #include "lanes/elementary.h"
 
 namespace hedon {
 namespace {
 
-/// See `Kernel::cull_circles`. A circle is left out of an arc if it is out of reach or completely behind one of the
+/// See `RayKernels::cull_circles`. A circle is left out of an arc if it is out of reach or completely behind one of the
 /// arc's edges. Rays may still miss a circle that is kept.
 HEDON_FN void cull_circles(const RayTargets& targets, const RayFan& fan, int32_t first, int32_t last,
                            RayCandidates& candidates) {

@@ -3,7 +3,7 @@
 /// Lanes are outputs and inner indices run in order, so results do not depend on the shape of a tile.
 #pragma once
 
-#include "kernel/kernel.h"
+#include "kernel/network_table.h"
 #include "lanes/elementary.h"
 #include "learning/weight_pair.h"
 
@@ -98,7 +98,7 @@ HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Ma
   unroll<WIDTH>([&](auto c) HEDON_INLINED { store(folded_bias + c * LANES, bias[c]); });
 }
 
-/// See `Kernel::pack_weights`.
+/// See `NetworkKernels::pack_weights`.
 HEDON_FN void pack_weights(const NetworkShape& shape, const ActingNetwork& network) {
   const float* const b1 = network.params + shape.b1();
   if (network.packed_weights == nullptr) {
@@ -213,7 +213,7 @@ HEDON_INLINE void forward_by(const NetworkShape& shape, const ActingNetwork& net
   heads(shape, network.params, hidden2, output);
 }
 
-/// See `Kernel::forward`.
+/// See `NetworkKernels::forward`.
 template <class Shape>
 HEDON_FN void forward(const NetworkShape& shape, const ActingNetwork& network, const PackedObservation& observation,
                       float* output) {

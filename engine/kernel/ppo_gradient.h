@@ -177,7 +177,7 @@ HEDON_INLINE void gradient_of_block(const NetworkShape& shape, const float* para
   first_layer_backward<Shape>(shape, observation, count, memory.hidden1, gradient);
 }
 
-/// Loss and gradient of one minibatch; see `Kernel::gradient`.
+/// Loss and gradient of one minibatch; see `NetworkKernels::gradient`.
 template <class Shape>
 HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const LearningConfig& config, const float* params,
                                        const PpoBatch& batch, const int32_t* order, float* scratch, float* gradient) {

@@ -1,7 +1,7 @@
 /// The loss of PPO and its derivative with respect to the network's outputs, 16 samples at a time.
 #pragma once
 
-#include "kernel/kernel.h"
+#include "kernel/network_table.h"
 #include "kernel/ppo_scratch.h"
 #include "lanes/elementary.h"
 

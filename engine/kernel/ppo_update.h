@@ -60,7 +60,7 @@ HEDON_FN void adam(const LearningConfig& config, int32_t size, const float* grad
   for (int32_t i = 0; i < size; i += LANES) adam_lanes(step, i, gradient, learner);
 }
 
-/// See `Kernel::update`.
+/// See `NetworkKernels::update`.
 template <class Shape>
 HEDON_FN PpoLoss update(const NetworkShape& shape, const LearningConfig& config, const PpoBatch& batch, float* scratch,
                         const Learner& learner) {

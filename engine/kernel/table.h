@@ -13,8 +13,10 @@ namespace {
 
 template <class Shape>
 HEDON_FN constexpr Kernel make_table(const char* name) {
-  return {name,          pack_weights, forward<Shape>, gradient_of_minibatch<Shape>, adam,
-          update<Shape>, cull_circles, cast_rays,      multiply_adds<Shape>,         sum_floats};
+  return {name,
+          {pack_weights, forward<Shape>, gradient_of_minibatch<Shape>, adam, update<Shape>},
+          {cull_circles, cast_rays},
+          {multiply_adds<Shape>, sum_floats}};
 }
 
 }  // namespace

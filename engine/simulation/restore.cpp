@@ -322,10 +322,10 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
   });
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
   for (const int32_t slot : extent.networks)
-    target.kernel->pack_weights(target.species(slot).network, target.network(slot));
+    target.kernel->network.pack_weights(target.species(slot).network, target.network(slot));
   if (inherits_late(target)) {
     for (const int32_t slot : extent.free_networks)
-      target.kernel->pack_weights(target.species(slot).network, target.network(slot));
+      target.kernel->network.pack_weights(target.species(slot).network, target.network(slot));
   }
   restore_pairs(in, target, extent);
   return "";

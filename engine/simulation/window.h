@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "learning/ppo.h"
+#include "simulation/learn.h"
 #include "world/audit.h"
 #include "world/expression.h"
 #include "world/step.h"
@@ -66,10 +66,10 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
     PackedObservation& next = world.observation(slot, world.shape->steps);
     observe(world, slot, group.rank(), next);
     float output[16];
-    world.kernel->forward(species.network, world.network(slot), next, output);
-    learn(*world.kernel, species.network, own_learning(world, slot), rollout_of(world, slot, output[ACTIONS]),
+    world.kernel->network.forward(species.network, world.network(slot), next, output);
+    learn(world.kernel->network, species.network, own_learning(world, slot), rollout_of(world, slot, output[ACTIONS]),
           minibatch_stream(world, slot), scratch + group.rank() * stride, learner_of(world, slot));
-    world.kernel->pack_weights(species.network, world.network(slot));
+    world.kernel->network.pack_weights(species.network, world.network(slot));
   });
   group.once([&] { close_window(world, taught); });
 }

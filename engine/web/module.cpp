@@ -263,7 +263,8 @@ HEDON_EXPORT(hedon_mind) const Mind* hedon_mind(int32_t slot) {
   observe(world(), slot, 0, mind.observation);
   memset(mind.output, 0, sizeof mind.output);
   if (world().species(slot).has_network)
-    world().kernel->forward(world().species(slot).network, world().network(slot), mind.observation, mind.output);
+    world().kernel->network.forward(world().species(slot).network, world().network(slot), mind.observation,
+                                    mind.output);
   return &mind;
 }
 

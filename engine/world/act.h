@@ -63,7 +63,7 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
 HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
   if (!world.species(slot).has_network) return act_without_network(world, slot, t);
   float output[16];
-  world.kernel->forward(world.species(slot).network, world.network(slot), world.observation(slot, t), output);
+  world.kernel->network.forward(world.species(slot).network, world.network(slot), world.observation(slot, t), output);
   sample_action(world, slot, t, output);
 }
 

@@ -28,7 +28,7 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
   if (!world.species(slot).has_network) return;
   const NetworkShape& network = world.species(slot).network;
   init_network(network, random, world.params(slot));
-  world.kernel->pack_weights(network, world.network(slot));
+  world.kernel->network.pack_weights(network, world.network(slot));
   forget_updates(world, slot);
 }
 
@@ -62,7 +62,7 @@ HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
     for (int32_t i = 0; i < 4 && p + i < size; ++i)
       world.params(slot)[p + i] = from[p + i] + birth.network_noise * noise[i];
   }
-  world.kernel->pack_weights(species.network, world.network(slot));
+  world.kernel->network.pack_weights(species.network, world.network(slot));
   forget_updates(world, slot);
   keep_initial(world, slot);
 }

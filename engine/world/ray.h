@@ -64,10 +64,10 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, in
   const Vec2 right = ray_direction(species, 0, forward);
   const Vec2 left = ray_direction(species, fan.rays - 1, forward);
   RayCandidates candidates = no_candidates(world, rank);
-  find_circles(*world.kernel, world, targets, fan, box_of(right, left, fan.start + fan.length, species.fan_convex),
+  find_circles(world.kernel->rays, world, targets, fan, box_of(right, left, fan.start + fan.length, species.fan_convex),
                candidates);
   if (!species.sight.in_order) drop_unseen(world.scene, species.sight, candidates);
-  world.kernel->cast_rays(targets, fan, candidates, out.ray, out.ray_type);
+  world.kernel->rays.cast_rays(targets, fan, candidates, out.ray, out.ray_type);
   if (species.sight.in_order) return;
   for (int32_t r = 0; r < fan.rays; ++r) {
     // A ray that meets nothing reads 0 in the first channel.

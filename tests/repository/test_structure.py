@@ -12,7 +12,7 @@ LONGEST = 400
 ALLOWED = {
     "base": set(),
     "lanes": {"base"},
-    "learning": {"base", "kernel"},
+    "learning": {"base"},
     "kernel": {"base", "lanes", "learning"},
     "physics": {"base"},
     "evolution": {"base"},
