@@ -175,10 +175,9 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   }
   const Species& species = world.species(slot);
   const int64_t size = species.network.size(), first = int64_t{slot} * world.shape->params;
-  const bool network_finite =
-      (!species.has_network || all_finite(world.params(slot), size)) &&
-      (!species.learns ||
-       (all_finite(&state.first_moment[first], size) && all_finite(&state.second_moment[first], size)));
+  const bool network_finite = (!species.has_network || all_finite(world.params(slot), size)) &&
+                              (!species.learns || (all_finite(&state.first_moment[first], size) &&
+                                                   all_finite(&state.second_moment[first], size)));
   if (!network_finite || !all_finite(world.genome(slot), species.config->genome.genes.count))
     return {Status::not_finite, -1, species.learns ? static_cast<double>(state.updates[slot]) : 0.0};
   const double energy = state.life[slot].energy;

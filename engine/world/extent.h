@@ -70,10 +70,10 @@ enum class Lifetime : uint8_t {
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
-         rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots || rows == Extent::ruled_slots ||
-         rows == Extent::packed_slots || rows == Extent::wide_slots || rows == Extent::obstacle_slots ||
-         rows == Extent::inner_slots || rows == Extent::instinct_slots || rows == Extent::mating_slots ||
-         rows == Extent::hunted_slots;
+         rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots ||
+         rows == Extent::ruled_slots || rows == Extent::packed_slots || rows == Extent::wide_slots ||
+         rows == Extent::obstacle_slots || rows == Extent::inner_slots || rows == Extent::instinct_slots ||
+         rows == Extent::mating_slots || rows == Extent::hunted_slots;
 }
 
 struct ArrayShape {
