@@ -40,7 +40,7 @@ test-long: sync
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view
 	$(RUN) python tests/soak.py
-	$(RUN) $(EXTRA) --group cuda pytest -m long tests/repository
+	$(RUN) $(EXTRA) --group cuda --group wheel pytest -m long tests/repository
 	$(RUN) python tests/sanitize.py asan --cuda
 	$(RUN) python tests/sanitize.py tsan --cuda
 	$(RUN) python tests/sanitize.py tsan

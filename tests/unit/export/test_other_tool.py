@@ -1,6 +1,8 @@
 """The lines of the guide with which other tools read records give what hedon itself gives."""
 
 import re
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from project_files import ROOT
 from synthetic_run import write_run
 
 import hedon
+from hedon.export.table import table_of, write_table
 
 GUIDE = (ROOT / "docs" / "guide" / "export.md").read_text(encoding="utf-8")
 
@@ -40,3 +43,14 @@ def test_pandas(line: str, most: tuple[Path, dict[int, int]], monkeypatch: pytes
     found: Any = eval(line, {"pd": pd, "hedon": hedon})
     assert found.to_dict() == most[1]
     assert len(lines("py")) == 2
+
+
+@pytest.mark.skipif(shutil.which("Rscript") is None, reason="needs R: apt-get install r-base-core")
+def test_r(most: tuple[Path, dict[int, int]], tmp_path: Path) -> None:
+    (line,) = lines("r")
+    write_table(
+        table_of(hedon.open_run(most[0] / "runs" / "mine"), "population"), "csv", tmp_path / "mine-population.csv"
+    )
+    script = f"found <- {line}; cat(sprintf('%d %d', found$seed, found$alive), sep = '\\n')"
+    done = subprocess.run(["Rscript", "-e", script], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert {int(seed): int(alive) for seed, alive in map(str.split, done.stdout.splitlines())} == most[1]

