@@ -35,7 +35,7 @@ sanitized: sync
 
 # The same questions asked hundreds of times, and those that take minutes: before a release.
 test-long: sync
-	$(RUN) $(EXTRA) --extra ray --extra remote pytest -m long tests/sweep
+	HEDON_NODES=20 $(RUN) $(EXTRA) --extra ray --extra remote pytest -m long tests/sweep
 	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view

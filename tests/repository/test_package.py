@@ -20,8 +20,8 @@ UV = shutil.which("uv") or str(ROOT / ".uv" / "bin" / "uv")
 
 
 def run(*command: str | Path, path: str | None = None, cwd: Path | None = None) -> str:
-    environment = os.environ | ({"PATH": path} if path else {})
-    environment.pop("PYTHONPATH", None)
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH" and not name.startswith("CMAKE_")}
+    environment = kept | ({"PATH": path} if path else {})
     done = subprocess.run(
         [str(part) for part in command], capture_output=True, text=True, check=False, env=environment, cwd=cwd
     )
