@@ -3,6 +3,7 @@
 import ctypes
 import os
 import platform
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -11,8 +12,10 @@ from cuda_emulation import emulated as emulated
 from resumed_run import WINDOW, small_run
 from worlds import QUICK, make_simulation
 
+from hedon import _engine
 from hedon.check.run import check_run
 from hedon.error import EngineError
+from hedon.experiment import device
 from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.resume import resume
 from hedon.experiment.simulation import KERNEL_VARIABLE
@@ -75,6 +78,18 @@ def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
     assert again.world_digests == whole.world_digests
     assert again.records_digest == whole.records_digest
     assert check_run(tmp_path / "run").findings == ()
+
+
+def test_a_library_that_is_older_than_the_engine_is_refused(
+    emulated: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    library = tmp_path / "_cuda.so"
+    shutil.copyfile(os.environ[EMULATION_VARIABLE], library)
+    monkeypatch.setattr(device, "library_path", lambda: library)
+    assert device.device_problem("cuda") == ""
+    built = Path(_engine.__file__).stat().st_mtime
+    os.utime(library, (built - 1, built - 1))
+    assert "its library is older than the engine" in device.device_problem("cuda")
 
 
 @pytest.mark.parametrize("worlds", [1, 2, 5])

@@ -39,7 +39,7 @@ def device_library(kernel: str) -> str:
     """The file of the library for a device; empty for an instruction set.
 
     Raises:
-        EngineError: There is no such file.
+        EngineError: There is no such file, or it is older than the engine.
     """
     if not is_device(kernel):
         return ""
@@ -53,5 +53,10 @@ def device_library(kernel: str) -> str:
         raise EngineError(
             f"device '{kernel}' cannot be used: its library is not built: call `make cuda` (docs/gpu.md), or leave "
             "--device out"
+        )
+    if path.stat().st_mtime < Path(_engine.__file__).stat().st_mtime:
+        raise EngineError(
+            f"device '{kernel}' cannot be used: its library is older than the engine, so it might compute something "
+            "else: call `make cuda` again, or leave --device out"
         )
     return str(path)
