@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernel/ray_table.h"
-#include "learning/network.h"
 #include "lanes/elementary.h"
+#include "learning/network.h"
 
 namespace hedon {
 namespace {
