@@ -1,10 +1,11 @@
 """Where a sweep lives: what is written is whole or not there, and URLs are places like folders."""
 
 import pytest
-from sweep_case import assert_goes_on_elsewhere
+from sweep_case import assert_goes_on_elsewhere, planned, sweep_file
 
 from hedon.error import HedonError
 from hedon.sweep.store import PASSING, UrlStore, open_store
+from hedon.sweep.work import STATE, Task, make_batch
 
 
 @pytest.fixture(params=["folder", "file", "memory"])
@@ -42,6 +43,39 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     assert [path.name for path in (tmp_path / "a").iterdir() if PASSING in path.name]
     assert store.names("a") == ["b"]
     assert store.read("a/b") == b"old"
+
+
+class DriverError(Exception):
+    """What a library of an object store raises where its server or its keys are missing: no OSError."""
+
+
+def test_errors_of_any_kind_of_a_place_are_one_message(tmp_path, monkeypatch):
+    store = open_store(f"file://{tmp_path}")
+    assert isinstance(store, UrlStore)
+
+    def fail(*_arguments: object, **_options: object) -> None:
+        raise DriverError("no keys")
+
+    for name in ("pipe_file", "cat_file", "ls", "rm_file"):
+        monkeypatch.setattr(type(store._system), name, fail)
+    asked = {
+        "cannot write a/b to": lambda: store.write("a/b", b""),
+        "cannot read a/b of": lambda: store.read("a/b"),
+        "cannot list a of": lambda: store.names("a"),
+        "cannot remove a/b of": lambda: store.remove("a/b"),
+    }
+    for message, ask in asked.items():
+        with pytest.raises(HedonError, match=f"{message} file://.*: DriverError: no keys"):
+            ask()
+
+
+def test_a_state_that_is_damaged_is_as_none(tmp_path):
+    url = f"file://{tmp_path}/far"
+    plan, store = planned(sweep_file(tmp_path, 128, seeds=1), url)
+    (batch, *_) = plan.batches()
+    store.write(f"{STATE}/{batch.name}.zip", b"PK but no archive")
+    assert make_batch(Task(url, plan, batch, tmp_path / "run", 1e9), 1, None) == "finished"
+    assert store.names(STATE) == []
 
 
 def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):

@@ -4,6 +4,7 @@ A task goes on from its batch's last checkpoint. It finds that in the sweep's fo
 behind the sweep's URL.
 """
 
+import hashlib
 import tempfile
 import time
 from importlib import import_module
@@ -59,7 +60,9 @@ def run_on_ray(
         ray: Any = import_module("ray")
     except ImportError:
         raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
-    scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}"
+    # Of this place and plan alone: what another sweep left on a node must not be gone on with.
+    own = hashlib.sha256(f"{store.location} {plan.steps} {plan.digests}".encode()).hexdigest()[:16]
+    scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
     jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
     outcomes: dict[str, Outcome] = {}
     try:

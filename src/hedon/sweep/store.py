@@ -4,7 +4,8 @@ Whatever is written is whole or not there: it is written under a passing name an
 """
 
 import secrets
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
@@ -109,42 +110,45 @@ class UrlStore:
         path = self._path(name)
         parent, _, last = path.rpartition("/")
         passing = f"{parent}/{PASSING}{secrets.token_hex(8)}-{last}"
-        try:
-            if parent not in self._made:
-                self._system.makedirs(parent, exist_ok=True)
-                self._made.add(parent)
-            self._system.pipe_file(passing, content)
-            self._system.mv(passing, path)
-        except OSError as error:
-            with suppress(OSError):
-                self._system.rm_file(passing)
-            raise SweepError(f"cannot write {name} to {self.location}: {error}") from error
+        with self._asked(f"cannot write {name} to"):
+            try:
+                if parent not in self._made:
+                    self._system.makedirs(parent, exist_ok=True)
+                    self._made.add(parent)
+                self._system.pipe_file(passing, content)
+                self._system.mv(passing, path)
+            except Exception:
+                with suppress(Exception):
+                    self._system.rm_file(passing)
+                raise
 
     def read(self, name: str) -> bytes | None:
         """A content, or None; see `Store`."""
-        try:
+        with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError):
             return self._system.cat_file(self._path(name))
-        except FileNotFoundError:
-            return None
-        except OSError as error:
-            raise SweepError(f"cannot read {name} of {self.location}: {error}") from error
+        return None
 
     def names(self, folder: str) -> list[str]:
         """Plain names within a folder; see `Store`."""
         self._system.invalidate_cache()
-        try:
+        found: list[str] = []
+        with self._asked(f"cannot list {folder} of"), suppress(FileNotFoundError):
             found = self._system.ls(self._path(folder), detail=False)
-        except FileNotFoundError:
-            return []
-        except OSError as error:
-            raise SweepError(f"cannot list {folder} of {self.location}: {error}") from error
         names = (path.rstrip("/").rpartition("/")[2] for path in found)
         return sorted({name for name in names if name and not name.startswith(".")})
 
     def remove(self, name: str) -> None:
         """Removes a content; see `Store`."""
-        with suppress(FileNotFoundError):
+        with self._asked(f"cannot remove {name} of"), suppress(FileNotFoundError):
             self._system.rm_file(self._path(name))
+
+    @contextmanager
+    def _asked(self, what: str) -> Iterator[None]:
+        """Gives the errors of the system's own library, which may be of any kind, in one line."""
+        try:
+            yield
+        except Exception as error:
+            raise SweepError(f"{what} {self.location}: {type(error).__name__}: {error}") from error
 
     def _path(self, name: str) -> str:
         return f"{self._root.rstrip('/')}/{name}"

@@ -8,6 +8,7 @@ import io
 import json
 import shutil
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -155,5 +156,6 @@ def _fetch_state(store: Store, task: Task) -> None:
     content = store.read(_state_name(task))
     if content is not None:
         shutil.rmtree(task.folder, ignore_errors=True)
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        # A state that cannot be read is as none: the batch begins again.
+        with suppress(zipfile.BadZipFile), zipfile.ZipFile(io.BytesIO(content)) as archive:
             archive.extractall(task.folder)
