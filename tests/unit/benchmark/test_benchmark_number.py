@@ -159,7 +159,7 @@ def test_worlds_of_one_seed_that_differ_fail_their_check():
 def test_parts_and_their_nearest_names():
     assert choose(()) == DEFAULT_PARTS
     assert choose(("world", "rays", "world")) == ("world", "rays")
-    assert set(DEFAULT_PARTS) == set(PARTS) - {"growth", "rule"}
+    assert set(DEFAULT_PARTS) == set(PARTS) - {"device", "growth", "rule"}
     with pytest.raises(PlanError, match=r"'fysics' is not a part .*; did you mean physics\?"):
         choose(("rays", "fysics"))
 
