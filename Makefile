@@ -41,6 +41,7 @@ test-long: sync
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view
 	$(RUN) python tests/soak.py
 	$(RUN) $(EXTRA) --group cuda --group wheel pytest -m long tests/repository
+	$(RUN) python tests/cuda_step.py
 	$(RUN) python tests/sanitize.py asan --cuda
 	$(RUN) python tests/sanitize.py tsan --cuda
 	$(RUN) python tests/sanitize.py tsan

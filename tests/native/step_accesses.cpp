@@ -1,0 +1,101 @@
+/// Counts how often the threads of an emulated block touch memory in a step of a world, and how long its longest way
+/// is.
+///
+///     step_accesses WARM STEPS FILE
+///
+/// The world runs WARM steps on the processor, then STEPS in the emulation. Between two barriers, a device waits for
+/// the thread with the most accesses. A line for each barrier of the code: its address, and of the work before it, per
+/// step, how often it came, the accesses of the thread with the most, of the thread with the second most, and of all
+/// threads.
+///
+/// The emulation is compiled for the thread sanitizer, whose functions, called at each access, are those below; and the
+/// linker sends calls of the barrier through `__wrap_…`. `tests/cuda_step.py` builds all of it.
+#include <algorithm>
+#include <map>
+
+#include "base/float_mode.h"
+#include "cuda/thread.h"
+#include "world_file.h"
+
+namespace {
+
+struct Work {
+  int64_t calls, most, second, all;
+};
+
+constexpr int MOST_THREADS = 1024;
+bool counting = false;
+int arrived = 0;
+int64_t touched[MOST_THREADS];
+std::map<const void*, Work> before_barrier;
+
+void touch() {
+  if (counting) ++touched[hedon::thread_rank()];
+}
+
+void close(Work& work, int threads) {
+  std::sort(touched, touched + threads);
+  work.calls += 1;
+  work.most += touched[threads - 1];
+  work.second += touched[threads - 2];
+  for (int i = 0; i < threads; ++i) work.all += touched[i];
+  std::fill_n(touched, threads, 0);
+}
+
+}  // namespace
+
+extern "C" {
+#define HEDON_TOUCH(name)                    \
+  void __tsan_read##name(void*) { touch(); } \
+  void __tsan_write##name(void*) { touch(); }
+HEDON_TOUCH(1)
+HEDON_TOUCH(2)
+HEDON_TOUCH(4)
+HEDON_TOUCH(8)
+HEDON_TOUCH(16)
+void __tsan_read_range(void*, unsigned long) { touch(); }
+void __tsan_write_range(void*, unsigned long) { touch(); }
+void __tsan_func_entry(void*) {}
+void __tsan_func_exit() {}
+void __tsan_init() {}
+
+void __real__ZN5hedon13block_barrierEv();
+void __wrap__ZN5hedon13block_barrierEv() {
+  if (counting && ++arrived == hedon::thread_count()) {
+    arrived = 0;
+    close(before_barrier[__builtin_return_address(0)], hedon::thread_count());
+  }
+  __real__ZN5hedon13block_barrierEv();
+}
+}
+
+int main(int count, char** arguments) {
+  if (count != 4) {
+    fprintf(stderr, "step_accesses WARM STEPS FILE\n");
+    return 2;
+  }
+  const int64_t warm = atoll(arguments[1]), steps = atoll(arguments[2]);
+  const hedon::WorldInput input = hedon::read_world(arguments[3], 1);
+  const auto here = hedon::make_worlds(input, 1, false), there = hedon::make_worlds(input, 1, true);
+  here->run(warm);
+  const std::string wrong = there->restore(0, here->save(0));
+  if (!wrong.empty()) {
+    fprintf(stderr, "%s\n", wrong.c_str());
+    return 2;
+  }
+  counting = true;
+  there->run(steps);
+  counting = false;
+  here->run(steps);
+  if (here->digest(0) != there->digest(0)) {
+    fprintf(stderr, "the emulation has other bits than the processor\n");
+    return 1;
+  }
+  printf("alive %d\n", there->numbers(0).head().living_count);
+  const double per = 1.0 / static_cast<double>(steps);
+  for (const auto& [address, work] : before_barrier)
+    printf("%p %.3f %.1f %.1f %.1f\n", address, static_cast<double>(work.calls) * per,
+           static_cast<double>(work.most) * per, static_cast<double>(work.second) * per,
+           static_cast<double>(work.all) * per);
+  return 0;
+}
