@@ -10,6 +10,8 @@ EXTRA := --extra rules --extra video
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
 unexport MAKEFLAGS
+# Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test test-long static sanitized sync cuda stubs viewer docs clean
 
