@@ -4,8 +4,9 @@ UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
-# Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB: only the tests install them.
-EXTRA := --extra rules --extra video
+# Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB; a cluster is made of Ray, 200 MB
+# (80 MB to download): only the tests install them.
+EXTRA := --extra rules --extra video --extra ray
 # What the site is made with.
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
@@ -37,7 +38,7 @@ sanitized: sync
 
 # The same questions asked hundreds of times, and those that take minutes: before a release.
 test-long: sync
-	HEDON_NODES=20 $(RUN) $(EXTRA) --extra ray --extra remote pytest -m long tests/sweep
+	HEDON_NODES=20 $(RUN) $(EXTRA) --extra remote pytest -m "long or not long" tests/sweep
 	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view

@@ -13,7 +13,7 @@ from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
 from hedon.sweep.store import Store, open_store
-from hedon.sweep.work import Task, make_batch
+from hedon.sweep.work import make_batch, make_task
 
 FACTORS = """
 [factor]
@@ -55,7 +55,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     file = sweep_file(folder, steps)
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
-        make_batch(Task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
     remote, far = planned(file, url)
 
     class Stopping:
@@ -67,7 +67,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
 
     first = remote.batches()[0]
     with pytest.raises(MachineDiedError):
-        make_batch(Task(url, remote, first, folder / "one machine", 0.0), 1, Stopping())
+        make_batch(make_task(url, remote, first, folder / "one machine", 0.0), 1, Stopping())
     assert far.names("state") == [f"{first.name}.zip"]
     assert far.names("results") == []
     begun: list[int] = []
@@ -78,9 +78,9 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
         def update(self, moment: Moment) -> None:
             begun.append(moment.first)
 
-    assert make_batch(Task(url, remote, first, folder / "another", 1e9), 1, Watching()) == "finished"
+    assert make_batch(make_task(url, remote, first, folder / "another", 1e9), 1, Watching()) == "finished"
     assert begun[0] > 0, "it was to go on from the state"
     assert far.names("state") == []
     for batch in remote.batches():
-        assert make_batch(Task(url, remote, batch, folder / f"rest-{batch.name}", 1e9), 1, None) == "finished"
+        assert make_batch(make_task(url, remote, batch, folder / f"rest-{batch.name}", 1e9), 1, None) == "finished"
     assert_same_table(table_of(url), table_of(store.location))

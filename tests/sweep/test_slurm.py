@@ -14,7 +14,7 @@ from sweep_case import assert_same_table, planned, sweep_file, table_of
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
-from hedon.sweep.work import WORK, Task, make_batch
+from hedon.sweep.work import WORK, make_batch, make_task
 
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "sinfo", "squeue")
 WHERE = os.environ["PATH"] + ":/usr/sbin:/sbin"
@@ -134,7 +134,7 @@ def test_a_job_array_makes_the_table_also_when_it_runs_out_of_time(cluster, tmp_
     file = sweep_file(tmp_path, 6400)
     plan, store = planned(file, str(tmp_path / "alone"))
     for batch in plan.batches():
-        make_batch(Task(store.location, plan, batch, tmp_path / batch.name, 1e9), 1, None)
+        make_batch(make_task(store.location, plan, batch, tmp_path / batch.name, 1e9), 1, None)
     made = script(file, tmp_path / "shared place")
     submit(cluster, made, "first")
     runs = tmp_path / "shared place" / WORK

@@ -1,6 +1,7 @@
 """A sweep gives the same table whoever runs it, and however often it is killed."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
-from sweep_case import assert_same_table, planned, sweep_file, table_of
+from sweep_case import FACTORS, assert_same_table, planned, sweep_file, table_of
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
@@ -17,10 +18,11 @@ from hedon.error import HedonError
 from hedon.sweep.conduct import Silent, open_batches, run_sweep
 from hedon.sweep.error import SweepError
 from hedon.sweep.part import parse_part
-from hedon.sweep.plan import load_plan
+from hedon.sweep.plan import load_plan, plan_sweep
+from hedon.sweep.read import read_sweep
 from hedon.sweep.status import sweep_status
 from hedon.sweep.store import open_store
-from hedon.sweep.work import RESULTS, WORK, Task, make_batch
+from hedon.sweep.work import RESULTS, WORK, make_batch, make_task
 
 START = "from hedon.cli.start import main; main()"
 STEPS = 6_400
@@ -32,7 +34,9 @@ def make_all(location: str, file: Path) -> pl.DataFrame:
     plan, store = planned(file, location)
     assert store.folder is not None
     for batch in plan.batches():
-        assert make_batch(Task(location, plan, batch, store.folder / WORK / batch.name, 1e9), 1, None) == "finished"
+        assert (
+            make_batch(make_task(location, plan, batch, store.folder / WORK / batch.name, 1e9), 1, None) == "finished"
+        )
     return table_of(location)
 
 
@@ -121,6 +125,17 @@ def test_another_sweep_is_not_mixed_in(tmp_path):
     planned(file, place)
     with pytest.raises(HedonError, match="holds another sweep"):
         planned(sweep_file(tmp_path, 128), place)
+
+
+def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
+    """A cluster is given one for each batch."""
+    many = f'[factor]\n"energy.basic_cost" = {[i / 1e6 for i in range(500)]}\n'
+    sizes = []
+    for name, rest in (("few", FACTORS), ("many", many)):
+        (tmp_path / name).mkdir()
+        plan = plan_sweep(read_sweep(sweep_file(tmp_path / name, rest=rest)))
+        sizes.append(len(pickle.dumps(make_task("place", plan, plan.batches()[0], tmp_path, 1.0))))
+    assert max(sizes) < min(sizes) + 20
 
 
 def test_parts_share_a_sweep(tmp_path):

@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 
-from hedon.record.error import RecordError
+from hedon.record.error import InUseError, RecordError
 from hedon.record.folder import LOCK, require_plain, require_unicode
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
@@ -26,8 +26,8 @@ class FolderLock:
         folder: made if it does not exist.
 
     Raises:
-        RecordError: another process has the lock, the folder cannot be written or holds a symbolic link, or its name
-            is not UTF-8.
+        InUseError: another process has the lock.
+        RecordError: the folder cannot be written or holds a symbolic link, or its name is not UTF-8.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -45,7 +45,7 @@ class FolderLock:
         except BlockingIOError:
             owner = _read_owner(self._descriptor)
             os.close(self._descriptor)
-            raise RecordError(f"{folder} is in use by another run{owner}: wait for it, or stop it first") from None
+            raise InUseError(folder, owner) from None
         except OSError as error:
             if error.errno not in _NO_LOCKS:
                 os.close(self._descriptor)

@@ -1,4 +1,4 @@
-"""Runs a sweep on a Ray cluster: a task per batch, made again on another node when its node dies.
+"""Runs a sweep on a Ray cluster: a task per batch, begun again on another node when its node dies.
 
 A task goes on from its batch's last checkpoint. It finds that in the sweep's folder, which all nodes must share, or
 behind the sweep's URL.
@@ -6,19 +6,18 @@ behind the sweep's URL.
 
 import hashlib
 import tempfile
-import time
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from hedon.error import HedonError
 from hedon.experiment.interrupt import count_interrupts
-from hedon.record.error import RecordError
-from hedon.record.lock import FolderLock
 from hedon.replication.run.conduct import Display
 from hedon.replication.run.work import Outcome
 from hedon.sweep.conduct import open_batches, tasks
 from hedon.sweep.error import SweepError
+from hedon.sweep.loss import Losses
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.store import Store
 from hedon.sweep.work import Task, make_batch
@@ -26,8 +25,6 @@ from hedon.sweep.work import Task, make_batch
 LOCAL = "local"
 """The address of a cluster that is started on this machine, for the sweep alone."""
 _LOOK_SECONDS = 0.5
-_ORPHAN_SECONDS = 120.0
-"""How long a batch waits for the process of a dead node to end, which may still hold its folder [s]."""
 
 
 def run_on_ray(
@@ -63,57 +60,56 @@ def run_on_ray(
     # Of this place and plan alone: what another sweep left on a node must not be gone on with.
     own = hashlib.sha256(f"{store.location} {plan.steps} {plan.digests}".encode()).hexdigest()[:16]
     scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
-    jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
-    outcomes: dict[str, Outcome] = {}
     try:
         if address == LOCAL:
-            ray.init(num_cpus=workers or None, include_dashboard=False, log_to_driver=False)
+            # It answers on this machine alone.
+            ray.init(
+                num_cpus=workers or None, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1"
+            )
         else:
             ray.init(address=address, log_to_driver=False)
     except (ConnectionError, ValueError, RuntimeError) as error:
         raise SweepError(f"--ray = {address!r}: no cluster answers there: {error}") from error
     try:
-        remote = ray.remote(num_cpus=1, max_retries=-1)(answer)
-        waiting = {remote.remote(job): job for job in jobs}
-        with count_interrupts() as interrupted:
-            told = 0
-            while waiting:
-                for done in ray.wait(list(waiting), timeout=_LOOK_SECONDS)[0]:
-                    job = waiting.pop(done)
-                    try:
-                        outcome = ray.get(done)
-                    except ray.exceptions.RayError as error:
-                        if interrupted.count:  # it was called off
-                            continue
-                        outcome = Outcome("failed", str(error))
-                    outcomes[job.batch.name] = outcome
-                    display.end(job, outcome)
-                if told < interrupted.count:
-                    told = interrupted.count
-                    for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
-                        ray.cancel(each, force=told > 1)
+        jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
+        return _see_through(ray, jobs, Losses(store), display)
     finally:
         ray.shutdown()
+
+
+def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Display[Task]) -> dict[str, Outcome]:
+    """Submits batches and awaits them; those whose process is lost again, as long as that leads further."""
+    lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
+    # Ray's own tries have no end where memory runs out, and do not see whether a batch gets further.
+    remote = ray.remote(num_cpus=1, max_retries=0)(answer)
+    waiting = {remote.remote(job): job for job in jobs}
+    outcomes: dict[str, Outcome] = {}
+    with count_interrupts() as interrupted:
+        told = 0
+        while waiting:
+            for done in ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOOK_SECONDS)[0]:
+                job = waiting.pop(done)
+                try:
+                    outcome = ray.get(done)
+                except ray.exceptions.RayError as error:
+                    if interrupted.count:  # it was called off
+                        continue
+                    if isinstance(error, lost) and losses.may_go_on(job):
+                        waiting[remote.remote(job)] = job
+                        continue
+                    outcome = Outcome("failed", losses.reason(job, error) if isinstance(error, lost) else str(error))
+                outcomes[job.batch.name] = outcome
+                display.end(job, outcome)
+            if told < interrupted.count:
+                told = interrupted.count
+                for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
+                    ray.cancel(each, force=told > 1)
     return outcomes
 
 
 def answer(task: Task) -> Outcome:
-    """Makes a batch where Ray wants it made. A fault of the batch is an outcome; a lost node is an affair of Ray's."""
+    """Makes a batch where Ray wants it made. A fault of the batch is an outcome."""
     try:
-        _wait_for_folder(task.folder)
         return Outcome(make_batch(task, 1, None))
     except HedonError as error:
         return Outcome("failed", str(error))
-
-
-def _wait_for_folder(folder: Path) -> None:
-    """Waits until no other process has the folder. RecordError: it has it for too long."""
-    until = time.monotonic() + _ORPHAN_SECONDS
-    while True:
-        try:
-            with FolderLock(folder):
-                return
-        except RecordError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(_LOOK_SECONDS)

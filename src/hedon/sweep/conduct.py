@@ -9,7 +9,7 @@ from hedon.replication.run.conduct import Display, side_by_side
 from hedon.replication.run.work import Outcome
 from hedon.sweep.plan import Batch, SweepPlan
 from hedon.sweep.store import Store
-from hedon.sweep.work import RESULTS, WORK, Task, work
+from hedon.sweep.work import RESULTS, WORK, Task, make_task, work
 
 
 def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) -> list[Batch]:
@@ -31,7 +31,7 @@ def tasks(
     """What a process is given for each batch: runs are made in the sweep's folder, or else in `scratch`."""
     place = scratch if store.folder is None else store.folder.absolute() / WORK
     where = store.location if store.folder is None else str(store.folder.absolute())
-    return [Task(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
+    return [make_task(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
 
 
 def run_sweep(

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hedon.config.problem import format_value
-from hedon.sweep.plan import Batch, SweepPlan
+from hedon.sweep.plan import Batch
 
 KEYS = ("condition", "repetition", "seed")
 TIMED = "steps_per_second"
@@ -13,17 +13,19 @@ TIMED = "steps_per_second"
 Row = dict[str, Any]
 
 
-def world_rows(plan: SweepPlan, batch: Batch, summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
+def world_rows(
+    batch: Batch, settings: Mapping[str, Any], summary: Mapping[str, Any], digests: Sequence[str]
+) -> list[Row]:
     """One row per world of a batch: its keys, its settings, the digest of its end, and its part of the summary.
 
     Nested values get names joined by "_": weights.w_action.mean is w_action_mean.
     """
-    settings = {name: _plain(value) for name, value in plan.settings[batch.condition].items()}
+    varied = {name: _plain(value) for name, value in settings.items()}
     rows = []
     for i, (world, digest) in enumerate(zip(summary["worlds"], digests, strict=True)):
         keys = dict(zip(KEYS, (batch.condition, batch.first + i, world["seed"]), strict=True))
         rest = {name: value for name, value in world.items() if name not in (TIMED, "seed")}
-        rows.append({**keys, **settings, "digest": digest, **dict(_flat(rest))})
+        rows.append({**keys, **varied, "digest": digest, **dict(_flat(rest))})
     return rows
 
 

@@ -7,7 +7,9 @@ behind a URL, in a passing one, and its state travels at each checkpoint: whoeve
 import io
 import json
 import shutil
+import time
 import zipfile
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -15,36 +17,52 @@ from pathlib import Path
 
 from hedon.experiment.plan import Display, Moment, RunPlan
 from hedon.experiment.resume import make
-from hedon.record.error import RecordError
+from hedon.record.error import InUseError, RecordError
 from hedon.record.folder import LOCK, checkpoint_paths
+from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 from hedon.replication.run.work import answer
 from hedon.report.summary import summarize
+from hedon.sweep.design import Settings
+from hedon.sweep.error import SweepError
 from hedon.sweep.plan import Batch, SweepPlan, load_condition
 from hedon.sweep.row import world_rows
 from hedon.sweep.store import Store, open_store
 
 RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
+_LOOK_SECONDS = 0.2
+_ORPHAN_SECONDS = 120.0
+"""How long a batch waits for its folder [s]."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A batch to make.
+    """A batch to make: what a process needs to know of a sweep, however large the sweep is.
 
     Attributes:
         location: of the sweep.
-        plan: of the sweep.
         batch: what to make.
+        settings: values of the factors of its condition.
+        steps: of each world [step].
+        keep: what is kept beside the table.
         folder: for its run.
         checkpoint_seconds: between two checkpoints [s].
     """
 
     location: str
-    plan: SweepPlan
     batch: Batch
+    settings: Settings
+    steps: int
+    keep: tuple[str, ...]
     folder: Path
     checkpoint_seconds: float
+
+
+def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
+    """What a process is given to make a batch of a plan; see `Task`."""
+    settings = plan.settings[batch.condition]
+    return Task(location, batch, settings, plan.steps, plan.keep, folder, checkpoint_seconds)
 
 
 def result_name(batch: Batch) -> str:
@@ -67,10 +85,11 @@ def make_batch(task: Task, threads: int, display: Display | None) -> str:
         HedonError: as `hedon.experiment.run.run`, or what is written cannot be.
     """
     store, batch = open_store(task.location), task.batch
+    _wait_for_folder(task.folder)
     if store.read(result_name(batch)) is not None:
         return "finished"
     config = load_condition(store, batch.condition)
-    plan = RunPlan(config, batch.seeds, task.plan.steps, task.folder, threads, 0, task.checkpoint_seconds)
+    plan = RunPlan(config, batch.seeds, task.steps, task.folder, threads, 0, task.checkpoint_seconds)
     _fetch_state(store, task)
     manifest = _make(plan, _Carrying(store, task, display) if store.folder is None else display)
     if manifest.status != "finished":
@@ -82,7 +101,7 @@ def make_batch(task: Task, threads: int, display: Display | None) -> str:
         "batch": batch.name,
         "seconds": manifest.run_seconds,
         "steps": sum(manifest.steps_done),
-        "worlds": world_rows(task.plan, batch, summarize(run), manifest.world_digests),
+        "worlds": world_rows(batch, task.settings, summarize(run), manifest.world_digests),
     }
     store.write(result_name(batch), (json.dumps(result, ensure_ascii=False, allow_nan=False) + "\n").encode())
     store.remove(_state_name(task))
@@ -103,13 +122,18 @@ def _make(plan: RunPlan, display: Display | None) -> Manifest:
 
 def _keep(store: Store, task: Task, run: Run) -> None:
     for table in ("agents", "population"):
-        if table in task.plan.keep:
+        if table in task.keep:
             rows = run.agents().sort("world", "agent_id") if table == "agents" else run.population()
             buffer = io.BytesIO()
             rows.write_parquet(buffer)
             store.write(f"{TABLES}/{table}/{task.batch.name}.parquet", buffer.getvalue())
-    if "run" in task.plan.keep:
-        for path in sorted(path for path in task.folder.rglob("*") if path.is_file() and path.name != LOCK):
+    if "run" in task.keep:
+        paths = sorted(path for path in task.folder.rglob("*") if path.is_file() and path.name != LOCK)
+        if store.folder is None:  # as one object: whoever made it before may have cut its tables at other places
+            store.write(f"{RUNS}/{task.batch.name}.zip", _archive(task.folder, paths))
+            return
+        shutil.rmtree(store.folder / RUNS / task.batch.name, ignore_errors=True)
+        for path in paths:
             store.write(f"{RUNS}/{task.batch.name}/{path.relative_to(task.folder)}", path.read_bytes())
 
 
@@ -128,6 +152,37 @@ class _Carrying:
             self._display.update(moment)
 
 
+def newest_checkpoint(store: Store, task: Task) -> str:
+    """The name of the last checkpoint from which a batch would go on; empty where there is none."""
+    if store.folder is not None:
+        return _newest(task.folder)
+    with suppress(SweepError, zipfile.BadZipFile):
+        content = store.read(_state_name(task)) or b""
+        with zipfile.ZipFile(io.BytesIO(content)) as state:
+            return max((path.name for path in map(Path, state.namelist()) if path.suffix == ".npz"), default="")
+    return ""
+
+
+def _wait_for_folder(folder: Path) -> None:
+    """Waits for the process that had the folder before: that of a sweep that was killed, or of a dead node.
+
+    It ends soon, since it has nobody to tell how far it is.
+
+    Raises:
+        InUseError: it does not.
+        RecordError: the folder cannot be written.
+    """
+    until = time.monotonic() + _ORPHAN_SECONDS
+    while folder.exists():
+        try:
+            with FolderLock(folder):
+                return
+        except InUseError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(_LOOK_SECONDS)
+
+
 def _newest(folder: Path) -> str:
     return max((path.name for path in checkpoint_paths(folder)), default="")
 
@@ -140,13 +195,19 @@ def _send_state(store: Store, task: Task) -> None:
     """Sends a run's folder. Checkpoints go first: what later files have more than they say, a resumed run removes."""
     if store.folder is not None:
         return
+    others = sorted(path for path in task.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+    first = checkpoint_paths(task.folder)[-1:]
+    state = _archive(task.folder, [*first, *(path for path in others if path.suffix != ".npz")])
+    store.write(_state_name(task), state)
+
+
+def _archive(folder: Path, paths: Sequence[Path]) -> bytes:
+    """Files of a folder, in this order, as the content of a zip file."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        others = sorted(path for path in task.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
-        first = checkpoint_paths(task.folder)[-1:]
-        for path in [*first, *(path for path in others if path.suffix != ".npz")]:
-            archive.write(path, str(path.relative_to(task.folder)))
-    store.write(_state_name(task), buffer.getvalue())
+        for path in paths:
+            archive.write(path, str(path.relative_to(folder)))
+    return buffer.getvalue()
 
 
 def _fetch_state(store: Store, task: Task) -> None:

@@ -54,7 +54,7 @@ class SweepDisplay:
         _, made = self._current.pop(job.batch.name, (0, 0))
         self._made += made
         if outcome.status == "finished":
-            self._done += job.plan.steps * len(job.batch.seeds)
+            self._done += job.steps * len(job.batch.seeds)
         elif outcome.status == "failed":
             self._console.print(f"  {job.batch.name} failed: {printable(outcome.fault)}", soft_wrap=True)
         self._show(last=self._ended == self._batches)

@@ -1,0 +1,49 @@
+"""A batch whose process is lost again and again is given up, unless it gets further."""
+
+import io
+import zipfile
+
+import pytest
+from sweep_case import planned, sweep_file
+
+from hedon.sweep.loss import TRIES, Losses
+from hedon.sweep.store import Store
+from hedon.sweep.work import STATE, Task, make_task
+
+
+def write_checkpoint(store: Store, task: Task, step: int) -> None:
+    """What a batch leaves where it is kept: a file in its folder, or an archive behind a URL."""
+    name = f"checkpoints/step-{step:010d}.npz"
+    if store.folder is not None:
+        (task.folder / "checkpoints").mkdir(parents=True, exist_ok=True)
+        (task.folder / name).write_bytes(b"")
+        return
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr(name, b"")
+    store.write(f"{STATE}/{task.batch.name}.zip", buffer.getvalue())
+
+
+@pytest.mark.parametrize("kind", ["folder", "url"])
+def test_a_batch_is_given_up_where_it_gets_no_further(tmp_path, kind):
+    plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place") if kind == "folder" else f"file://{tmp_path}/x")
+    one, other = (make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches())
+    losses = Losses(store)
+    assert [losses.may_go_on(one) for _ in range(TRIES)] == [True] * (TRIES - 1) + [False]
+    for step in (0, 1024):
+        write_checkpoint(store, other, step)
+        assert [losses.may_go_on(other) for _ in range(TRIES - 1)] == [True] * (TRIES - 1)
+    assert not losses.may_go_on(other)
+
+
+def test_the_reason_names_the_worlds_and_what_to_do(tmp_path):
+    plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place"))
+    batch = plan.batches()[0]
+    cost = plan.settings[batch.condition]["energy.basic_cost"]
+    reason = Losses(store).reason(
+        make_task(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
+    )
+    assert f"lost {TRIES} times in a row without a new checkpoint, the last time with: Out of memory. Its" in reason
+    assert f"worlds: energy.basic_cost = {cost}, seed 1, 2." in reason
+    assert "nodes with more" in reason
+    assert "More." not in reason
