@@ -17,6 +17,7 @@ from hedon.replication.run.conduct import Display
 from hedon.replication.run.work import Outcome
 from hedon.sweep.conduct import open_batches, tasks
 from hedon.sweep.error import SweepError
+from hedon.sweep.hold import hold
 from hedon.sweep.loss import Losses
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.store import Store
@@ -51,7 +52,7 @@ def run_on_ray(
         How each batch ended, by name; those that never began are missing.
 
     Raises:
-        SweepError: Ray is not installed, or there is no cluster at the address.
+        SweepError: Ray is not installed, there is no cluster at the address, or another process makes these batches.
     """
     try:
         ray: Any = import_module("ray")
@@ -71,8 +72,9 @@ def run_on_ray(
     except (ConnectionError, ValueError, RuntimeError) as error:
         raise SweepError(f"--ray = {address!r}: no cluster answers there: {error}") from error
     try:
-        jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
-        return _see_through(ray, jobs, Losses(store), display)
+        with hold(store, part):
+            jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
+            return _see_through(ray, jobs, Losses(store), display)
     finally:
         ray.shutdown()
 

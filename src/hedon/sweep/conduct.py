@@ -7,6 +7,7 @@ from pathlib import Path
 from hedon.experiment.plan import Moment
 from hedon.replication.run.conduct import Display, side_by_side
 from hedon.replication.run.work import Outcome
+from hedon.sweep.hold import hold
 from hedon.sweep.plan import Batch, SweepPlan
 from hedon.sweep.store import Store
 from hedon.sweep.work import RESULTS, WORK, Task, make_task, work
@@ -57,8 +58,11 @@ def run_sweep(
 
     Returns:
         How each batch ended, by name; those that never began are missing.
+
+    Raises:
+        SweepError: another process makes these batches.
     """
-    with tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
+    with hold(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
         jobs = tasks(plan, store, open_batches(plan, store, part), Path(scratch), checkpoint_seconds)
         outcomes = side_by_side(jobs, workers, display, work, _one_each)
     names = {job.folder: job.batch.name for job in jobs}

@@ -1,0 +1,58 @@
+"""Keeps two processes from making the same batches of a sweep in a folder at once."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import gcd
+from pathlib import Path
+
+from hedon.record.error import InUseError
+from hedon.record.lock import FolderLock
+from hedon.sweep.error import SweepError
+from hedon.sweep.store import Store
+
+LOCKS = "locks"
+
+
+@contextmanager
+def hold(store: Store, part: tuple[int, int]) -> Iterator[None]:
+    """Holds a part of a sweep while its batches are made; the lock ends with the process.
+
+    Two parts have batches in common where their numbers are equal modulo what their counts have in common, so the
+    third of ten goes with the fourth of ten, and not with the first of two.
+
+    Nothing is held behind a URL: object stores have no locks that end with a process. There, two that make the same
+    batches write the same rows, so they lose time alone.
+
+    Args:
+        store: where the sweep lives.
+        part: number, from 1 on, and count.
+
+    Raises:
+        SweepError: another process makes batches of this part.
+        RecordError: the folder cannot be written.
+    """
+    if store.folder is None:
+        yield
+        return
+    number, count = part
+    place = store.folder / LOCKS
+    with _lock(place / f"{number}-of-{count}", store):
+        for other in place.glob("*-of-*"):
+            its_number, its_count = map(int, other.name.split("-of-"))
+            if (its_number, its_count) != part and (its_number - number) % gcd(its_count, count) == 0:
+                with _lock(other, store):
+                    pass
+        yield
+
+
+@contextmanager
+def _lock(folder: Path, store: Store) -> Iterator[None]:
+    try:
+        lock = FolderLock(folder)
+    except InUseError as error:
+        raise SweepError(
+            f"{store.location} is being made by another process{error.owner}: wait for it, stop it first, or give each "
+            "its --part"
+        ) from None
+    with lock:
+        yield

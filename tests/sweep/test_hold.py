@@ -1,0 +1,71 @@
+"""Two processes do not make the same batches of a sweep in one folder at once."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from sweep_case import planned, sweep_file
+
+from hedon.error import HedonError
+from hedon.sweep.hold import hold
+from hedon.sweep.store import open_store
+from hedon.sweep.work import WORK, make_batch, make_task
+
+START = "from hedon.cli.start import main; main()"
+
+
+def command(*words: str | Path) -> list[str]:
+    return [sys.executable, "-c", START, *map(str, words)]
+
+
+def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
+    file, place = sweep_file(tmp_path, 200_000), tmp_path / "shared"
+    first = subprocess.Popen(command("sweep", "run", file, "--out", place, "--workers", "1"), stdout=subprocess.DEVNULL)
+    try:
+        deadline = time.monotonic() + 120
+        while not list((place / WORK).glob("*/manifest.json")):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        second = subprocess.run(command("sweep", "resume", place, "--part", "2/3"), capture_output=True, text=True)
+    finally:
+        first.send_signal(signal.SIGTERM)
+        first.wait(120)
+    assert second.returncode == 2
+    assert f"(process {first.pid} on " in second.stderr
+    said = " ".join(second.stderr.split())
+    assert said.startswith(f"hedon: {place} is being made by another process"), said
+    assert said.endswith("wait for it, stop it first, or give each its --part"), said
+    with hold(open_store(str(place)), (1, 1)):
+        """What a process held, it holds no more when it has ended."""
+
+
+def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
+    store = open_store(str(tmp_path / "parts"))
+    with hold(store, (3, 10)):
+        for other in ((4, 10), (2, 2), (4, 20)):
+            with hold(store, other):
+                pass
+        for other in ((3, 10), (1, 1), (1, 2), (13, 20), (2, 3)):
+            with pytest.raises(HedonError, match="is being made by another process"), hold(store, other):
+                pass
+    with hold(store, (1, 1)):
+        pass
+
+
+def test_a_batch_waits_for_the_process_that_its_killed_sweep_left(tmp_path):
+    """The process of a batch outlives that of its sweep for a moment, and still has its folder."""
+    plan, store = planned(sweep_file(tmp_path, 640), str(tmp_path / "left"))
+    batch = plan.batches()[0]
+    task = make_task(store.location, plan, batch, tmp_path / "left" / WORK / batch.name, 1e9)
+    holder = (
+        "import sys, time; from pathlib import Path; from hedon.record.lock import FolderLock\n"
+        "with FolderLock(Path(sys.argv[1])): print(flush=True); time.sleep(1.5)"
+    )
+    left = subprocess.Popen([sys.executable, "-c", holder, str(task.folder)], stdout=subprocess.PIPE)
+    assert left.stdout is not None
+    left.stdout.readline()
+    assert make_batch(task, 1, None) == "finished"
+    assert left.wait() == 0
