@@ -1,7 +1,13 @@
 """A sweep of small worlds, and how two are compared."""
 
+import io
+import json
+import subprocess
+import sys
 import textwrap
+import zipfile
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import polars as pl
 import pytest
@@ -9,11 +15,12 @@ from polars.testing import assert_frame_equal
 from resumed_run import SMALL
 
 from hedon.experiment.plan import Moment
+from hedon.record.reader import open_run
 from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
 from hedon.sweep.store import Store, open_store
-from hedon.sweep.work import make_batch, make_task
+from hedon.sweep.work import WORK, make_batch, make_task
 
 FACTORS = """
 [factor]
@@ -39,6 +46,19 @@ def table_of(location: str) -> pl.DataFrame:
     """The table of all worlds of a sweep."""
     store = open_store(location)
     return collect(load_plan(store), store)
+
+
+def under_way(place: Path) -> dict[str, tuple[int, int]]:
+    """The process of each batch that is under way, and the step of its last checkpoint."""
+    found = {}
+    for lock in (place / WORK).glob("*/.lock"):
+        try:
+            process = json.loads(lock.read_text())["process"]
+        except (OSError, ValueError):  # it has just begun, or ended
+            continue
+        checkpoints = sorted((lock.parent / "checkpoints").glob("step-*.npz"))
+        found[lock.parent.name] = process, int(checkpoints[-1].stem[5:]) if checkpoints else 0
+    return found
 
 
 def assert_same_table(one: pl.DataFrame, other: pl.DataFrame) -> None:
@@ -84,3 +104,37 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     for batch in remote.batches():
         assert make_batch(make_task(url, remote, batch, folder / f"rest-{batch.name}", 1e9), 1, None) == "finished"
     assert_same_table(table_of(url), table_of(store.location))
+
+
+def assert_two_make_one(url: str, folder: Path) -> None:
+    """Two processes that make one sweep behind a URL at once write the same rows, whichever is first with each."""
+    file = sweep_file(folder, 3_200)
+    file.write_text('keep = ["agents", "run"]\n' + file.read_text())
+    plan, store = planned(file, str(folder / "folder"))
+    for batch in plan.batches():
+        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+    words = ["sweep", "run", str(file), "--out", url, "--workers", "1", "--checkpoint", "0"]
+    start = "from hedon.cli.start import main; main()"
+    both = [
+        subprocess.Popen([sys.executable, "-c", start, *words], stdout=subprocess.PIPE, text=True) for _ in range(2)
+    ]
+    for one in both:
+        said, _ = one.communicate(timeout=300)
+        assert one.returncode == 0
+        assert "All done" in said
+    remote, far = planned(file, url)
+    assert far.names("state") == []
+    assert_same_table(table_of(url), table_of(store.location))
+    assert_kept_whole(far, remote)
+
+
+def assert_kept_whole(store: Store, plan: SweepPlan) -> None:
+    """What a sweep behind a URL keeps is whole, and of one process each: the agents of a run are those of its table."""
+    for batch in plan.batches():
+        table = pl.read_parquet(store.read(f"tables/agents/{batch.name}.parquet") or b"")
+        with (
+            zipfile.ZipFile(io.BytesIO(store.read(f"runs/{batch.name}.zip") or b"")) as run,
+            TemporaryDirectory() as at,
+        ):
+            run.extractall(at)
+            assert_frame_equal(open_run(Path(at)).agents().sort("world", "agent_id"), table)

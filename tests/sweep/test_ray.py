@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_case import assert_same_table, planned, sweep_file, table_of
+from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
 
 from hedon.sweep.cluster import LOCAL, run_on_ray
 from hedon.sweep.conduct import Silent, run_sweep
 from hedon.sweep.loss import TRIES
-from hedon.sweep.work import RUNS, WORK, make_batch, make_task
+from hedon.sweep.work import RUNS, make_batch, make_task
 
 pytestmark = pytest.mark.skipif(
     find_spec("ray") is None, reason='needs the optional packages: pip install "hedon[ray]"'
@@ -65,19 +65,6 @@ def two_nodes(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Any, Any]]:
         cluster.shutdown()
 
 
-def under_way(place: Path) -> dict[str, tuple[int, int]]:
-    """The process of each batch that is under way, and the step of its last checkpoint."""
-    found = {}
-    for lock in (place / WORK).glob("*/.lock"):
-        try:
-            process = json.loads(lock.read_text())["process"]
-        except (OSError, ValueError):  # it has just begun, or ended
-            continue
-        checkpoints = sorted((lock.parent / "checkpoints").glob("step-*.npz"))
-        found[lock.parent.name] = process, int(checkpoints[-1].stem[5:]) if checkpoints else 0
-    return found
-
-
 def parent(process: int) -> int:
     """The process that started a process; 0 if it has ended."""
     try:
@@ -98,9 +85,15 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
             while not killed and time.monotonic() < deadline:
                 time.sleep(0.01)
                 for name, (process, step) in under_way(place).items():
-                    if step >= 1024 * (1 + kill % 6) and parent(process) == raylet:
+                    if step < 1024 * (1 + kill % 6) or parent(process) != raylet:
+                        continue
+                    os.kill(process, signal.SIGSTOP)  # all that runs on a machine stops at once when it loses power
+                    step = under_way(place).get(name, (0, STEPS))[1]  # it may just have ended
+                    if step < STEPS:
                         killed[name] = step
-            cluster.remove_node(node, allow_graceful=False)
+                        cluster.remove_node(node, allow_graceful=False)
+                    os.kill(process, signal.SIGKILL)
+                    break
 
         killer = threading.Thread(target=kill_in_the_middle, daemon=True)
         killer.start()

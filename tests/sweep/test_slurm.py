@@ -1,20 +1,24 @@
 """The script for Slurm runs a sweep on a real Slurm of one node, as `apt-get install slurm-wlm munge` brings it."""
 
+import json
 import os
 import shutil
+import signal
 import socket
 import stat
 import subprocess
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
+import polars as pl
 import pytest
-from sweep_case import assert_same_table, planned, sweep_file, table_of
+from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
-from hedon.sweep.work import WORK, make_batch, make_task
+from hedon.sweep.work import RUNS, WORK, make_batch, make_task
 
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "sinfo", "squeue")
 WHERE = os.environ["PATH"] + ":/usr/sbin:/sbin"
@@ -27,6 +31,8 @@ pytestmark = [
     ),
 ]
 
+STEPS = 20_480
+"""Of each world: some seconds."""
 CONFIG = """\
 ClusterName=hedon
 SlurmctldHost={host}(127.0.0.1)
@@ -35,7 +41,7 @@ SlurmdPort={daemon}
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket
+AuthInfo=socket={folder}/munge.socket,cred_expire=10
 CredType=cred/munge
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
@@ -62,10 +68,14 @@ def free_port() -> int:
         return one.getsockname()[1]
 
 
-@pytest.fixture
-def cluster(tmp_path, monkeypatch) -> Iterator[Path]:
-    """A folder with the logs of a Slurm that runs for one test."""
-    folder = tmp_path / "slurm"
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory) -> Iterator[Path]:
+    """A folder with the logs of a Slurm that runs for these tests."""
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        yield from run_slurm(tmp_path_factory.mktemp("slurm"), monkeypatch)
+
+
+def run_slurm(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for name in ("state", "spool"):
         (folder / name).mkdir(parents=True)
     key = folder / "munge.key"
@@ -102,12 +112,34 @@ def cluster(tmp_path, monkeypatch) -> Iterator[Path]:
             daemon.wait(60)
 
 
-def script(file: Path, place: Path) -> Path:
-    """The script of two tasks that make a sweep."""
-    words = ["sweep", "script", str(file), "--slurm", "--out", str(place), "--jobs", "2", "--hours", "1"]
-    done = CliRunner().invoke(app, words)
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> pl.DataFrame:
+    """The table of the sweep, made in this process."""
+    folder = tmp_path_factory.mktemp("alone")
+    plan, store = planned(file_of(folder), str(folder / "whole"))
+    for batch in plan.batches():
+        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+    return table_of(store.location)
+
+
+def file_of(folder: Path) -> Path:
+    """Two batches, whose runs are kept."""
+    file = sweep_file(folder, STEPS)
+    file.write_text('keep = ["run"]\n' + file.read_text())
+    return file
+
+
+def begin(cluster: Path, folder: Path) -> tuple[Path, Path]:
+    """Submits the script of two tasks that make a sweep; the script and the sweep's folder, when both are under way."""
+    place = folder / "shared place"
+    words = ["sweep", "script", str(file_of(folder)), "--slurm", "--out", str(place), "--jobs", "2", "--hours", "1"]
+    done = CliRunner().invoke(app, [*words, "--checkpoint", "0"])
     assert done.exit_code == 0, done.output
-    return place.with_name(f"{place.name}.sh")
+    script = place.with_name(f"{place.name}.sh")
+    submit(cluster, script, f"{folder.name}-first")
+    under_way = "*/checkpoints/step-*[1-9]*.npz"
+    wait_for("both tasks are under way", lambda: len({path.parents[1] for path in (place / WORK).glob(under_way)}) == 2)
+    return script, place
 
 
 def submit(cluster: Path, file: Path, name: str) -> None:
@@ -119,7 +151,7 @@ def wait_for(what: str, is_so: Callable[[], bool], seconds: float = 300) -> None
     until = time.monotonic() + seconds
     while not is_so():
         assert time.monotonic() < until, f"not within {seconds:g} s: {what}"
-        time.sleep(0.5)
+        time.sleep(0.1)
 
 
 def queue_is_empty() -> bool:
@@ -130,23 +162,54 @@ def logs(cluster: Path, name: str) -> list[str]:
     return [path.read_text() for path in sorted(cluster.glob(f"{name}-*.log"))]
 
 
-def test_a_job_array_makes_the_table_also_when_it_runs_out_of_time(cluster, tmp_path):
-    file = sweep_file(tmp_path, 6400)
-    plan, store = planned(file, str(tmp_path / "alone"))
-    for batch in plan.batches():
-        make_batch(make_task(store.location, plan, batch, tmp_path / batch.name, 1e9), 1, None)
-    made = script(file, tmp_path / "shared place")
-    submit(cluster, made, "first")
-    runs = tmp_path / "shared place" / WORK
-    wait_for("both tasks have begun", lambda: len(list(runs.glob("*/manifest.json"))) == 2)
+def sessions(place: Path) -> list[list[dict]]:
+    """The sessions of the run of each batch."""
+    return [json.loads(path.read_text())["sessions"] for path in sorted((place / RUNS).glob("*/manifest.json"))]
+
+
+def test_tasks_that_run_out_of_time_save_where_they_are(cluster, tmp_path, whole):
+    script, place = begin(cluster, tmp_path)
     # What Slurm does where the time of a task is nearly over.
     subprocess.run(["scancel", "--signal=TERM", "--batch", "--name", "hedon-small"], check=True)
     wait_for("both tasks have ended", queue_is_empty)
-    told = logs(cluster, "first")
+    told = logs(cluster, f"{tmp_path.name}-first")
     assert len(told) == 2, "each task of the array has a log"
     assert not any("All done" in text for text in told), told
-    assert len(list(runs.glob("*/checkpoints/*.npz"))) >= 2, "what was done is kept"
-    submit(cluster, made, "second")
+    submit(cluster, script, f"{tmp_path.name}-second")
     wait_for("the rest is made", queue_is_empty)
-    assert all("All done" in text for text in logs(cluster, "second")), logs(cluster, "second")
-    assert_same_table(table_of(str(tmp_path / "shared place")), table_of(store.location))
+    assert all("All done" in text for text in logs(cluster, f"{tmp_path.name}-second"))
+    for first, second in sessions(place):
+        assert first["ended"] is not None, "it ended in good order"
+        assert second["from_step"] > 0
+    assert_same_table(table_of(str(place)), whole)
+
+
+def test_tasks_that_are_killed_go_on_from_their_checkpoints(cluster, tmp_path, whole):
+    script, place = begin(cluster, tmp_path)
+    batches = [process for process, _ in under_way(place).values()]
+    for process in batches:  # so that none sees that the task's first process is gone, and ends in good order
+        os.kill(process, signal.SIGSTOP)
+    subprocess.run(["scancel", "--signal=KILL", "--full", "--name", "hedon-small"], check=True)
+    for process in batches:
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
+    wait_for("both tasks have ended", queue_is_empty)
+    submit(cluster, script, f"{tmp_path.name}-second")
+    wait_for("the rest is made", queue_is_empty)
+    assert all("All done" in text for text in logs(cluster, f"{tmp_path.name}-second"))
+    for first, second in sessions(place):
+        assert first["ended"] is None, "it had no time to end in good order"
+        assert second["from_step"] > 0
+    assert_same_table(table_of(str(place)), whole)
+
+
+def test_tasks_that_are_requeued_go_on_by_themselves(cluster, tmp_path, whole):
+    """As Slurm does itself where a node fails, or where a job of more weight needs it."""
+    _, place = begin(cluster, tmp_path)
+    jobs = subprocess.run(["squeue", "-h", "-o", "%F"], capture_output=True, text=True, check=True).stdout.split()
+    subprocess.run(["scontrol", "requeue", *set(jobs)], check=True)
+    wait_for("the rest is made", queue_is_empty)
+    assert all("All done" in text for text in logs(cluster, f"{tmp_path.name}-first"))
+    for _, second in sessions(place):
+        assert second["from_step"] > 0
+    assert_same_table(table_of(str(place)), whole)

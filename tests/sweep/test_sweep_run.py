@@ -184,5 +184,5 @@ def test_a_script_for_slurm_has_a_task_for_each_batch_at_most(tmp_path):
     assert done.exit_code == 0, done.output
     text = (tmp_path / "a sweep.sh").read_text()
     assert "#SBATCH --array=1-2\n#SBATCH --cpus-per-task=3\n#SBATCH --time=2:00:00\n" in text
-    assert f"sweep resume '{place}' --workers 3 --part \"$SLURM_ARRAY_TASK_ID/2\"" in text
+    assert f"sweep resume '{place}' --workers 3 --checkpoint 180 --part \"$SLURM_ARRAY_TASK_ID/2\"" in text
     assert load_plan(open_store(str(place))).steps == 320

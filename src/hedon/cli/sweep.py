@@ -187,6 +187,7 @@ def script(
     jobs: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
     workers: Annotated[int, typer.Option(help="Processes of each task, one processor each.", min=1)] = 1,
     hours: Annotated[int, typer.Option(help="Hours that a task may take.", min=1, max=10_000)] = 24,
+    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
     """Write a sweep, and a script that runs it on a cluster: FOLDER.sh.
 
@@ -210,7 +211,7 @@ def script(
     store = open_store(out or str(Path("sweeps") / asked.name))
     made = write_plan(asked, store)
     path = Path(f"{asked.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
-    text = slurm_script(made, store, jobs, workers, hours).encode()
+    text = slurm_script(made, store, jobs, workers, hours, checkpoint).encode()
     write_atomically(path, lambda content: content.write(text))
     make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
 

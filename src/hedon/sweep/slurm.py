@@ -20,11 +20,11 @@ TEMPLATE = """\
 #SBATCH --requeue
 #SBATCH --open-mode=append
 exec {python} -c 'from hedon.cli.start import main; main()' \\
-  sweep resume {place} --workers {workers} --part "$SLURM_ARRAY_TASK_ID/{tasks}"
+  sweep resume {place} --workers {workers} --checkpoint {checkpoint:g} --part "$SLURM_ARRAY_TASK_ID/{tasks}"
 """
 
 
-def slurm_script(plan: SweepPlan, store: Store, tasks: int, workers: int, hours: int) -> str:
+def slurm_script(plan: SweepPlan, store: Store, tasks: int, workers: int, hours: int, checkpoint: float) -> str:
     """The script of a job array.
 
     Args:
@@ -33,6 +33,7 @@ def slurm_script(plan: SweepPlan, store: Store, tasks: int, workers: int, hours:
         tasks: of the array; at most one for each batch is made.
         workers: processes of a task, one processor each.
         hours: that a task may take [h].
+        checkpoint: time between two checkpoints of a batch [s].
     """
     place = store.location if store.folder is None else str(store.folder.absolute())
     return TEMPLATE.format(
@@ -40,6 +41,7 @@ def slurm_script(plan: SweepPlan, store: Store, tasks: int, workers: int, hours:
         tasks=min(tasks, len(plan.batches())),
         workers=workers,
         hours=hours,
+        checkpoint=checkpoint,
         seconds=SIGNAL_SECONDS,
         python=shlex.quote(sys.executable),
         place=shlex.quote(place),
