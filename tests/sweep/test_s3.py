@@ -3,7 +3,6 @@
 The server is s3s-fs: `cargo install s3s-fs --version 0.11.1 --features binary --locked`.
 """
 
-import os
 import shutil
 import signal
 import socket
@@ -15,22 +14,77 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from sweep_case import assert_goes_on_elsewhere
+from sweep_case import (
+    assert_goes_on_elsewhere,
+    assert_kept_whole,
+    assert_same_table,
+    assert_two_make_one,
+    planned,
+    sweep_file,
+    table_of,
+)
 
 from hedon.sweep.store import PASSING, open_store
+from hedon.sweep.work import make_batch, make_task
 
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
 KEY = "hedon-test-key"
 STEPS = 5_120
-WRITER = """
-import sys
-from hedon.sweep.store import open_store
-store = open_store(sys.argv[1])
-for i in range(10_000):
-    store.write(f"results/{i:05d}", str(i % 10).encode() * 3_000_000)
-    print(i, flush=True)
+SMALL, LARGE = 3_000_000, 105_000_000
+"""Sizes of contents that arrive in one request, and in parts [byte]."""
+DYING = """
+import os, signal, socket, sys
+import s3fs
+
+place, sent = sys.argv[1], 0
+call, send = s3fs.S3FileSystem._call_s3, socket.socket.send
+
+def die(here):
+    if here == place:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+async def called(self, method, *words, **named):
+    die(f"before {method}")
+    answer = await call(self, method, *words, **named)
+    die(f"after {method}")
+    return answer
+
+def send_some(self, data, *flags):
+    global sent
+    count = send(self, memoryview(data)[:65536], *flags)
+    sent += count
+    if sent > int(sys.argv[2]):
+        die("within a content")
+    return count
+
+s3fs.S3FileSystem._call_s3 = called
+socket.socket.send = send_some
+socket.socket.sendmsg = lambda self, parts, *rest: send_some(self, next(filter(len, parts), b""))
 """
-"""Writes contents of 3 MB that are one digit over and over."""
+"""Ends this process by SIGKILL at a place of the talk with the server."""
+WRITER = """
+from hedon.sweep.store import open_store
+
+open_store(sys.argv[3]).write("results/one", b"new" * (int(sys.argv[2]) * 2 // 3))
+"""
+MAKER = """
+from pathlib import Path
+from hedon.sweep.plan import load_plan
+from hedon.sweep.store import UrlStore, open_store
+from hedon.sweep.work import make_batch, make_task
+
+url, folder = sys.argv[3:]
+write = UrlStore.write
+
+def told_write(self, name, content):
+    die(f"before {name.partition('/')[0]}")
+    write(self, name, content)
+    die(f"after {name.partition('/')[0]}")
+
+UrlStore.write = told_write
+plan = load_plan(open_store(url))
+make_batch(make_task(url, plan, plan.batches()[0], Path(folder), 0.0), 1, None)
+"""
 
 pytestmark = [
     pytest.mark.long,
@@ -41,55 +95,106 @@ pytestmark = [
 ]
 
 
-@pytest.fixture
-def bucket(tmp_path, monkeypatch) -> Iterator[str]:
-    """The URL of a bucket on a server that runs for one test."""
+@pytest.fixture(scope="module")
+def server(tmp_path_factory) -> Iterator[Path]:
+    """The folder of a server with a bucket "lab", which all that reads the environment finds."""
     assert SERVER is not None
-    root = tmp_path / "server"
-    (root / "lab").mkdir(parents=True)
+    root = tmp_path_factory.mktemp("server")
+    (root / "lab").mkdir()
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     words = ["--host", "127.0.0.1", "--port", str(port), "--access-key", KEY, "--secret-key", KEY, str(root)]
-    server = subprocess.Popen([SERVER, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    for name, value in {
-        "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-        "AWS_ACCESS_KEY_ID": KEY,
-        "AWS_SECRET_ACCESS_KEY": KEY,
-        "AWS_DEFAULT_REGION": "us-east-1",
-        "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-    }.items():
-        monkeypatch.setenv(name, value)
-    try:
-        until = time.monotonic() + 30
-        while True:
-            with socket.socket() as probe:
-                if probe.connect_ex(("127.0.0.1", port)) == 0:
-                    break
-            assert time.monotonic() < until
-            time.sleep(0.05)
-        yield "s3://lab/sweep"
-    finally:
-        server.kill()
-        server.wait()
+    process = subprocess.Popen([SERVER, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        for name, value in {
+            "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
+            "AWS_ACCESS_KEY_ID": KEY,
+            "AWS_SECRET_ACCESS_KEY": KEY,
+            "AWS_DEFAULT_REGION": "us-east-1",
+            "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
+        }.items():
+            monkeypatch.setenv(name, value)
+        try:
+            until = time.monotonic() + 30
+            while True:
+                with socket.socket() as probe:
+                    if probe.connect_ex(("127.0.0.1", port)) == 0:
+                        break
+                assert time.monotonic() < until
+                time.sleep(0.05)
+            yield root
+        finally:
+            process.kill()
+            process.wait()
 
 
-def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(bucket):
-    """Killed in its second, third and fifth content; whatever has a name then has all of its content."""
-    for written in (1, 2, 4):
-        writer = subprocess.Popen([sys.executable, "-c", WRITER, bucket], stdout=subprocess.PIPE)
-        assert writer.stdout is not None
-        for _ in range(written):
-            assert writer.stdout.readline()
-        time.sleep(0.004 * written)  # within the next content
-        os.kill(writer.pid, signal.SIGKILL)
-        writer.wait()
-        store = open_store(bucket)
-        names = store.names("results")
-        for name in names:
-            assert store.read(f"results/{name}") == str(int(name) % 10).encode() * 3_000_000, name
-        assert not [name for name in names if PASSING in name]
-        assert len(names) >= written
+@pytest.fixture
+def bucket(server, tmp_path) -> str:
+    """The URL of a place on the server, another for each test."""
+    return f"s3://lab/{tmp_path.name}"
+
+
+def run_dying(program: str, *words: str | Path) -> None:
+    """Runs a program that ends by SIGKILL at its place."""
+    done = subprocess.run([sys.executable, "-c", DYING + program, *map(str, words)], timeout=300)
+    assert done.returncode == -signal.SIGKILL, "it was to get to the place where it is killed"
+
+
+@pytest.mark.parametrize(
+    ("place", "size", "named", "left"),
+    [
+        ("within a content", SMALL, False, 0),
+        ("after put_object", SMALL, False, 1),
+        ("after copy_object", SMALL, True, 1),
+        ("within a content", LARGE, False, 0),
+        ("after upload_part", LARGE, False, 0),
+        ("before complete_multipart_upload", LARGE, False, 0),
+        ("after complete_multipart_upload", LARGE, False, 1),
+    ],
+)
+def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(server, bucket, place, size, named, left):
+    """At each place of its talk with the server; what has a name then has all of its old or its new content."""
+    store = open_store(bucket)
+    store.write("results/one", b"old")
+    run_dying(WRITER, place, str(size // 2), bucket)
+    content = b"new" * (size // 2 * 2 // 3)
+    assert store.read("results/one") == (content if named else b"old")
+    assert store.names("results") == ["one"]
+    passing = list((server / bucket.removeprefix("s3://")).rglob(f"{PASSING}*-one"))
+    assert len(passing) == left, "it was to be killed elsewhere"
+
+
+@pytest.mark.parametrize(
+    ("place", "kept"),
+    [
+        ("before state", (0, 0, 0)),
+        ("after state", (1, 0, 0)),
+        ("before tables", (1, 0, 0)),
+        ("before runs", (1, 1, 0)),
+        ("before results", (1, 1, 0)),
+        ("after results", (1, 1, 1)),
+    ],
+)
+def test_a_batch_that_is_killed_at_any_place_is_made_by_another(bucket, tmp_path, place, kept):
+    file = sweep_file(tmp_path, STEPS, seeds=1)
+    file.write_text('keep = ["agents", "run"]\n' + file.read_text())
+    plan, store = planned(file, str(tmp_path / "folder"))
+    for batch in plan.batches():
+        make_batch(make_task(store.location, plan, batch, tmp_path / batch.name, 1e9), 1, None)
+    remote, far = planned(file, bucket)
+    first, second = remote.batches()
+    make_batch(make_task(bucket, remote, second, tmp_path / "second", 1e9), 1, None)
+    run_dying(MAKER, place, "0", bucket, tmp_path / "one machine")
+    tables = [name for name in far.names("tables/agents") if first.name in name]
+    assert (len(far.names("state")), len(tables), len(far.names("results")) - 1) == kept
+    assert make_batch(make_task(bucket, remote, first, tmp_path / "another", 1e9), 1, None) == "finished"
+    assert_same_table(table_of(bucket), table_of(store.location))
+    assert_kept_whole(far, remote)
+
+
+def test_two_processes_that_make_one_sweep_harm_no_row(bucket, tmp_path):
+    assert_two_make_one(bucket, tmp_path)
 
 
 def test_a_sweep_on_s3_goes_on_elsewhere_and_gives_the_table_of_a_folder(bucket, tmp_path):

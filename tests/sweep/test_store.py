@@ -1,7 +1,7 @@
 """Where a sweep lives: what is written is whole or not there, and URLs are places like folders."""
 
 import pytest
-from sweep_case import assert_goes_on_elsewhere, planned, sweep_file
+from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, sweep_file
 
 from hedon.error import HedonError
 from hedon.sweep.store import PASSING, UrlStore, open_store
@@ -80,6 +80,10 @@ def test_a_state_that_is_damaged_is_as_none(tmp_path):
 
 def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):
     assert_goes_on_elsewhere(f"file://{tmp_path}/far", tmp_path, 5_120)
+
+
+def test_two_processes_that_make_one_sweep_harm_no_row(tmp_path):
+    assert_two_make_one(f"file://{tmp_path}/far", tmp_path)
 
 
 def test_a_url_of_no_kind_is_refused():
