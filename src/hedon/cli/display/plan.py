@@ -4,27 +4,25 @@ import time
 from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console, Group
-from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
 from hedon.cli.display.run import duration
+from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
 from hedon.replication.run.plan import Job
 from hedon.replication.run.work import Outcome
 
-LINE_SECONDS = 30.0
 SPAN = 60.0
 """Time over which the speed is measured, so that the forecast follows the sizes of the populations [s]."""
 SURE_SECONDS = 5.0
 """Time before which no forecast is made [s]."""
 
 
-class PlanDisplay:
+class PlanDisplay(Screen):
     """Progress of all runs of a plan together, and of each current run. Use it as a context manager.
 
     Args:
@@ -33,7 +31,7 @@ class PlanDisplay:
     """
 
     def __init__(self, console: Console, jobs: Sequence[Job]) -> None:
-        self._console = console
+        super().__init__(console)
         self._total = sum(job.world_steps for job in jobs)
         self._count = len(jobs)
         self._jobs = {job.folder: job for job in jobs}
@@ -41,17 +39,6 @@ class PlanDisplay:
         self._done = dict.fromkeys(self._jobs, 0)
         self._ended = 0
         self._seen: deque[tuple[float, int]] = deque()
-        self._live = Live(console=console, auto_refresh=False, transient=True) if console.is_terminal else None
-        self._due = 0.0
-
-    def __enter__(self) -> "PlanDisplay":
-        if self._live is not None:
-            self._live.__enter__()
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        if self._live is not None:
-            self._live.__exit__(*error)
 
     def update(self, job: Job, moment: Moment) -> None:
         """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
@@ -59,17 +46,13 @@ class PlanDisplay:
         living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.
         self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
-        now = time.monotonic()
-        if now < self._due:
+        if not self.is_due():
             return
+        now = time.monotonic()
         self._seen.append((now, sum(self._done.values())))
         while len(self._seen) > 2 and self._seen[1][0] < now - SPAN:
             self._seen.popleft()
-        self._due = now + (0.2 if self._live is not None else LINE_SECONDS)
-        if self._live is not None:
-            self._live.update(self._draw(), refresh=True)
-        else:
-            self._console.print(f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", soft_wrap=True)
+        self.show(lambda: f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", self._draw)
 
     def end(self, job: Job, outcome: Outcome) -> None:
         """Notes the end of a run and prints a line that says how it ended."""
