@@ -5,6 +5,7 @@ behind the sweep's URL.
 """
 
 import hashlib
+import os
 import tempfile
 from collections.abc import Sequence
 from importlib import import_module
@@ -63,7 +64,8 @@ def run_on_ray(
     scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
     try:
         if address == LOCAL:
-            # It answers on this machine alone.
+            # It answers on this machine alone, and reports to nobody unless asked to.
+            os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
             ray.init(
                 num_cpus=workers or None, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1"
             )
