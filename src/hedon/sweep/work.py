@@ -113,8 +113,8 @@ def _make(plan: RunPlan, display: Display | None) -> Manifest:
     """Goes on with the run of a batch; where it was left so damaged that this cannot be, begins again."""
     try:
         return make(plan, display)
-    except RecordError:
-        if not plan.out.exists() or checkpoint_paths(plan.out):
+    except RecordError as error:
+        if isinstance(error, InUseError) or not plan.out.exists() or checkpoint_paths(plan.out):
             raise
         shutil.rmtree(plan.out)
         return make(plan, display)
