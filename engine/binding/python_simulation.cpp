@@ -144,7 +144,8 @@ void PythonSimulation::run(int64_t steps) {
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};
   while (steps > 0) {
-    const int64_t count = std::min(piece_, steps);
+    // A device is not disturbed within a window.
+    const int64_t count = std::min(simulation.device_count() > 0 ? simulation.shape().steps : piece_, steps);
     const Clock::time_point begun = Clock::now();
     {
       const nb::gil_scoped_release release;

@@ -80,6 +80,16 @@ def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
     assert check_run(tmp_path / "run").findings == ()
 
 
+def test_the_host_waits_for_a_device_at_the_ends_of_windows_alone(
+    emulated: str, fails: Fails, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """But in the first, since nobody knows yet how many die: the device has five calls, and is lost in a sixth."""
+    monkeypatch.setattr("hedon.experiment.run.PIECE_SECONDS", 1e-9)
+    fails(6, NEVER)
+    long = ("learning.rollout_steps=128", "hazard.kappa=0.001")
+    assert small_run(tmp_path / "run", 4 * 128, seeds=(1,), overrides=long, kernel=emulated).status == "finished"
+
+
 def test_a_library_that_is_older_than_the_engine_is_refused(
     emulated: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

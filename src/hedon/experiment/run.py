@@ -24,7 +24,7 @@ from hedon.record.writer import Writer
 from hedon.text import brief
 
 PIECE_SECONDS = 0.2
-"""Longest time in the engine between two checks for Ctrl-C [s]."""
+"""Longest time in the engine between two checks for Ctrl-C [s]; a device is not disturbed within a window."""
 
 
 def run(plan: RunPlan, display: Display | None = None) -> Manifest:
@@ -146,6 +146,7 @@ class _Due:
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
     """Advances to each step at which something must be done, and yields it."""
     window = plan.config.learning.rollout_steps
+    on_device = simulation.engine.device_count > 0
     piece = 64
     while step < plan.steps and not simulation.extinct:
         if interrupted.count > 1 or (interrupted.count == 1 and step % window == 0):
@@ -157,8 +158,9 @@ def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interr
         begun = time.perf_counter()
         simulation.run(steps)
         seconds = max(time.perf_counter() - begun, 1e-6)
+        wanted = window if on_device else min(steps * PIECE_SECONDS / seconds, 4 * piece)
         # The engine keeps deaths until they are read: make pieces so short that deaths fill an eighth of its room.
         full = 8 * max(world.waiting_deaths for world in simulation.worlds)
-        piece = max(1, int(min(steps * PIECE_SECONDS / seconds, 4 * piece, steps / full if full else steps * 4)))
+        piece = max(1, int(min(wanted, steps / full if full else 4 * steps)))
         step += steps
         yield step
