@@ -29,16 +29,6 @@ OPTIONS = {
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
     "TSAN_OPTIONS": "halt_on_error=1:exitcode=66",
 }
-RUN_TESTS = """
-import importlib.util, sys
-import hedon
-spec = importlib.util.spec_from_file_location("hedon._engine", sys.argv[1])
-module = importlib.util.module_from_spec(spec)
-sys.modules["hedon._engine"] = hedon._engine = module
-spec.loader.exec_module(module)
-import pytest
-sys.exit(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *sys.argv[2:]]))
-"""
 
 
 def build(preset: str) -> Path:
@@ -64,8 +54,10 @@ def main(preset: str, arguments: list[str]) -> int:
             return run_windows(preset, OPTIONS, Path(folder))
     module = build(preset)
     libraries = [runtime(name) for name in (*RUNTIMES[preset], "libstdc++.so")]
-    environment = os.environ | OPTIONS | {"LD_PRELOAD": " ".join(libraries)}
-    command = [sys.executable, "-c", RUN_TESTS, str(module), *(arguments or TESTS[preset])]
+    environment = os.environ | OPTIONS | {"LD_PRELOAD": " ".join(libraries), "HEDON_SANITIZED": str(module)}
+    environment["PYTHONPATH"] = str(ROOT / "tests")
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-p", "sanitized_engine"]
+    command += ["--numprocesses", "2", "--dist", "worksteal", *(arguments or TESTS[preset])]
     return subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
 
 
