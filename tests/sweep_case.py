@@ -106,9 +106,9 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     assert_same_table(table_of(url), table_of(store.location))
 
 
-def assert_two_make_one(url: str, folder: Path) -> None:
+def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
     """Two processes that make one sweep behind a URL at once write the same rows, whichever is first with each."""
-    file = sweep_file(folder, 3_200)
+    file = sweep_file(folder, 3_200, rest=rest)
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():

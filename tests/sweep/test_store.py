@@ -83,7 +83,8 @@ def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):
 
 
 def test_two_processes_that_make_one_sweep_harm_no_row(tmp_path):
-    assert_two_make_one(f"file://{tmp_path}/far", tmp_path)
+    one_batch = '[factor]\n"energy.basic_cost" = [0.001]\n'
+    assert_two_make_one(f"file://{tmp_path}/far", tmp_path, one_batch)
 
 
 def test_a_url_of_no_kind_is_refused():
