@@ -6,7 +6,10 @@ HEDON_NODES sets how many times a node is killed: each time when its batch has g
 import json
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -20,6 +23,8 @@ from sweep_case import assert_same_table, planned, sweep_file, table_of, under_w
 from hedon.sweep.cluster import LOCAL, run_on_ray
 from hedon.sweep.conduct import Silent, run_sweep
 from hedon.sweep.loss import TRIES
+from hedon.sweep.plan import load_plan
+from hedon.sweep.store import open_store
 from hedon.sweep.work import RUNS, make_batch, make_task
 
 pytestmark = pytest.mark.skipif(
@@ -110,8 +115,9 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
 
 
 @pytest.mark.long
-def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole):
+def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkeypatch):
     """As one does that needs more memory than there is; the others are made, and it may be tried again."""
+    monkeypatch.setenv("RAY_ADDRESS", "127.0.0.1:1")  # a local cluster is a new one, whatever else there is
     plan, store = planned(file_of(tmp_path), str(tmp_path / "ray"))
     doomed, killed, over = plan.batches()[0].name, set[int](), threading.Event()
 
@@ -141,3 +147,30 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole):
         doomed: "finished"
     }
     assert_same_table(table_of(store.location), whole)
+
+
+@pytest.mark.long
+def test_ctrl_c_keeps_what_was_done_on_a_cluster(tmp_path):
+    file, place = sweep_file(tmp_path, 4 * STEPS, seeds=1), tmp_path / "ray"
+    file.write_text('keep = ["run"]\n' + file.read_text())
+    start = "from hedon.cli.start import main; main()"
+    words = ["sweep", "run", str(file), "--out", str(place), "--ray", LOCAL, "--workers", "1", "--checkpoint", "0"]
+    sweep = subprocess.Popen([sys.executable, "-c", start, *words], stdout=subprocess.PIPE, text=True)
+    try:
+        while not any(step > 0 for _, step in under_way(place).values()):
+            assert sweep.poll() is None
+            time.sleep(0.01)
+        sweep.send_signal(signal.SIGINT)
+        said, _ = sweep.communicate(timeout=300)
+    finally:
+        sweep.kill()
+    assert sweep.returncode == 0
+    assert "Interrupted: 0 of 2 batches are done, and kept." in said
+    plan, store = load_plan(open_store(str(place))), open_store(str(place))
+    run_sweep(plan, store, 2, Silent(), 1e9)
+    sessions = [json.loads(path.read_text())["sessions"] for path in (place / RUNS).glob("*/manifest.json")]
+    (_, second), (_,) = sorted(sessions, key=len, reverse=True)
+    assert second["from_step"] > 0, "one was under way"
+    alone, other = planned(file, str(tmp_path / "alone"))
+    run_sweep(alone, other, 2, Silent(), 1e9)
+    assert_same_table(table_of(str(place)), table_of(other.location))

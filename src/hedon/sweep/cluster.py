@@ -64,11 +64,10 @@ def run_on_ray(
     scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
     try:
         if address == LOCAL:
-            # It answers on this machine alone, and reports to nobody unless asked to.
+            # A new one, also where another runs. It answers here alone, and reports to nobody unless asked to.
             os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-            ray.init(
-                num_cpus=workers or None, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1"
-            )
+            settings = {"num_cpus": workers or None, "include_dashboard": False, "_node_ip_address": "127.0.0.1"}
+            ray.init(address="local", log_to_driver=False, **settings)
         else:
             ray.init(address=address, log_to_driver=False)
     except (ConnectionError, ValueError, RuntimeError) as error:
