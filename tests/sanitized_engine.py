@@ -1,4 +1,4 @@
-"""A plugin of pytest that puts the engine built with a sanitizer, named by `HEDON_SANITIZED`, in the place of the other."""
+"""A plugin of pytest: the engine built with a sanitizer, named by `HEDON_SANITIZED`, in the place of the usual one."""
 
 import importlib.util
 import os
@@ -13,5 +13,6 @@ spec = importlib.util.spec_from_file_location(NAME, os.environ["HEDON_SANITIZED"
 assert spec is not None
 assert spec.loader is not None
 module = importlib.util.module_from_spec(spec)
-sys.modules[NAME] = hedon._engine = module
+sys.modules[NAME] = module
+setattr(hedon, "_engine", module)  # noqa: B010 (the stubs do not know that it can be set)
 spec.loader.exec_module(module)
