@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
 
-from hedon.sweep.cluster import LOCAL, run_on_ray
+from hedon.sweep.cluster import LOCAL, import_ray, run_on_ray
 from hedon.sweep.conduct import Silent, run_sweep
 from hedon.sweep.loss import TRIES
 from hedon.sweep.plan import load_plan
@@ -57,8 +57,8 @@ def whole(tmp_path_factory):
 @contextmanager
 def two_nodes(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Any, Any]]:
     """A cluster of two nodes with one processor each, and the second of them."""
-    monkeypatch.setenv("RAY_USAGE_STATS_ENABLED", "0")
     monkeypatch.setenv("RAY_raylet_start_wait_time_s", "300")  # a busy machine needs more than the usual 30 s
+    import_ray()
     Cluster: Any = import_module("ray.cluster_utils").Cluster
     cluster = Cluster(initialize_head=True, head_node_args=HEAD)
     try:

@@ -55,17 +55,13 @@ def run_on_ray(
     Raises:
         SweepError: Ray is not installed, there is no cluster at the address, or another process makes these batches.
     """
-    try:
-        ray: Any = import_module("ray")
-    except ImportError:
-        raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
+    ray = import_ray()
     # Of this place and plan alone: what another sweep left on a node must not be gone on with.
     own = hashlib.sha256(f"{store.location} {plan.steps} {plan.digests}".encode()).hexdigest()[:16]
     scratch = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
     try:
         if address == LOCAL:
-            # A new one, also where another runs. It answers here alone, and reports to nobody unless asked to.
-            os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+            # A new one, also where another runs. It answers here alone.
             settings = {"num_cpus": workers or None, "include_dashboard": False, "_node_ip_address": "127.0.0.1"}
             ray.init(address="local", log_to_driver=False, **settings)
         else:
@@ -78,6 +74,22 @@ def run_on_ray(
             return _see_through(ray, jobs, Losses(store), display)
     finally:
         ray.shutdown()
+
+
+def import_ray() -> Any:
+    """Ray, told what a sweep wants of it; its settings count when it is imported.
+
+    Raises:
+        SweepError: It is not installed.
+    """
+    # It reports to nobody unless asked to.
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    # Each node has its own hedon. Else, under `uv run`, Ray copies the current folder to each node and builds it there.
+    os.environ.setdefault("RAY_ENABLE_UV_RUN_RUNTIME_ENV", "0")
+    try:
+        return import_module("ray")
+    except ImportError:
+        raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
 
 
 def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Display[Task]) -> dict[str, Outcome]:
