@@ -27,7 +27,11 @@ OPTIONS = {
     # The interpreter itself never frees everything, and its own threads are not what is tested here.
     "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:abort_on_error=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
-    "TSAN_OPTIONS": "halt_on_error=1:exitcode=66",
+    # Deadlocks of mutexes are not looked for: the engine has none, and the allocator of Polars has more than the
+    # sanitizer can count.
+    "TSAN_OPTIONS": "halt_on_error=1:exitcode=66:detect_deadlocks=0",
+    # That allocator also starts a thread that the sanitizer knows nothing of, and crashes with.
+    "_RJEM_MALLOC_CONF": "background_thread:false",
 }
 
 
