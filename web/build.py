@@ -26,6 +26,17 @@ FLAGS = (
     "-Iengine",
     "-Wl,--strip-all",
     "-Wl,-z,stack-size=1048576",
+    # Threads: the page gives the memory, and says where each thread has its stack.
+    "-matomics",
+    "-mthread-model",
+    "posix",
+    "-mbulk-memory",
+    "-Wl,--import-memory",
+    "-Wl,--shared-memory",
+    "-Wl,--initial-memory=4194304",
+    "-Wl,--max-memory=4294901760",
+    "-Wl,--export=__stack_pointer",
+    "-Wl,--export=__wasm_init_tls",
 )
 MODULES = {"hedon.wasm": (), "hedon-relaxed.wasm": ("-mrelaxed-simd",)}
 """Each module and the flags that it needs besides `FLAGS`: the second fuses multiply-adds where processors can."""

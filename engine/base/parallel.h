@@ -5,10 +5,9 @@
 #include <functional>
 #include <memory>
 
-namespace hedon {
+#include "base/platform.h"
 
-/// Number of processors that this process may use.
-int available_processors();
+namespace hedon {
 
 /// Threads that sleep until `run`; then the caller works too. The destructor joins them.
 class Pool {

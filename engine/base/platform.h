@@ -1,7 +1,13 @@
-/// What the engine asks of the system besides threads (`parallel.h`): memory. The system's own, or a web page's.
+/// All that the engine asks of a system besides the standard library, such as its clock: memory and threads. One file
+/// answers for each kind of system: `platform_native.cpp` and, for WebAssembly in a page, `platform_web.cpp`.
+/// Everything else is the same everywhere.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
 
 namespace hedon {
 
@@ -11,5 +17,32 @@ void* reserve_pages(size_t bytes);
 
 /// Gives memory back that `reserve_pages` gave.
 void release_pages(void* block, size_t bytes);
+
+/// Number of processors that this process may use; in a page, of threads that there can be.
+int available_processors();
+
+/// Which process this is: a forked one has another number.
+int64_t current_process();
+
+/// A thread that calls `work` once.
+class Thread {
+ public:
+  explicit Thread(std::function<void()> work);
+  /// Waits until `work` has returned.
+  ~Thread();
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+
+ private:
+  struct Handle;
+  std::unique_ptr<Handle> handle_;
+};
+
+/// Sleeps until `word` holds something else than `value`. Who changes it must do so sequentially consistently, and
+/// call `wake_all` after that.
+void sleep_while(const std::atomic<uint32_t>& word, uint32_t value);
+
+/// Wakes all who sleep on `word`.
+void wake_all(std::atomic<uint32_t>& word);
 
 }  // namespace hedon

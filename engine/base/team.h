@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/platform.h"
+
 namespace hedon {
 
 /// Data that the members of a team share.
@@ -35,14 +37,14 @@ class Team {
       // Sequentially consistent, with a full fence: the notification checks whether any member sleeps. It must check
       // after the new phase is visible; otherwise a member that falls asleep in between never wakes.
       state_->phase.store(phase + 1, std::memory_order_seq_cst);
-      state_->phase.notify_all();
+      wake_all(state_->phase);
       return;
     }
     for (int spin = 0; spin < SPINS; ++spin) {
       if (state_->phase.load(std::memory_order_acquire) != phase) return;
       relax();
     }
-    while (state_->phase.load(std::memory_order_acquire) == phase) state_->phase.wait(phase, std::memory_order_acquire);
+    sleep_while(state_->phase, phase);
   }
 
   /// Calls body(i) for i in [0, count), in contiguous blocks of nearly equal size: for many small equal pieces.

@@ -119,6 +119,7 @@ class Simulation {
   /// What advances the worlds: the name of an instruction set or of a device.
   const char* kernel_name() const { return devices_.empty() ? kernel_->name : devices_[0]->program().name; }
   const Pool& pool() const { return *pool_; }
+  Pool& pool() { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
   /// The block that holds all of a world, `bytes_per_world` long: who puts a copy of it back has the world as it was.
   char* memory(int index) { return memory_[static_cast<size_t>(index)].data(); }

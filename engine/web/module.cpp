@@ -3,6 +3,9 @@
 /// Call them in this order: `hedon_text` gives room for the text of `WorldInput`; `hedon_read` reads and checks it;
 /// `hedon_bytes_needed` says what the world would take; `hedon_make` makes it. Then `hedon_run`, `hedon_learn` and the
 /// views, as often as you like. A function that can fail returns 0 for success; `hedon_message` says what was wrong.
+///
+/// A world with several threads needs as many seats before it is made, each with a worker that serves there: see
+/// `base/platform_web.cpp`.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/platform.h"
 #include "lanes/portable.h"
 #include "simulation/config_check.h"
 #include "simulation/memory.h"
@@ -41,10 +45,13 @@ struct Mind {
   float output[16];        ///< mean of the two actions, then the value
 };
 
+constexpr size_t SPARE = size_t{4} << 20;  ///< bytes that a world needs besides its own, with room to spare
+
 std::string text, message, path;
 WorldInput input;
 std::unique_ptr<Simulation> simulation;
 std::vector<float> scratch;
+Pace pace;
 int32_t learned;  ///< learners of the present window that have learned, while the window is being learned
 bool learning;
 int32_t learners;
@@ -65,6 +72,19 @@ World& world() { return simulation->world(0); }
 float* aligned_scratch() {
   const auto address = reinterpret_cast<uintptr_t>(scratch.data());
   return reinterpret_cast<float*>((address + 63) / 64 * 64);
+}
+
+int64_t scratch_stride() { return learn_stride(simulation->shape(), simulation->config()); }
+
+/// Calls body(team) on every thread of the world.
+template <class Body>
+void together(Body&& body) {
+  TeamState shared;
+  shared.size = simulation->pool().size();
+  simulation->pool().run([&](int rank) {
+    Team team(shared, rank);
+    body(team);
+  });
 }
 
 int report_fault() {
@@ -140,20 +160,27 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
 }
 
 /// Bytes that the world of the input needs; a page refuses what it cannot have before it is asked for.
-HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed() {
-  const MemoryNeed need = Simulation::bytes_needed(input.config, static_cast<int32_t>(input.walls.size()), 1, 1);
+HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) {
+  const MemoryNeed need = Simulation::bytes_needed(input.config, static_cast<int32_t>(input.walls.size()), 1, threads);
   return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
 }
 
-/// Makes the world of the input; the world before is gone.
-HEDON_EXPORT(hedon_make) int hedon_make() {
+/// Makes the world of the input, with so many threads, which change no result; the world before is gone.
+HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   simulation.reset();
   learning = by_hand = false;
   kept.reset();
+  if (threads > available_processors()) return fail("there are not as many threads as the world is to have");
+  const auto bytes = static_cast<size_t>(hedon_bytes_needed(threads)) + SPARE;
+  void* room = reserve_pages(bytes);
+  if (room == nullptr)
+    return fail("there is no memory left for this world: lower population.capacity or learning.rollout_steps");
+  release_pages(room, bytes);
   simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
-                                            std::vector<uint64_t>{input.seed}, 1, find_kernel("portable"),
+                                            std::vector<uint64_t>{input.seed}, threads, find_kernel("portable"),
                                             std::vector<int32_t>{});
-  scratch.assign(static_cast<size_t>(learn_stride(simulation->shape(), simulation->config())) + 16, 0.0f);
+  scratch.assign(static_cast<size_t>(scratch_stride() * threads) + 16, 0.0f);
+  pace = Pace();
   prepare_step(world());
   return report_fault();
 }
@@ -161,19 +188,21 @@ HEDON_EXPORT(hedon_make) int hedon_make() {
 /// Advances by up to `steps` steps, but not past the end of a window that has not been learned. Returns the steps
 /// done; fewer if the world is over, has a fault, or must learn.
 HEDON_EXPORT(hedon_run) int32_t hedon_run(int32_t steps) {
-  TeamState one;
-  Team team(one, 0);
-  const int64_t window = simulation->shape().steps;
-  int32_t done = 0;
-  while (done < steps && !learning && !world().over()) {
-    step(team, world(), world().head().step % window, [](Part) {});
-    ++done;
-    if (world().head().step % window == 0 && !world().over()) {
-      learning = true;
-      learned = learners = 0;
-    }
+  if (learning || world().over()) return 0;
+  const int64_t window = simulation->shape().steps, begun = world().head().step;
+  const int64_t whole = std::min<int64_t>(steps, window - begun % window);
+  together([&](Team& team) {
+    for (int64_t left = whole; left > 0 && !world().over();)
+      left -= step_at_pace(team, pace, left, [&](Team& members) {
+        step(members, world(), world().head().step % window, [](Part) {});
+        return !world().over();
+      });
+  });
+  if (world().head().step % window == 0 && !world().over()) {
+    learning = true;
+    learned = learners = 0;
   }
-  return done;
+  return static_cast<int32_t>(world().head().step - begun);
 }
 
 /// Whether a window has ended whose learning is not done: 1 if `hedon_learn` must be called before the next step.
@@ -182,16 +211,15 @@ HEDON_EXPORT(hedon_must_learn) int hedon_must_learn() { return learning ? 1 : 0;
 /// Lets the next `count` learners learn; returns how many are left.
 HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
   if (!learning) return 0;
-  Portion portion(learned, learned + count);
-  learn_window(portion, world(), aligned_scratch(), 0);
+  together([&](Team& team) {
+    Portion portion(team, learned, learned + count);
+    learn_window(portion, world(), aligned_scratch(), scratch_stride());
+    if (portion.done()) audit(team, world());
+    if (team.rank() == 0) learners = portion.count();
+  });
   learned += count;
-  learners = portion.count();
-  if (!portion.done()) return learners - learned;
-  learning = false;
-  TeamState one;
-  Team team(one, 0);
-  audit(team, world());
-  return 0;
+  learning = learned < learners;
+  return learning ? learners - learned : 0;
 }
 
 /// Status of the world: 0 while nothing is wrong.

@@ -4,6 +4,7 @@ import http.server
 import io
 import json
 import shutil
+from contextlib import contextmanager
 from functools import partial
 
 import numpy as np
@@ -18,6 +19,7 @@ from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 from hedon.view.export import export
 from hedon.view.index import RunIndex
+from hedon.view.live import live_world
 
 pytest_plugins = ("view_fixture",)
 STEP = 640
@@ -107,6 +109,24 @@ def test_the_page_shows_the_digest_of_the_run(run_folder, watch):
         watched.until(f"document.querySelector('#digest')?.textContent.includes('{digest}')")
 
 
+def run_live(watched, steps):
+    """Lets a live world do its first steps, and learn."""
+    watched.get("hedon.play(false)")
+    watched.until("!hedon.source.busy")
+    while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
+        watched.get(f"hedon.source.advance({steps - done}, 5000)")
+        watched.until("!hedon.source.busy")
+    watched.until("hedon.source.digest() !== ''")
+
+
+def check_digest(watched, preset, steps):
+    fused = watched.get("hedon.source.fused")
+    kernel = next((k for k in _engine.kernel.kernel_names() if k != "portable"), "") if fused else "portable"
+    simulation = Simulation(load_config(preset), seeds=[1], kernel=kernel)
+    simulation.run(steps)
+    assert watched.get("[hedon.source.last, hedon.source.digest()]") == [steps, simulation.worlds[0].digest()]
+
+
 LONG = [
     pytest.param(preset, 20 * 1024, marks=pytest.mark.long, id=preset) for preset in ("baseline", "poison", "predator")
 ]
@@ -116,17 +136,18 @@ LONG = [
 def test_a_live_world_has_the_digest_of_the_native_one(preset, steps, watch):
     with serving(live_server(preset)) as server:
         watched = watch(server.link)
-        watched.get("hedon.play(false)")
-        watched.until("!hedon.source.busy")
-        fused = watched.get("hedon.source.fused")
-        while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
-            watched.get(f"hedon.source.advance({steps - done}, 5000)")
-            watched.until("!hedon.source.busy")
-        watched.until("hedon.source.digest() !== ''")
-        kernel = next((k for k in _engine.kernel.kernel_names() if k != "portable"), "") if fused else "portable"
-        simulation = Simulation(load_config(preset), seeds=[1], kernel=kernel)
-        simulation.run(steps)
-        assert watched.get("[hedon.source.last, hedon.source.digest()]") == [steps, simulation.worlds[0].digest()]
+        run_live(watched, steps)
+        assert watched.get("hedon.source.threads") == min(4, watched.get("navigator.hardwareConcurrency"))
+        check_digest(watched, preset, steps)
+
+
+def test_the_link_says_how_many_threads_a_live_world_has(watch):
+    with serving(live_server("small")) as server:
+        watched = watch(f"{server.link}#threads=3")
+        run_live(watched, 300)
+        assert watched.get("hedon.source.threads") == 3
+        assert "3 threads" in watched.page.locator("#legend").inner_text()
+        check_digest(watched, "small", 300)
 
 
 def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
@@ -225,10 +246,9 @@ def test_names_of_a_hostile_run_stay_text(run_folder, tmp_path, watch):
         assert watched.page.title() == "hedon"
 
 
-def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
-    index = RunIndex(run_folder)
-    site = tmp_path / "site"
-    export(site, {"page": {"run": True, "worlds": []}, "run": index.describe()}, index.files())
+@contextmanager
+def plain_server(site):
+    """A server that knows nothing of the page: it sends the files of a folder, and no headers for them."""
 
     class Quiet(http.server.SimpleHTTPRequestHandler):
         def log_message(self, format, *args):  # noqa: A002
@@ -236,6 +256,23 @@ def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
 
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=site))
     with serving(server):
-        watched = watch(f"http://127.0.0.1:{server.server_port}/index.html")
+        yield f"http://127.0.0.1:{server.server_port}/index.html"
+
+
+def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
+    index = RunIndex(run_folder)
+    export(tmp_path / "site", {"page": {"run": True, "worlds": []}, "run": index.describe()}, index.files())
+    with plain_server(tmp_path / "site") as link:
+        watched = watch(link)
         watched.rest_at(STEP)
         assert watched.get("Array.from(hedon.frame.id)") == agents_at(run_folder, STEP)["id"].to_list()
+
+
+def test_a_live_world_has_one_thread_where_the_page_is_not_isolated(tmp_path, watch):
+    page = {"run": False, "worlds": [live_world(load_config("small"), "small")]}
+    export(tmp_path / "site", {"page": page}, {})
+    with plain_server(tmp_path / "site") as link:
+        watched = watch(f"{link}#threads=2")
+        run_live(watched, 1030)
+        assert watched.get("[crossOriginIsolated, hedon.source.threads]") == [False, 1]
+        check_digest(watched, "small", 1030)

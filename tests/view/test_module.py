@@ -1,6 +1,7 @@
 """The WebAssembly of the engine against the native one: the same bits, from the same config."""
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -29,8 +30,9 @@ needs_node = pytest.mark.skipif(
 )
 
 
-def run_in_node(module: str, text: str, folder: Path, steps: int, portion: int = 50) -> dict:
-    return in_node("digest.mjs", module, text, folder, str(steps), str(portion))
+def run_in_node(module: str, text: str, folder: Path, steps: int, portion: int = 50, threads: int = 0) -> dict:
+    """With 0 threads, one thread without shared memory."""
+    return in_node("digest.mjs", module, text, folder, str(steps), str(portion), str(threads))
 
 
 def in_node(program: str, module: str, text: str, folder: Path, *more: str) -> dict:
@@ -59,11 +61,34 @@ def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, tmp_
 
 
 @needs_node
+@pytest.mark.parametrize("threads", [1, 2, 3])
+@pytest.mark.parametrize(("module", "kernel"), MODULES)
+def test_threads_change_no_bit(module, kernel, threads, tmp_path):
+    found = run_in_node(module, engine_text(load_config("small"), 1), tmp_path, STEPS, threads=threads)
+    assert found["digest"] == native_digest("small", kernel, STEPS)
+
+
+@needs_node
+def test_a_world_without_its_threads_says_so(tmp_path):
+    told = in_node("thread.mjs", "hedon.wasm", engine_text(load_config("small"), 1), tmp_path)
+    assert told["memory"].startswith(
+        "the world needs 0.1 GB of memory, and a page has at most 0.0 GB: lower population"
+    )
+    assert told["start"] == (
+        "thread 2 of the engine cannot start (its program cannot be loaded): put threads=1 into the page's link"
+    )
+    assert told["many"] == "there is no room for another thread: ask for fewer"
+    assert re.fullmatch(r"the engine stopped in its thread 3 \(.+\): begin the world again", told["stopped"])
+    assert told["again"] == 10
+
+
+@needs_node
 @pytest.mark.long
+@pytest.mark.parametrize("threads", [0, 2])
 @pytest.mark.parametrize("preset", LONG_PRESETS)
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
-def test_twenty_windows_have_the_bits_of_the_native_engine(module, kernel, preset, tmp_path):
-    found = run_in_node(module, engine_text(load_config(preset), 1), tmp_path, 20 * 1024)
+def test_twenty_windows_have_the_bits_of_the_native_engine(module, kernel, preset, threads, tmp_path):
+    found = run_in_node(module, engine_text(load_config(preset), 1), tmp_path, 20 * 1024, threads=threads)
     assert found["digest"] == native_digest(preset, kernel, 20 * 1024)
 
 

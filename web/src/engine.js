@@ -3,18 +3,18 @@
 
 /** @typedef {Int8Array | Uint8Array | Int32Array | Uint32Array | Float32Array | Float64Array | BigInt64Array | BigUint64Array} Numbers */
 
-/** What the module asks of a system: a clock, and nothing else that is used. @param {() => WebAssembly.Memory} memory */
+/** What the module asks of a system: a clock, and nothing else that is used. @param {WebAssembly.Memory} memory */
 function system(memory) {
   const refused = 52; // the system's number for "not there"
   return new Proxy(
     {
       clock_time_get: (/** @type {number} */ _id, /** @type {bigint} */ _precision, /** @type {number} */ at) => {
         const now = BigInt(Math.round(performance.now() * 1e6));
-        new DataView(memory().buffer).setBigUint64(at, now, true);
+        new DataView(memory.buffer).setBigUint64(at, now, true);
         return 0;
       },
       proc_exit: () => {
-        throw new Error("the engine stopped: there is no more memory");
+        throw new Error("there is no more memory");
       },
     },
     { get: (known, name) => Reflect.get(known, name) ?? (() => refused) },
@@ -24,38 +24,161 @@ function system(memory) {
 /** A problem that the engine reports in words. */
 export class EngineError extends Error {}
 
+/** The same functions, but a trap is told in words. @param {Record<string, CallableFunction>} exports */
+function explained(exports) {
+  /** @param {CallableFunction} call */
+  const telling = (call) => (/** @type {unknown[]} */ ...given) => {
+    try {
+      return call(...given);
+    } catch (error) {
+      const thread = exports.hedon_stopped() || 1;
+      const why = error instanceof Error ? error.message : String(error);
+      throw new Error(`the engine stopped in its thread ${thread} (${why}): begin the world again`);
+    }
+  };
+  return Object.fromEntries(Object.entries(exports).map(([name, each]) => [name, typeof each === "function" ? telling(each) : each]));
+}
+
+const PAGE = 65536; // bytes
+const FIRST_PAGES = 64; // as the module was linked
+const MOST_PAGES = 65535;
+const SPARE = 64e6; // bytes of memory besides a world and the copy that is kept of it
+const NAP_MS = 100; // that a thread sleeps before it looks whether another one was stopped
+const SHARED_MEMORY = [3, ...new TextEncoder().encode("env"), 6, ...new TextEncoder().encode("memory"), 2, 3];
+
+/**
+ * The module of these bytes. One flag of its import says whether the memory is shared; nothing else depends on it, and
+ * a page that is not isolated cannot share memory. @param {Uint8Array<ArrayBuffer>} bytes @param {boolean} shared
+ */
+export async function compile(bytes, shared) {
+  if (shared) return WebAssembly.compile(bytes);
+  const own = bytes.slice();
+  const at = own.findIndex((_, i) => SHARED_MEMORY.every((byte, k) => own[i + k] === byte));
+  own[at + SHARED_MEMORY.length - 1] = 1;
+  return WebAssembly.compile(own);
+}
+
+/** @param {boolean} shared @param {number} bytes the most that it can grow to */
+function memoryOf(shared, bytes) {
+  const maximum = Math.min(Math.ceil(bytes / PAGE) + FIRST_PAGES, MOST_PAGES);
+  try {
+    return new WebAssembly.Memory({ initial: FIRST_PAGES, maximum, shared });
+  } catch {
+    throw new EngineError(`this browser refuses ${gigabytes(bytes)} of memory: lower population.capacity or learning.rollout_steps`);
+  }
+}
+
+/** @param {number} bytes */
+const gigabytes = (bytes) => `${(bytes / 1e9).toFixed(1)} GB`;
+
+/**
+ * What a worker needs to be a thread of the engine; it calls `serve`.
+ * @typedef {{ module: WebAssembly.Module, memory: WebAssembly.Memory, seat: number, stack: number, locals: number }} Post
+ * @typedef {(post: Post) => Promise<() => void>} Hire gives a post to a worker, waits until it is ready to serve, and
+ * returns what dismisses it
+ */
+
+/** Serves as a thread of the engine for as long as the worker lives. @param {Post} post @param {() => void} ready */
+export function serve({ module, memory, seat, stack, locals }, ready) {
+  const exports = instantiate(module, memory);
+  /** @type {WebAssembly.Global} */ (/** @type {unknown} */ (exports.__stack_pointer)).value = stack;
+  exports.__wasm_init_tls(locals);
+  ready();
+  try {
+    exports.hedon_serve(seat);
+  } catch (error) {
+    exports.hedon_stop(seat + 2);
+    throw error;
+  }
+}
+
+/** How the threads of a module wait for one another: see engine/base/platform_web.cpp. @param {WebAssembly.Memory} memory */
+function waiting(memory) {
+  const words = () => new Int32Array(memory.buffer);
+  return {
+    sleep_while: (/** @type {number} */ at, /** @type {number} */ value) => void Atomics.wait(words(), at >>> 2, value, NAP_MS),
+    wake_all: (/** @type {number} */ at) => void Atomics.notify(words(), at >>> 2),
+  };
+}
+
+/** @param {WebAssembly.Module} module @param {WebAssembly.Memory} memory */
+function instantiate(module, memory) {
+  const imports = { env: { memory }, page: waiting(memory), wasi_snapshot_preview1: /** @type {any} */ (system(memory)) };
+  return /** @type {Record<string, CallableFunction>} */ (/** @type {unknown} */ (new WebAssembly.Instance(module, imports).exports));
+}
+
 export class Engine {
-  /** @param {WebAssembly.Module} module */
-  constructor(module) {
-    const instance = new WebAssembly.Instance(module, {
-      wasi_snapshot_preview1: /** @type {any} */ (system(() => this.memory)),
-    });
-    this.exports = /** @type {Record<string, CallableFunction>} */ (/** @type {unknown} */ (instance.exports));
-    this.memory = /** @type {WebAssembly.Memory} */ (instance.exports.memory);
+  /**
+   * @param {WebAssembly.Module} module @param {boolean} [shared] as the module was compiled
+   * @param {number} [bytes] that it will need
+   */
+  constructor(module, shared = false, bytes = 0) {
+    this.module = module;
+    this.shared = shared;
+    this.memory = memoryOf(shared, bytes + SPARE);
+    this.exports = explained(instantiate(module, this.memory));
     this.exports._initialize();
+    this.threads = 1;
+    this.bytes = 0; // of its world
+    /** @type {(() => void)[]} */
+    this.dismissals = [];
     /** @type {Map<string, [number, number, number, number, number, number]>} */
     this.known = new Map();
   }
 
   /**
-   * Makes the world of a text (see engine/web/input.h). Refuses one that needs more than `limit` bytes.
-   * @param {string} text @param {number} [limit]
+   * An engine with the world of a text (see engine/web/input.h). Refuses a world that needs more than `limit` bytes.
+   * @param {WebAssembly.Module} module @param {string} text
+   * @param {{ shared?: boolean, threads?: number, hire?: Hire, limit?: number }} [how] more than one thread needs
+   * shared memory, and somebody to hire
    */
-  make(text, limit = 3e9) {
+  static async make(module, text, { shared = false, threads = 1, hire, limit = 3e9 } = {}) {
+    const planned = new Engine(module, shared).#needOf(text, threads);
+    if (planned > limit) {
+      throw new EngineError(
+        `the world needs ${gigabytes(planned)} of memory, and a page has at most ${gigabytes(limit)}: ` +
+          "lower population.capacity or learning.rollout_steps",
+      );
+    }
+    const engine = new Engine(module, shared, 2 * planned + threads * 2 ** 21);
+    try {
+      engine.bytes = engine.#needOf(text, threads);
+      for (let seat = 0; seat < threads - 1; seat++) await engine.#hire(seat, /** @type {Hire} */ (hire));
+      engine.threads = threads;
+      engine.#need(engine.exports.hedon_make(threads));
+    } catch (error) {
+      engine.close();
+      throw error;
+    }
+    return engine;
+  }
+
+  /** Bytes that the world of a text needs, which `hedon_make` then makes. @param {string} text @param {number} threads */
+  #needOf(text, threads) {
     const bytes = new TextEncoder().encode(text);
     const at = this.exports.hedon_text(bytes.length);
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
     this.#need(this.exports.hedon_read());
-    const needed = this.exports.hedon_bytes_needed();
-    if (needed > limit) {
-      throw new EngineError(
-        `the world needs ${(needed / 1e9).toFixed(1)} GB of memory, and a page has at most ${(limit / 1e9).toFixed(1)} GB: ` +
-          "lower population.capacity or learning.rollout_steps",
-      );
+    return /** @type {number} */ (this.exports.hedon_bytes_needed(threads));
+  }
+
+  /** @param {number} seat @param {Hire} hire */
+  async #hire(seat, hire) {
+    const at = this.exports.hedon_seat();
+    if (at === 0) throw new EngineError("there is no room for another thread: ask for fewer");
+    const [stack, locals] = new Uint32Array(this.memory.buffer, at, 2);
+    const { module, memory } = this;
+    try {
+      this.dismissals.push(await hire({ module, memory, seat, stack: /** @type {number} */ (stack), locals: /** @type {number} */ (locals) }));
+    } catch (error) {
+      const why = error instanceof Error ? error.message : String(error);
+      throw new EngineError(`thread ${seat + 2} of the engine cannot start (${why}): put threads=1 into the page's link`);
     }
-    this.known.clear();
-    this.#need(this.exports.hedon_make());
-    return needed;
+  }
+
+  /** Ends its threads; no world is left. */
+  close() {
+    for (const dismiss of this.dismissals.splice(0)) dismiss();
   }
 
   /** Whether multiply-adds are fused: then digests are those of AVX2 and AVX-512. */
@@ -195,7 +318,7 @@ export class Engine {
   #need(status) {
     if (status === 0) return;
     const from = new Uint8Array(this.memory.buffer, this.exports.hedon_message());
-    throw new EngineError(new TextDecoder().decode(from.subarray(0, from.indexOf(0))));
+    throw new EngineError(new TextDecoder().decode(from.slice(0, from.indexOf(0))));
   }
 }
 

@@ -28,6 +28,7 @@ export class Live implements Source {
   chosen = -1;
   fused = false;
   megabytes = 0;
+  threads = 1;
   stepsPerSecond = 0;
   error = "";
   over = false;
@@ -49,10 +50,11 @@ export class Live implements Source {
     readonly world: LiveWorld,
     readonly changes: Map<string, string>,
     readonly seed: number,
+    readonly wanted = 0, // threads; 0 for as many as help
   ) {
     this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
     const text = textOf(world, changes, seed);
-    this.send({ type: "make", text, layout: world.layout });
+    this.send({ type: "make", text, layout: world.layout, threads: wanted });
   }
 
   get layout() {
@@ -115,6 +117,7 @@ export class Live implements Source {
     else if (report.type === "made") {
       this.ready = true;
       this.fused = report.fused;
+      this.threads = report.threads;
       this.megabytes = report.bytes / 1e6;
       this.obstacles = report.obstacles;
       this.advance(0, 1);

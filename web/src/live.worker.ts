@@ -1,5 +1,5 @@
 // Runs a world away from the page's thread, a little at a time, and answers with what is to be drawn.
-import { Engine, EngineError } from "./engine.js";
+import { compile, Engine, EngineError, type Post } from "./engine.js";
 import { LastMeals } from "./meals";
 import type { Frame, Layout, Life, Mind, Place } from "./types";
 
@@ -10,7 +10,7 @@ export type Deed =
   | { type: "keep" }
   | { type: "back" };
 export type Order =
-  | { type: "make"; text: string; layout: Layout }
+  | { type: "make"; text: string; layout: Layout; threads: number }
   | { type: "do"; deed: Deed; chosen: number; digest: boolean }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean };
 
@@ -29,40 +29,63 @@ export interface Moment {
   back: boolean; // whether the world has just gone back to its snapshot
   refused: string; // why the deed was not done
 }
-export type Report = { type: "made"; fused: boolean; bytes: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
+export type Report = { type: "made"; fused: boolean; bytes: number; threads: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
 
-const PIECE = 4; // learners between two looks at the clock
+const PIECE = 2; // learners of each thread between two looks at the clock
+const START_MS = 20_000; // that a thread may take to start
+const SHARED = self.crossOriginIsolated; // otherwise the browser shares no memory, and there is one thread
+const USUAL_THREADS = 4; // at most: more wait for one another more than they help
 let engine: Engine | undefined;
 let layout: Layout | undefined;
 let meals = new LastMeals();
 let kept: { step: number; meals: LastMeals } | undefined;
 
 async function module(name: string): Promise<WebAssembly.Module | undefined> {
-  const bytes = await (await fetch(new URL(`../${name}`, self.location.href))).arrayBuffer();
-  return WebAssembly.validate(bytes) ? WebAssembly.compile(bytes) : undefined;
+  const bytes = new Uint8Array(await (await fetch(new URL(`../${name}`, self.location.href))).arrayBuffer());
+  return WebAssembly.validate(bytes) ? compile(bytes, SHARED) : undefined;
 }
 
 /** The module that fuses multiply-adds where this machine does so, since its digests are those of most machines. */
-async function load(): Promise<Engine> {
+async function load(): Promise<WebAssembly.Module> {
   const relaxed = await module("hedon-relaxed.wasm");
-  if (relaxed) {
-    const fast = new Engine(relaxed);
-    if (fast.fuses) return fast;
-  }
+  if (relaxed && new Engine(relaxed, SHARED).fuses) return relaxed;
   const plain = await module("hedon.wasm");
-  if (!plain) throw new Error("this browser cannot run the engine: it needs WebAssembly with SIMD");
-  return new Engine(plain);
+  if (!plain) throw new Error("this browser cannot run the engine: it needs WebAssembly with SIMD and atomic operations");
+  return plain;
+}
+
+/** Starts a worker as a thread of the engine. */
+function hire(post: Post): Promise<() => void> {
+  const worker = new Worker(new URL("./member.worker.ts", import.meta.url), { type: "module" });
+  return new Promise((ready, fail) => {
+    const refuse = (why: string) => {
+      worker.terminate();
+      fail(new Error(why));
+    };
+    const late = setTimeout(() => refuse("it does not answer"), START_MS);
+    worker.onmessage = () => {
+      clearTimeout(late);
+      ready(() => worker.terminate());
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      clearTimeout(late);
+      refuse(event.message || "its program cannot be loaded");
+    };
+    worker.postMessage(post);
+  });
 }
 
 async function make(order: Order & { type: "make" }): Promise<Report> {
+  engine?.close();
   engine = undefined;
-  const fresh = await load();
-  const bytes = fresh.make(order.text);
+  const threads = SHARED ? order.threads || Math.min(USUAL_THREADS, navigator.hardwareConcurrency) : 1;
+  const fresh = await Engine.make(await load(), order.text, { shared: SHARED, threads, hire });
   engine = fresh;
   layout = order.layout;
   meals = new LastMeals();
   kept = undefined;
-  return { type: "made", fused: fresh.fuses, bytes, obstacles: obstacles(fresh) };
+  return { type: "made", fused: fresh.fuses, bytes: fresh.bytes, threads, obstacles: obstacles(fresh) };
 }
 
 /** The corners of each obstacle. */
@@ -147,7 +170,7 @@ function advance(world: Engine, steps: number, milliseconds: number): number {
   const end = performance.now() + milliseconds;
   let done = 0;
   while (done < steps || world.mustLearn) {
-    if (world.mustLearn) world.learn(PIECE);
+    if (world.mustLearn) world.learn(PIECE * world.threads);
     else {
       const stepped = world.run(1);
       if (stepped === 0) break;
@@ -224,6 +247,8 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
       self.postMessage({ type: "moment", moment: moment(engine, told, data) } satisfies Report);
     }
   } catch (error) {
+    engine?.close();
+    engine = undefined;
     self.postMessage({ type: "error", text: error instanceof Error ? error.message : String(error) } satisfies Report);
   }
 };

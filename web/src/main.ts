@@ -19,6 +19,7 @@ import type { Event, Frame, LiveWorld, Setting, Source } from "./types";
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
 const PICTURE_MS = 13; // of work for a live world between two pictures
 const PANEL_MS = 200; // between two looks at the panels
+const MOST_THREADS = 16; // that the engine has seats for
 const PANELS = ["agent", "plots", "settings", "world-panel"];
 
 export class App {
@@ -37,6 +38,7 @@ export class App {
   private skipped = 0; // steps between the last two pictures that were not drawn
   private marks: Event[] = [];
   private panelsDue = 0;
+  private threads = 0; // of a live world, as the link asks for; 0 for as many as help
   private owed = 0; // part of a step at speeds below 1
   private readonly panel = new AgentPanel((id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
@@ -53,6 +55,8 @@ export class App {
     }
     this.worlds.forEach((world, i) => select.append(option(`live ${i}`, `live: ${world.name}`)));
     const link = new URLSearchParams(location.hash.slice(1));
+    const threads = Number(link.get("threads"));
+    if (Number.isInteger(threads) && threads >= 1 && threads <= MOST_THREADS) this.threads = threads;
     const wanted = this.worlds.findIndex((world) => world.source === link.get("live"));
     if (wanted >= 0) select.value = `live ${wanted}`;
     else if (link.has("world")) select.value = `run ${link.get("world")}`;
@@ -141,14 +145,14 @@ export class App {
 
   /** Begins the world again, and beside it the same one with a setting changed. */
   private beside(first: Live, setting: Setting, value: string): void {
-    const again = new Live(first.world, first.changes, first.seed);
+    const again = new Live(first.world, first.changes, first.seed, first.wanted);
     this.watch(again);
     this.twin.open(again, setting, value);
     this.tab("world-panel");
   }
 
   private start(world: LiveWorld, changes: Map<string, string>, seed: number): void {
-    this.watch(new Live(world, changes, seed));
+    this.watch(new Live(world, changes, seed, this.threads));
     new Settings(world, seed, (other, next) => this.start(world, other, next), changes);
     this.setSpeed(4);
   }
@@ -250,7 +254,7 @@ export class App {
     const digest = source.digest();
     const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.byHand ? ", changed by hand" : ""}` })] : [];
     if (made.length > 0) made[0]!.id = "digest";
-    const kernel = source instanceof Live ? [element("div", { text: source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "kernel portable" })] : [];
+    const kernel = source instanceof Live ? [element("div", { text: `${source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "kernel portable"}, ${source.threads > 1 ? `${source.threads} threads` : "1 thread"}` })] : [];
     by("legend").replaceChildren(element("div", { text: this.coloring.label }), bar, element("div", {}, ...foods), ...kernel, ...made);
   }
 
@@ -295,6 +299,7 @@ export class App {
     if (kind === "run") link.set("world", index!);
     else if (this.source instanceof Live) link.set("live", this.source.world.source);
     if (this.source instanceof Live) link.set("seed", String(this.source.seed));
+    if (this.threads > 0) link.set("threads", String(this.threads));
     if (Number.isFinite(this.now)) link.set("step", String(Math.floor(this.now)));
     if (this.chosen >= 0) link.set("agent", String(this.chosen));
     history.replaceState(null, "", `#${link}`);

@@ -15,7 +15,7 @@ export class Twin {
   /** Begins it; the first world must be at its beginning. */
   open(first: Live, setting: Setting, value: string): void {
     this.close();
-    this.live = new Live(first.world, new Map([...first.changes, [setting.path, value]]), first.seed);
+    this.live = new Live(first.world, new Map([...first.changes, [setting.path, value]]), first.seed, first.wanted);
     [this.setting, this.value, this.colors] = [setting, value, colorings(this.live)];
     by("view").classList.add("two");
     for (const id of ["scene-twin", "caption", "caption-twin"]) by(id).hidden = false;

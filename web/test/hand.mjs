@@ -1,11 +1,9 @@
 // Changes a world by hand in Node, and prints what became of it: node hand.mjs MODULE TEXT [add]
 // With `add`, it adds somebody first, and lets a refusal through.
-import { readFileSync } from "node:fs";
-import { Engine } from "../src/engine.js";
+import { make } from "./make.mjs";
 
 const [module, text] = process.argv.slice(2);
-const world = new Engine(new WebAssembly.Module(readFileSync(module)));
-world.make(readFileSync(text, "utf8"));
+const world = await make(module, text);
 const told = {};
 const refused = (act) => {
   try {

@@ -1,0 +1,49 @@
+/// The system that a process of an operating system has.
+#if !defined(__wasm__)
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <thread>
+#include <utility>
+
+#include "base/platform.h"
+
+namespace hedon {
+
+void* reserve_pages(size_t bytes) {
+  void* block = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (block == MAP_FAILED) return nullptr;
+#if defined(MADV_HUGEPAGE)
+  madvise(block, bytes, MADV_HUGEPAGE);  // a hint: without it, everything works, but slower
+#endif
+  return block;
+}
+
+void release_pages(void* block, size_t bytes) { munmap(block, bytes); }
+
+int available_processors() {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+  const unsigned count = std::thread::hardware_concurrency();
+  return count > 0 ? static_cast<int>(count) : 1;
+}
+
+int64_t current_process() { return getpid(); }
+
+struct Thread::Handle {
+  std::thread thread;
+};
+
+Thread::Thread(std::function<void()> work) : handle_(std::make_unique<Handle>(Handle{std::thread(std::move(work))})) {}
+
+Thread::~Thread() { handle_->thread.join(); }
+
+void sleep_while(const std::atomic<uint32_t>& word, uint32_t value) { word.wait(value, std::memory_order_acquire); }
+
+void wake_all(std::atomic<uint32_t>& word) { word.notify_all(); }
+
+}  // namespace hedon
+
+#endif
