@@ -3,6 +3,7 @@
 import http.server
 import io
 import json
+import re
 import shutil
 from contextlib import contextmanager
 from functools import partial
@@ -14,12 +15,14 @@ from matplotlib.image import imread
 from view_page import live_server, record, run_server, serving
 
 from hedon import ConfigError, Simulation, _engine, load_config
+from hedon.config.layout import layouts, observation_columns
 from hedon.experiment.resume import resume
 from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 from hedon.view.export import export
 from hedon.view.index import RunIndex
 from hedon.view.live import live_world
+from hedon.view.server import Server
 
 pytest_plugins = ("view_fixture",)
 STEP = 640
@@ -155,6 +158,48 @@ def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
         watched = watch(server.link)
         watched.get("hedon.choose(hedon.frame.id[2])")
         watched.until("document.querySelector('#agent').textContent.includes('value of now')")
+
+
+def shown_rows(watched):
+    """The tables of the agent's panel: what stands beside what."""
+    rows = watched.get(
+        "[...document.querySelectorAll('#agent tr')].map((row) => [...row.children].map((cell) => cell.innerText))"
+    )
+    return dict(rows)
+
+
+def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
+    settings = ['sensor.smells=["agent", "poison"]', "sensor.noses=2", "reward.action_coef=0"]
+    config = load_config("poison", overrides=settings)
+    page = {"run": False, "worlds": [live_world(config, "poison")]}
+    with serving(Server({"page": lambda: page}, dict)) as server:
+        watched = watch(server.link)
+        run_live(watched, 300)
+        watched.get("hedon.seek(hedon.source.last)")
+        watched.until("hedon.frame.step === hedon.source.last")
+        kernel = "" if watched.get("hedon.source.fused") else "portable"
+        simulation = Simulation(config, seeds=[1], kernel=kernel)
+        simulation.run(300)
+        world = simulation.worlds[0]
+        columns = observation_columns(config, "agent")
+        noses = {name: column for column, name in enumerate(columns) if name.startswith("smell_")}
+        genes = layouts(config)["agent"].gene_names
+        lives, observed = world.agents(), world.observations(0)
+        hungry = 0
+        for i in range(0, world.alive, 7):
+            watched.get(f"hedon.choose({lives['agent_id'][i]})")
+            watched.until(f"document.querySelector('#agent h2')?.textContent === 'Agent {lives['agent_id'][i]}'")
+            rows = shown_rows(watched)
+            for kind in ("agent", "poison"):
+                right, left = (float(observed[i, noses[f"smell_{kind}_{n}"]]) for n in range(2))
+                said = [float(value) for value in re.findall(r"[\d.]+", rows[kind])]
+                assert said == pytest.approx([left, right], abs=6e-3)
+            for k, kind in enumerate(config.food):
+                part = lives["genome"][i][genes.index(f"w_{kind}")] * lives["eaten"][i][k]
+                assert float(rows[f"… by {kind}"]) == pytest.approx(part, abs=6e-3)
+                hungry += part != 0
+            assert rows["… by action"] == "0"
+        assert hungry > 3
 
 
 @pytest.mark.parametrize("preset", ["poison", "pitfall"])

@@ -6,7 +6,7 @@ import pytest
 
 from hedon.config import PRESETS, engine_config, load_config
 from hedon.config.field import leaves
-from hedon.config.layout import layouts
+from hedon.config.layout import layouts, with_section
 from hedon.record.schema import columns_of
 from hedon.view.engine_text import engine_settings, engine_text
 from hedon.view.layout import describe
@@ -25,10 +25,22 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
     for species, own in zip(layout["species"], layouts(config).values(), strict=True):
         assert [layout["genes"][gene]["name"] for gene in species["genes"]] == list(own.gene_names)
         assert [layout["types"][seen] for seen in species["sees"]] == list(own.sees)
+        assert [layout["types"][smelled] for smelled in species["smells"]] == list(own.smells)
+        told = [layout["genes"][term["gene"]]["name"] for term in species["reward"]["meals"]]
+        assert told == [f"w_{layout['meals'][term['meal']]}" for term in species["reward"]["meals"]]
+        assert [*told, *(f"w_{name}" for name in species["reward"]["rest"])] == [term.gene for term in own.terms]
     assert [food["energy"] for food in layout["foods"]] == [food.energy for food in config.food.values()]
     assert layout["arena"]["width"] == config.arena.width
     assert len(layout["arena"]["walls"]) >= 4
     json.dumps(layout, allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    ("changes", "rest"), [({"family": "sinh"}, ["normal", "poison", "action"]), ({"rule": "my_rules.py:pay"}, [])]
+)
+def test_meals_tell_of_a_reward_only_where_it_is_linear_in_them(changes, rest):
+    config = with_section(load_config("poison"), "reward", **changes)
+    assert describe(config)["species"][0]["reward"] == {"meals": [], "rest": rest}
 
 
 @pytest.mark.parametrize("preset", PRESETS)

@@ -1,9 +1,11 @@
 // The panel of the chosen agent: its life, its kin to click, its genome, and what its network sees and says.
 import { by, element, show, table } from "./element";
 import { castRays } from "./rays";
+import { smell } from "./smells";
 import type { Frame, Life, Source } from "./types";
 
 const SHOWN_CHILDREN = 12;
+const ROUNDED = 1e4; // rewards are sums of numbers of 7 digits
 
 export class AgentPanel {
   private readonly host = by<HTMLDivElement>("agent");
@@ -29,6 +31,7 @@ export class AgentPanel {
       this.note(frame.step, frame.energy[at]!);
       parts.push(element("h3", { text: "energy while watched" }), this.course);
       parts.push(element("h3", { text: "what its rays see, from left to right" }), this.sight);
+      if (source.layout.species[frame.species[at]!]!.smells.length > 0) parts.push(element("h3", { text: "what it smells" }), smells(source, frame, at));
       parts.push(answer(source));
     }
     this.host.replaceChildren(...parts);
@@ -57,6 +60,7 @@ export class AgentPanel {
       ["energy", show(at >= 0 ? frame!.energy[at] : life.energy)],
       ["generation", show(life.generation)],
       ["reward so far", show(life.reward)],
+      ...rewardParts(source, life),
       ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"],
       ["children", this.children(source, life)],
     ];
@@ -121,6 +125,27 @@ function genome(source: Source, life: Life): HTMLElement {
   const list = table(rows);
   list.classList.add("genome");
   return list;
+}
+
+/** What the reward of a life is made of, as far as its meals tell. */
+function rewardParts(source: Source, life: Life): [string, string][] {
+  const { layout } = source;
+  const { meals, rest } = layout.species[life.species]!.reward;
+  if (meals.length === 0) return [];
+  const values = meals.map(({ meal, gene, coef }) => coef * life.genome[gene]! * life.eaten[meal]!);
+  const rows = meals.map(({ meal }, i): [string, string] => [`… by ${layout.meals[meal]}`, show(values[i])]);
+  const left = values.reduce((sum, value) => sum - value, life.reward);
+  if (rest.length > 0) rows.push([`… by ${rest.join(", ")}`, show(Math.round(left * ROUNDED) / ROUNDED)]);
+  return rows;
+}
+
+/** What each nose smells of each type, at most 1. */
+function smells(source: Source, frame: Frame, at: number): HTMLElement {
+  const { layout } = source;
+  const sides = smell(layout, frame, at);
+  const { smells } = layout.species[frame.species[at]!]!;
+  const text = (channel: number) => (sides.length === 1 ? show(sides[0]![channel]) : `left ${show(sides[1]![channel])}, right ${show(sides[0]![channel])}`);
+  return table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]));
 }
 
 function answer(source: Source): HTMLElement {

@@ -3,9 +3,12 @@ import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesCol
 import { styleColor } from "./element";
 import { castRays } from "./rays";
 import { Scene } from "./scene";
-import type { Frame, Source } from "./types";
+import { noses } from "./smells";
+import type { Frame, Layout, Source } from "./types";
 
 const TRAIL = 240; // places of the chosen agent that are kept
+const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
+const HALO = 0x10000000; // the alpha of that, in a packed color
 
 export class Arena {
   readonly scene: Scene;
@@ -66,6 +69,7 @@ export class Arena {
     const at = frame.id.indexOf(chosen);
     if (at >= 0) this.prepareChosen(source, frame, at);
     const foods = foodColors(layout);
+    this.drawSmells(layout, frame, foods);
     for (let f = 0; f < frame.foodX.length; f++) {
       const kind = frame.foodKind[f]!;
       this.scene.disc(frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius, foods[kind]!);
@@ -78,6 +82,18 @@ export class Arena {
     }
     if (at >= 0) this.markKin(source, frame, at);
     return legend;
+  }
+
+  /** Around each thing that somebody smells, how far it is smelled. */
+  private drawSmells(layout: Layout, frame: Frame, foods: number[]): void {
+    const reach = layout.types.map((_, type) =>
+      Math.max(0, ...layout.species.filter((each) => each.smells.includes(type)).map((each) => Math.log(1 / FAINT) / each.noses.decay)),
+    );
+    const halo = (type: number, x: number, y: number, color: number) => {
+      if (reach[type]! > 0) this.scene.disc(x, y, reach[type]!, (color & 0xffffff) | HALO);
+    };
+    for (let i = 0; i < frame.id.length; i++) halo(frame.species[i]!, frame.x[i]!, frame.y[i]!, speciesColor(frame.species[i]!));
+    for (let f = 0; f < frame.foodX.length; f++) halo(layout.species.length + frame.foodKind[f]!, frame.foodX[f]!, frame.foodY[f]!, foods[frame.foodKind[f]!]!);
   }
 
   private prepareChosen(source: Source, frame: Frame, at: number): void {
@@ -120,5 +136,7 @@ export class Arena {
       if (related) this.scene.disc(frame.x[i]!, frame.y[i]!, radius(i) * 1.35, kin, 0, 2, 0.14);
     }
     this.scene.disc(frame.x[at]!, frame.y[at]!, radius(at) * 1.6, mark, 0, 2, 0.16);
+    if (source.layout.species[frame.species[at]!]!.smells.length === 0) return;
+    for (const [x, y] of noses(source.layout, frame, at)) this.scene.disc(x, y, 2, mark);
   }
 }

@@ -35,6 +35,7 @@ export function table(rows: [string, Child][]): HTMLTableElement {
 /** A number as a person reads it. */
 export function show(value: number | undefined, digits = 2): string {
   if (value === undefined || Number.isNaN(value)) return "–";
+  if (value === 0) return "0"; // also for -0
   if (Number.isInteger(value)) return value.toLocaleString("en-US");
   return value.toLocaleString("en-US", { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
 }

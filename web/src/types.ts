@@ -13,7 +13,10 @@ export interface Species {
   mouth_degrees: number;
   rays: { count: number; spread_degrees: number; length: number };
   sees: number[]; // types, by channel
+  noses: { count: number; degrees: number; decay: number };
+  smells: number[]; // types, by channel
   genes: number[]; // of the layout's genes, in the order of the genome
+  reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // what meals tell of it, and the rest
 }
 
 export interface Layout {

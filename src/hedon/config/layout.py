@@ -80,6 +80,11 @@ class RewardTerm:
     second_gene: str
     coef: float
 
+    @property
+    def name(self) -> str:
+        """What is paid: `normal`, `action`, `see_predator`, or `relief`."""
+        return "relief" if self.input == "relief" else self.gene.removeprefix("w_")
+
 
 @dataclass(frozen=True, slots=True)
 class SpeciesLayout:
@@ -167,7 +172,7 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     layout, memory = layouts(config)[name], config.agents[name].reward.memory
     inner = inner_states(config, config.agents[name])[1:]
     states = (column for state in inner for column in (f"{state}_before", state))
-    inputs = ("relief" if term.input == "relief" else term.gene.removeprefix("w_") for term in layout.terms)
+    inputs = (term.name for term in layout.terms)
     own = "linear" if use == "reward" else "chance"
     return (*inputs, *layout.gene_names, *RULE_INPUTS, *states, own, *(f"memory_{i + 1}" for i in range(memory)))
 

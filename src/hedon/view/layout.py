@@ -17,8 +17,9 @@ def describe(config: Config) -> dict[str, Any]:
 
     Returns:
         `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of the heading), rays (count,
-        spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel) and genes
-        (indices into `genes`, in genome order);
+        spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel), noses (count,
+        degrees between the heading and each of two, decay [1/u] of smell with distance), smells (indices into `types`,
+        by channel), genes (indices into `genes`, in genome order) and reward (see `_reward`);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
         `genes`: of all species, each once: name, role ("reward" or "neutral") and input (what it rewards, "" for none);
@@ -63,7 +64,30 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
             "length": species.sensor.ray_length,
         },
         "sees": [every.index(seen) for seen in layout.sees],
+        "noses": {
+            "count": species.sensor.noses,
+            "degrees": species.sensor.nose_angle,
+            "decay": species.sensor.smell_decay,
+        },
+        "smells": [every.index(smelled) for smelled in layout.smells],
         "genes": [columns.index(gene) for gene in layout.gene_names],
+        "reward": _reward(species, layout, columns),
+    }
+
+
+def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, ...]) -> dict[str, Any]:
+    """What a life's reward is made of, as far as its meals and its genes tell.
+
+    Returns:
+        `meals`: the terms of which a life has had meals · coef · gene, each with meal (index into the `meals` of the
+        layout), gene (index into its `genes`) and coef; `rest`: the names of all other terms.
+    """
+    told = species.reward.family == "linear" and not species.reward.rule
+    terms = () if species.reward.rule else layout.terms
+    meals = [term for term in terms if told and term.input == "food"]
+    return {
+        "meals": [{"meal": term.index, "gene": columns.index(term.gene), "coef": term.coef} for term in meals],
+        "rest": [term.name for term in terms if term not in meals],
     }
 
 

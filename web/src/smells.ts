@@ -1,0 +1,27 @@
+// What the noses of one agent smell, from positions alone.
+import type { Frame, Layout, Place } from "./types";
+
+/** Where the noses of agent `i` of a frame are: one ahead, or two, the right one first. */
+export function noses(layout: Layout, frame: Frame, i: number): Place[] {
+  const own = layout.species[frame.species[i]!]!;
+  const turns = own.noses.count === 1 ? [0] : [-own.noses.degrees, own.noses.degrees];
+  return turns.map((turn) => {
+    const angle = frame.angle[i]! + (turn * Math.PI) / 180;
+    return [frame.x[i]! - own.radius * Math.sin(angle), frame.y[i]! + own.radius * Math.cos(angle)];
+  });
+}
+
+/** What each nose of agent `i` smells of each of its channels: what all sources add, at most 1. */
+export function smell(layout: Layout, frame: Frame, i: number): number[][] {
+  const own = layout.species[frame.species[i]!]!;
+  return noses(layout, frame, i).map(([x, y]) => {
+    const sums = new Array<number>(own.smells.length).fill(0);
+    const add = (type: number, sx: number, sy: number) => {
+      const channel = own.smells.indexOf(type);
+      if (channel >= 0) sums[channel]! += Math.exp(-own.noses.decay * Math.hypot(sx - x, sy - y));
+    };
+    for (let j = 0; j < frame.id.length; j++) if (j !== i) add(frame.species[j]!, frame.x[j]!, frame.y[j]!);
+    for (let f = 0; f < frame.foodX.length; f++) add(layout.species.length + frame.foodKind[f]!, frame.foodX[f]!, frame.foodY[f]!);
+    return sums.map((sum) => Math.min(sum, 1));
+  });
+}
