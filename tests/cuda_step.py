@@ -72,9 +72,9 @@ def count(program: Path, preset: str) -> dict[str, float]:
     found = {"alive": float(first.split()[1]), **dict.fromkeys(PHASES.values(), 0.0)}
     for line in lines:
         address, *numbers = line.split()
-        _, most, second, _ = map(float, numbers)
+        _, way, most, second, _ = map(float, numbers)
         if function := function_of(program, address):
-            found[PHASES[function, second < ALONE * most]] += most
+            found[PHASES[function, second < ALONE * most]] += way
     return {name: round(value) for name, value in found.items()}
 
 

@@ -4,12 +4,13 @@
 ///     step_accesses WARM STEPS FILE
 ///
 /// The world runs WARM steps on the processor, then STEPS in the emulation. Between two barriers, a device waits for
-/// the thread with the most accesses. A line for each barrier of the code: its address, and of the work before it, per
-/// step, how often it came, the accesses of the thread with the most, of the thread with the second most, and of all
-/// threads.
+/// the thread with the longest way: its own accesses, where at each barrier, ballot or read of its tile it is set back
+/// to the longest way of the tile. A line for each barrier of the code: its address, and of the work before it, per
+/// step, how often it came, the longest way, and the accesses of the thread with the most, of the thread with the
+/// second most, and of all threads.
 ///
 /// The emulation is compiled for the thread sanitizer, whose functions, called at each access, are those below; and the
-/// linker sends calls of the barrier through `__wrap_…`. `tests/cuda_step.py` builds all of it.
+/// linker sends calls of what waits through `__wrap_…`. `tests/cuda_step.py` builds all of it.
 #include <algorithm>
 #include <map>
 
@@ -20,26 +21,41 @@
 namespace {
 
 struct Work {
-  int64_t calls, most, second, all;
+  int64_t calls, way, most, second, all;
 };
 
 constexpr int MOST_THREADS = 1024;
 bool counting = false;
 int arrived = 0;
-int64_t touched[MOST_THREADS];
+int arrived_of_tile[MOST_THREADS / hedon::TILE];
+int64_t way[MOST_THREADS];      ///< of each thread since the block's last barrier
+int64_t touched[MOST_THREADS];  ///< by itself
 std::map<const void*, Work> before_barrier;
 
 void touch() {
-  if (counting) ++touched[hedon::thread_rank()];
+  if (!counting) return;
+  ++way[hedon::thread_rank()];
+  ++touched[hedon::thread_rank()];
 }
 
 void close(Work& work, int threads) {
   std::sort(touched, touched + threads);
   work.calls += 1;
+  work.way += *std::max_element(way, way + threads);
   work.most += touched[threads - 1];
   work.second += touched[threads - 2];
   for (int i = 0; i < threads; ++i) work.all += touched[i];
+  std::fill_n(way, threads, 0);
   std::fill_n(touched, threads, 0);
+}
+
+/// All threads of a tile wait for the one with the longest way.
+void meet_in_tile() {
+  const int tile = hedon::thread_rank() / hedon::TILE;
+  if (!counting || ++arrived_of_tile[tile] < hedon::TILE) return;
+  arrived_of_tile[tile] = 0;
+  int64_t* const first = way + tile * hedon::TILE;
+  std::fill_n(first, hedon::TILE, *std::max_element(first, first + hedon::TILE));
 }
 
 }  // namespace
@@ -66,6 +82,24 @@ void __wrap__ZN5hedon13block_barrierEv() {
     close(before_barrier[__builtin_return_address(0)], hedon::thread_count());
   }
   __real__ZN5hedon13block_barrierEv();
+}
+
+void __real__ZN5hedon12tile_barrierEv();
+void __wrap__ZN5hedon12tile_barrierEv() {
+  meet_in_tile();
+  __real__ZN5hedon12tile_barrierEv();
+}
+
+uint32_t __real__ZN5hedon11tile_ballotEb(bool holds);
+uint32_t __wrap__ZN5hedon11tile_ballotEb(bool holds) {
+  meet_in_tile();
+  return __real__ZN5hedon11tile_ballotEb(holds);
+}
+
+float __real__ZN5hedon9tile_readEfi(float value, int lane);
+float __wrap__ZN5hedon9tile_readEfi(float value, int lane) {
+  meet_in_tile();
+  return __real__ZN5hedon9tile_readEfi(value, lane);
 }
 }
 
@@ -94,8 +128,8 @@ int main(int count, char** arguments) {
   printf("alive %d\n", there->numbers(0).head().living_count);
   const double per = 1.0 / static_cast<double>(steps);
   for (const auto& [address, work] : before_barrier)
-    printf("%p %.3f %.1f %.1f %.1f\n", address, static_cast<double>(work.calls) * per,
-           static_cast<double>(work.most) * per, static_cast<double>(work.second) * per,
-           static_cast<double>(work.all) * per);
+    printf("%p %.3f %.1f %.1f %.1f %.1f\n", address, static_cast<double>(work.calls) * per,
+           static_cast<double>(work.way) * per, static_cast<double>(work.most) * per,
+           static_cast<double>(work.second) * per, static_cast<double>(work.all) * per);
   return 0;
 }
