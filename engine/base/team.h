@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/crew.h"
 #include "base/platform.h"
 
 namespace hedon {
@@ -54,6 +55,12 @@ class Team {
     const int last = static_cast<int>(static_cast<int64_t>(count) * (rank_ + 1) / size_);
     for (int i = first; i < last; ++i) body(i);
     barrier();
+  }
+
+  /// Calls body(crew, i) for i in [0, count), like `for_each`: each member is a crew of its own.
+  template <class Body>
+  void for_each_by_crew(int count, Body&& body) {
+    for_each(count, [&](int i) { body(Alone{}, i); });
   }
 
   /// The same, but each member runs through its block backward.

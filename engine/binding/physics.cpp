@@ -38,7 +38,8 @@ struct Recorder {
   bool record = true;
 
   void on_start(int32_t slot) { rows[static_cast<size_t>(slot)].clear(); }
-  void on_contact(PairKind kind, int32_t body, int32_t other, Vec2 direction, float angle, uint8_t, uint8_t& mark) {
+  void on_contact(const Alone&, PairKind kind, int32_t body, int32_t other, Vec2 direction, float angle, uint8_t,
+                  uint8_t& mark) {
     if (mark < 255) ++mark;
     if (record) {
       rows[static_cast<size_t>(body)].push_back(

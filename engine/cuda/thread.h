@@ -30,6 +30,11 @@ HEDON_INLINE uint32_t tile_ballot(bool holds) {
 /// The value that another thread of the tile gives.
 HEDON_INLINE float tile_read(float value, int lane) { return __shfl_sync(tile_mask(), value, lane, TILE); }
 
+/// Sets bits of a word in which other threads may set bits at the same time.
+HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) {
+  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
+}
+
 /// The block's shared memory, aligned to 16 bytes; its size is given at the launch. Filled by nobody.
 HEDON_INLINE float* shared_memory() {
   extern __shared__ float4 memory[];
@@ -45,6 +50,7 @@ HEDON_INLINE void block_barrier() {}
 HEDON_INLINE void tile_barrier() {}
 HEDON_INLINE uint32_t tile_ballot(bool holds) { return holds ? 1u : 0u; }
 HEDON_INLINE float tile_read(float value, int) { return value; }
+HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) { word |= bits; }
 HEDON_INLINE float* shared_memory() { return nullptr; }
 
 #else
@@ -55,6 +61,7 @@ void block_barrier();
 void tile_barrier();
 uint32_t tile_ballot(bool holds);
 float tile_read(float value, int lane);
+HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) { __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED); }
 float* shared_memory();
 
 #endif

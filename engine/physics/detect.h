@@ -13,6 +13,7 @@ inline constexpr uint8_t FIRST = 1, SECOND = 2;
 
 /// The indices and pairs of one batch.
 struct BatchRange {
+  int32_t number;
   int32_t first_index, last_index;
   int32_t first_body_pair, last_body_pair;
   int32_t first_circle_pair, last_circle_pair;
@@ -22,7 +23,8 @@ struct BatchRange {
 HEDON_FN BatchRange batch_range(const NeighborList& list, int32_t batch) {
   const NeighborHead& head = list.head[0];
   const int32_t first = head.batch_start[batch], last = head.batch_start[batch + 1];
-  return {first,
+  return {batch,
+          first,
           last,
           list.bodies.start[first],
           list.bodies.start[last],
@@ -74,9 +76,12 @@ struct MixedBodies {
   HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
 };
 
-/// The input of a solver: one batch in one step.
-template <class Bodies>
+/// The input of a solver: one batch in one step, and who works on it.
+template <class Bodies, class Workers>
 struct Batch {
+  using Crew = Workers;
+  using Contact = typename Bodies::Contact;
+  Crew crew;
   const PhysicsConfig& config;
   const Bodies& bodies;
   const BodyTable& table;
@@ -91,9 +96,17 @@ struct Batch {
   }
 
   /// The contacts of the batch. Those with circles and then those with walls share an array.
-  HEDON_FN typename Bodies::Contact* body_contacts() const { return Bodies::contacts(scratch) + range.first_body_pair; }
+  HEDON_FN Contact* body_contacts() const { return Bodies::contacts(scratch) + range.first_body_pair; }
   HEDON_FN StaticContact* static_contacts() const {
     return scratch.static_contacts.data + range.first_circle_pair + range.first_wall_pair;
+  }
+  /// Where the contacts of each color begin.
+  HEDON_FN int32_t* color_start() const { return scratch.color_start.data + range.number * (COLORS + 1); }
+
+  /// Calls body(index) for each body.
+  template <class Body>
+  HEDON_FN void each_body(Body&& body) const {
+    crew.each(range.first_index, range.last_index, body);
   }
 };
 
@@ -115,25 +128,40 @@ HEDON_FN Direction direction_of(Vec2 between) {
   return {between.x * inverse, between.y * inverse, distance};
 }
 
-/// Counts, and whether any contact approaches so fast that it may bounce.
-struct FoundContacts {
+/// The contacts of a batch with circles, and then those with walls. Within each part, those of one body follow one
+/// another, and act in this order.
+struct StaticContacts {
+  StaticContact* contact;
+  int32_t circles;  ///< how many are with circles
   int32_t count;
-  bool fast;
+  bool fast;  ///< whether any approaches so fast that it may bounce
+
+  /// Calls body(contact) for each.
+  template <class Crew, class Body>
+  HEDON_FN void each(const Crew& crew, Body&& body) const {
+    const auto follows = [&](int32_t i) { return contact[i - 1].body == contact[i].body; };
+    const auto one = [&](int32_t i) { body(contact[i]); };
+    crew.each_in_runs(0, circles, follows, one);
+    crew.each_in_runs(circles, count, follows, one);
+  }
 };
 
 /// Reports two bodies that touch to the visitor, once for each.
-template <class Bodies, class Visitor>
-HEDON_FN void tell_bodies(const Batch<Bodies>& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
+template <class Bodies, class Crew, class Visitor>
+HEDON_FN void tell_bodies(const Batch<Bodies, Crew>& batch, int32_t pair, Vec2 normal, Visitor& visitor) {
   const NeighborList& list = batch.state.neighbors;
   const int32_t first = list.bodies.first[pair], second = list.bodies.second[pair];
   const int32_t a = list.slot[first], b = list.slot[second];
-  visitor.on_contact(PairKind::body, a, b, normal, batch.scratch.angle[first], FIRST, list.bodies.mark[pair]);
-  visitor.on_contact(PairKind::body, b, a, -normal, batch.scratch.angle[second], SECOND, list.bodies.mark[pair]);
+  visitor.on_contact(batch.crew, PairKind::body, a, b, normal, batch.scratch.angle[first], FIRST,
+                     list.bodies.mark[pair]);
+  visitor.on_contact(batch.crew, PairKind::body, b, a, -normal, batch.scratch.angle[second], SECOND,
+                     list.bodies.mark[pair]);
 }
 
 /// Fills in the contact of a pair of bodies, with the stored impulses of the pair.
-template <class Bodies>
-HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direction& normal, BodyContact& contact) {
+template <class Bodies, class Crew>
+HEDON_FN void fill_contact(const Batch<Bodies, Crew>& batch, int32_t pair, const Direction& normal,
+                           BodyContact& contact) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
   contact.first = pairs.first[pair];
@@ -149,8 +177,9 @@ HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direc
   contact.pair = pair;
 }
 
-template <class Bodies>
-HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direction& normal, MixedContact& contact) {
+template <class Bodies, class Crew>
+HEDON_FN void fill_contact(const Batch<Bodies, Crew>& batch, int32_t pair, const Direction& normal,
+                           MixedContact& contact) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
   const Bodies& bodies = batch.bodies;
@@ -174,9 +203,9 @@ HEDON_FN void fill_contact(const Batch<Bodies>& batch, int32_t pair, const Direc
 
 /// Fills in the contact of a body with a static object, whose nearest point is `point`. The centers, or center and
 /// wall, just touch at a distance of `touch` [u].
-template <class Bodies>
-HEDON_FN void fill_contact(const Batch<Bodies>& batch, const PairList& pairs, const PairScratch& work, int32_t pair,
-                           Vec2 point, const Direction& normal, float touch, const Material& material,
+template <class Bodies, class Crew>
+HEDON_FN void fill_contact(const Batch<Bodies, Crew>& batch, const PairList& pairs, const PairScratch& work,
+                           int32_t pair, Vec2 point, const Direction& normal, float touch, const Material& material,
                            StaticContact& contact) {
   contact.body = pairs.first[pair];
   contact.anchor_x = point.x - touch * normal.x;
@@ -194,68 +223,85 @@ HEDON_FN void fill_contact(const Batch<Bodies>& batch, const PairList& pairs, co
   contact.pair = pair;
 }
 
-/// Finds the contacts of a batch with circles or walls. A pair that the solver does not act on loses its impulses.
+/// Finds the contacts of a batch with circles or walls; returns how many there are. A pair that the solver does not act
+/// on loses its impulses.
 /// nearest(other, center)   the relevant point of the circle or wall
 /// touch_of(body)           distance at which they just touch [u]
 /// reach_of(touch)          squared distances below which they touch, and below which the solver acts on them [u²]
-template <class Bodies, class Visitor, class Touch, class ReachOf, class Nearest>
-HEDON_FN FoundContacts find_static_contacts(PairKind kind, const Batch<Bodies>& batch, const PairList& pairs,
-                                            const PairScratch& work, int32_t first_pair, int32_t last_pair,
-                                            Touch&& touch_of, ReachOf&& reach_of, StaticContact* contacts,
-                                            Visitor& visitor, Nearest&& nearest) {
+/// fast                     becomes true if any contact approaches so fast that it may bounce
+template <class Bodies, class Crew, class Visitor, class Touch, class ReachOf, class Nearest>
+HEDON_FN int32_t find_contacts(PairKind kind, const Batch<Bodies, Crew>& batch, const PairList& pairs,
+                               const PairScratch& work, int32_t first_pair, int32_t last_pair, Touch&& touch_of,
+                               ReachOf&& reach_of, StaticContact* contacts, bool& fast, Visitor& visitor,
+                               Nearest&& nearest) {
   const PhysicsScratch& scratch = batch.scratch;
   const Vec2* position = scratch.position.data;
-  int32_t count = 0;
-  bool fast = false;
-  for (int32_t pair = first_pair; pair < last_pair; ++pair) {
-    const int32_t body = pairs.first[pair], other = pairs.second[pair];
-    const float touch = touch_of(body);
-    const Reach reach = reach_of(touch);
-    const Vec2 point = nearest(other, position[body]);
-    const Vec2 between = point - position[body];
+  const auto tell = [&](int32_t pair, const Direction& normal) {
+    const int32_t body = pairs.first[pair];
+    visitor.on_contact(batch.crew, kind, batch.state.neighbors.slot[body], pairs.second[pair], Vec2{normal.x, normal.y},
+                       scratch.angle[body], FIRST, pairs.mark[pair]);
+  };
+  const auto acts = [&](int32_t pair) {
+    const int32_t body = pairs.first[pair];
+    const Reach reach = reach_of(touch_of(body));
+    const Vec2 between = nearest(pairs.second[pair], position[body]) - position[body];
     const float squared = squared_length(between);
-    if (!(squared < reach.solid)) {
-      work.normal[pair] = 0.0f;
-      work.tangent[pair] = 0.0f;
-      if (!(squared < reach.touch)) continue;
-    }
-    const Direction normal = direction_of(between);
-    if (squared < reach.solid) {
-      StaticContact& contact = contacts[count++];
-      const bool obstacle = kind == PairKind::wall && other >= batch.table.first_obstacle;
-      const Material material = obstacle ? batch.table.obstacle : Material{batch.c.friction, batch.c.restitution};
-      fill_contact(batch, pairs, work, pair, point, normal, touch, material, contact);
-      fast |= contact.approach <= -batch.c.restitution_threshold;
-    }
-    visitor.on_contact(kind, batch.state.neighbors.slot[body], other, Vec2{normal.x, normal.y}, scratch.angle[body],
-                       FIRST, pairs.mark[pair]);
-  }
-  return {count, fast};
+    if (squared < reach.solid) return true;
+    work.normal[pair] = 0.0f;
+    work.tangent[pair] = 0.0f;
+    if (squared < reach.touch) tell(pair, direction_of(between));
+    return false;
+  };
+  const int32_t count =
+      batch.crew.select(first_pair, last_pair, acts, [&](int32_t at, int32_t pair) { contacts[at].pair = pair; });
+  batch.crew.each(0, count, [&](int32_t i) {
+    const int32_t pair = contacts[i].pair, body = pairs.first[pair], other = pairs.second[pair];
+    const Vec2 point = nearest(other, position[body]);
+    const Direction normal = direction_of(point - position[body]);
+    const bool obstacle = kind == PairKind::wall && other >= batch.table.first_obstacle;
+    const Material material = obstacle ? batch.table.obstacle : Material{batch.c.friction, batch.c.restitution};
+    fill_contact(batch, pairs, work, pair, point, normal, touch_of(body), material, contacts[i]);
+    fast |= contacts[i].approach <= -batch.c.restitution_threshold;
+    tell(pair, normal);
+  });
+  return count;
 }
 
-/// Finds the contacts of a batch with circles.
-template <class Bodies, class Visitor, class ReachOf>
-HEDON_FN FoundContacts find_circle_contacts(const Batch<Bodies>& batch, ReachOf&& reach_of, StaticContact* contacts,
-                                            Visitor& visitor) {
+/// Finds the contacts of a batch with circles and walls. `nearest(wall, center)` gives the relevant point of a wall.
+template <class Bodies, class Crew, class Visitor, class ReachOf, class Nearest>
+HEDON_FN StaticContacts find_static_contacts(const Batch<Bodies, Crew>& batch, ReachOf&& reach_of, Visitor& visitor,
+                                             Nearest&& nearest) {
+  const NeighborList& list = batch.state.neighbors;
   const StaticCircles& circles = batch.state.circles;
+  const BatchRange& range = batch.range;
   const auto center = [&](int32_t circle, Vec2) { return Vec2{circles.x[circle], circles.y[circle]}; };
-  return find_static_contacts(
-      PairKind::circle, batch, batch.state.neighbors.circles, batch.scratch.circles, batch.range.first_circle_pair,
-      batch.range.last_circle_pair,
-      [bodies = batch.bodies, radius = batch.table.circle_radius](int32_t body) {
-        return bodies.radius(body) + radius;
-      },
-      reach_of, contacts, visitor, center);
+  const auto circle_touch = [bodies = batch.bodies, radius = batch.table.circle_radius](int32_t body) {
+    return bodies.radius(body) + radius;
+  };
+  const auto wall_touch = [bodies = batch.bodies](int32_t body) { return bodies.radius(body); };
+  StaticContact* contacts = batch.static_contacts();
+  bool fast = false;
+  const int32_t on_circles =
+      find_contacts(PairKind::circle, batch, list.circles, batch.scratch.circles, range.first_circle_pair,
+                    range.last_circle_pair, circle_touch, reach_of, contacts, fast, visitor, center);
+  const int32_t on_walls =
+      find_contacts(PairKind::wall, batch, list.walls, batch.scratch.walls, range.first_wall_pair, range.last_wall_pair,
+                    wall_touch, reach_of, contacts + on_circles, fast, visitor, nearest);
+  return {contacts, on_circles, on_circles + on_walls, batch.crew.any(fast)};
 }
 
-/// Finds the contacts of a batch with walls. `nearest(wall, center)` gives the relevant point of the wall.
-template <class Bodies, class Visitor, class ReachOf, class Nearest>
-HEDON_FN FoundContacts find_wall_contacts(const Batch<Bodies>& batch, ReachOf&& reach_of, StaticContact* contacts,
-                                          Visitor& visitor, Nearest&& nearest) {
-  return find_static_contacts(
-      PairKind::wall, batch, batch.state.neighbors.walls, batch.scratch.walls, batch.range.first_wall_pair,
-      batch.range.last_wall_pair, [bodies = batch.bodies](int32_t body) { return bodies.radius(body); }, reach_of,
-      contacts, visitor, nearest);
+/// Keeps the impulses of contacts for the next substep.
+template <class Bodies, class Crew, class Contact>
+HEDON_FN void keep_impulses(const Batch<Bodies, Crew>& batch, const Contact* contacts, int32_t count) {
+  batch.crew.each(0, count, [&](int32_t i) { keep_impulse(contacts[i], batch.scratch.bodies); });
+}
+
+template <class Bodies, class Crew>
+HEDON_FN void keep_impulses(const Batch<Bodies, Crew>& batch, const StaticContacts& found) {
+  batch.crew.each(0, found.count, [&](int32_t i) {
+    const StaticContact& contact = found.contact[i];
+    keep_impulse(contact, i < found.circles ? batch.scratch.circles : batch.scratch.walls);
+  });
 }
 
 }  // namespace hedon

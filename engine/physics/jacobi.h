@@ -45,88 +45,110 @@ HEDON_FN Vec2 ring_point(const PhysicsState& state, int32_t wall, Vec2 center) {
   return nearest_on_segment(a, b, center);
 }
 
-/// Finds the contacts of a batch between bodies, in the order of pairs. A pair that the solver does not act on loses
-/// its impulses.
-template <class Bodies, class Visitor>
-HEDON_FN FoundContacts find_in_order(const Batch<Bodies>& batch, Visitor& visitor) {
+/// The contacts of a batch between bodies, in the order of pairs.
+template <class Contact>
+struct OrderedContacts {
+  Contact* contact;
+  int32_t count;
+  bool fast;  ///< whether any approaches so fast that it may bounce
+
+  /// Calls body(contact) for each, one after another.
+  template <class Crew, class Body>
+  HEDON_FN void each(const Crew& crew, Body&& body) const {
+    crew.once([&] {
+      for (int32_t i = 0; i < count; ++i) body(contact[i]);
+    });
+  }
+};
+
+/// Finds the contacts of a batch between bodies. A pair that the solver does not act on loses its impulses.
+template <class Bodies, class Crew, class Visitor>
+HEDON_FN OrderedContacts<typename Bodies::Contact> find_in_order(const Batch<Bodies, Crew>& batch, Visitor& visitor) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PairScratch& work = batch.scratch.bodies;
   const BatchRange& range = batch.range;
   const int32_t* first = pairs.first.data;
   const int32_t* second = pairs.second.data;
   const Vec2* position = batch.scratch.position.data;
-  const auto reach_of = [&](int32_t pair) { return jacobi_reach(batch.body_touch(first[pair], second[pair])); };
-  int32_t* active = batch.scratch.active.data + range.first_body_pair;
-  int32_t touching = 0;
-  for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
-    const float squared = squared_length(position[second[pair]] - position[first[pair]]);
-    const Reach reach = reach_of(pair);
+  const auto acts = [&](int32_t pair) {
+    const Vec2 between = position[second[pair]] - position[first[pair]];
+    const float squared = squared_length(between);
+    const Reach reach = jacobi_reach(batch.body_touch(first[pair], second[pair]));
     const bool solid = squared < reach.solid;
-    active[touching] = pair;
-    touching += squared < reach.touch;
     work.normal[pair] = solid ? work.normal[pair] : 0.0f;
     work.tangent[pair] = solid ? work.tangent[pair] : 0.0f;
-  }
+    if (!solid && squared < reach.touch) {
+      const Direction normal = direction_of(between);
+      tell_bodies(batch, pair, {normal.x, normal.y}, visitor);
+    }
+    return solid;
+  };
+  int32_t* active = batch.scratch.active.data + range.first_body_pair;
+  const int32_t count = batch.crew.select(range.first_body_pair, range.last_body_pair, acts,
+                                          [&](int32_t at, int32_t pair) { active[at] = pair; });
   auto* contacts = batch.body_contacts();
-  int32_t count = 0;
   bool fast = false;
-  for (int32_t i = 0; i < touching; ++i) {
+  batch.crew.each(0, count, [&](int32_t i) {
     const int32_t pair = active[i];
-    const Vec2 between = position[second[pair]] - position[first[pair]];
-    const Direction normal = direction_of(between);
+    const Direction normal = direction_of(position[second[pair]] - position[first[pair]]);
+    fill_contact(batch, pair, normal, contacts[i]);
+    fast |= contacts[i].approach <= -batch.c.restitution_threshold;
     tell_bodies(batch, pair, {normal.x, normal.y}, visitor);
-    if (!(squared_length(between) < reach_of(pair).solid)) continue;
-    auto& contact = contacts[count++];
-    fill_contact(batch, pair, normal, contact);
-    fast |= contact.approach <= -batch.c.restitution_threshold;
-  }
-  return {count, fast};
+  });
+  return {contacts, count, batch.crew.any(fast)};
 }
 
 /// The contacts of a batch in one substep.
-template <class Bodies>
+template <class Contact>
 struct JacobiContacts {
-  typename Bodies::Contact* bodies;
-  StaticContact* statics;
-  int32_t body_count, static_count;
+  OrderedContacts<Contact> bodies;
+  StaticContacts statics;
 };
+
+/// Adds to each body what the contacts of a pass have changed, and forgets it.
+template <class Bodies, class Crew, class Add>
+HEDON_FN void add_changes(const Batch<Bodies, Crew>& batch, Add&& add) {
+  batch.each_body([&](int32_t index) {
+    Motion& change = batch.scratch.change[index];
+    add(index, change);
+    change = {};
+  });
+}
 
 /// One Jacobi pass. `impulse(contact, velocity)` gives the change of the impulses of a contact whose relative
 /// velocity is the one at the beginning of the pass.
-template <class Bodies, class Impulse>
-HEDON_FN void jacobi_pass(const Batch<Bodies>& batch, const JacobiContacts<Bodies>& found, Impulse&& impulse) {
+template <class Bodies, class Crew, class Impulse>
+HEDON_FN void jacobi_pass(const Batch<Bodies, Crew>& batch, const JacobiContacts<typename Bodies::Contact>& found,
+                          Impulse&& impulse) {
   Motion* motion = batch.scratch.motion.data;
   Motion* change = batch.scratch.change.data;
-  for (int32_t i = 0; i < found.body_count; ++i) {
-    auto& contact = found.bodies[i];
+  found.bodies.each(batch.crew, [&](auto& contact) {
     const int32_t a = contact.first, b = contact.second;
     const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[a], motion[b]));
     apply(contact, added.normal, added.tangent, change[a], change[b]);
-  }
-  for (int32_t i = 0; i < found.static_count; ++i) {
-    StaticContact& contact = found.statics[i];
+  });
+  found.statics.each(batch.crew, [&](StaticContact& contact) {
     const ContactVelocity added = impulse(contact, relative_velocity(contact, motion[contact.body]));
     apply(contact, added.normal, added.tangent, change[contact.body]);
-  }
-  for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
-    motion[index].x += change[index].x;
-    motion[index].y += change[index].y;
-    motion[index].angular += change[index].angular;
-    change[index] = {};
-  }
+  });
+  add_changes(batch, [&](int32_t index, const Motion& added) {
+    motion[index].x += added.x;
+    motion[index].y += added.y;
+    motion[index].angular += added.angular;
+  });
 }
 
 /// How far two things overlap [u].
-template <class Bodies>
-HEDON_FN float overlap(const Batch<Bodies>& batch, const BodyContact& contact) {
+template <class Bodies, class Crew>
+HEDON_FN float overlap(const Batch<Bodies, Crew>& batch, const BodyContact& contact) {
   return 2.0f * (batch.bodies.radius(contact.first) - contact.arm);
 }
-template <class Bodies>
-HEDON_FN float overlap(const Batch<Bodies>& batch, const MixedContact& contact) {
+template <class Bodies, class Crew>
+HEDON_FN float overlap(const Batch<Bodies, Crew>& batch, const MixedContact& contact) {
   return batch.body_touch(contact.first, contact.second) - (contact.arm_first + contact.arm_second);
 }
-template <class Bodies>
-HEDON_FN float overlap(const Batch<Bodies>& batch, const StaticContact& contact) {
+template <class Bodies, class Crew>
+HEDON_FN float overlap(const Batch<Bodies, Crew>& batch, const StaticContact& contact) {
   return 2.0f * (batch.bodies.radius(contact.body) - contact.arm);
 }
 
@@ -134,8 +156,8 @@ HEDON_FN float overlap(const Batch<Bodies>& batch, const StaticContact& contact)
 /// the two are to separate; the normal impulse of the pass before limits friction.
 /// kept   share of its impulse that a contact starts from: 1, but 0 in the first pass. There it uses velocities as if
 ///        its stored impulse were applied to the bodies. It never is, so this cancels it.
-template <class Bodies, class Contact>
-HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies>& batch, ContactVelocity velocity,
+template <class Bodies, class Crew, class Contact>
+HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies, Crew>& batch, ContactVelocity velocity,
                                       float kept) {
   const SolverConstants& c = batch.c;
   const float depth = overlap(batch, contact);
@@ -159,59 +181,52 @@ HEDON_FN ContactVelocity bounce_once(const Contact& contact, const SolverConstan
 }
 
 /// One Jacobi pass of position correction, before the bodies move, along the normals of the contacts.
-template <class Bodies>
-HEDON_FN void correct_positions_at_once(const Batch<Bodies>& batch, const JacobiContacts<Bodies>& found) {
+template <class Bodies, class Crew>
+HEDON_FN void correct_positions_at_once(const Batch<Bodies, Crew>& batch,
+                                        const JacobiContacts<typename Bodies::Contact>& found) {
   Vec2* position = batch.scratch.position.data;
   Motion* change = batch.scratch.change.data;
-  for (int32_t i = 0; i < found.body_count; ++i) {
-    const auto& contact = found.bodies[i];
+  found.bodies.each(batch.crew, [&](const auto& contact) {
     const Vec2 normal{contact.normal_x, contact.normal_y};
     const float touch = batch.body_touch(contact.first, contact.second);
     const float separation = dot(position[contact.second] - position[contact.first], normal) - touch;
     apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.first],
           change[contact.second]);
-  }
-  for (int32_t i = 0; i < found.static_count; ++i) {
-    const StaticContact& contact = found.statics[i];
+  });
+  found.statics.each(batch.crew, [&](const StaticContact& contact) {
     const Vec2 normal{contact.normal_x, contact.normal_y}, anchor{contact.anchor_x, contact.anchor_y};
     const float separation = dot(anchor - position[contact.body], normal);
     apply(contact, -normal_mass(contact) * correction(batch.c, separation), 0.0f, change[contact.body]);
-  }
-  for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
-    position[index].x += change[index].x;
-    position[index].y += change[index].y;
-    change[index] = {};
-  }
+  });
+  add_changes(batch, [&](int32_t index, const Motion& added) {
+    position[index].x += added.x;
+    position[index].y += added.y;
+  });
 }
 
 /// The solver by name `jacobi`, for `try_batch`.
 struct JacobiSolver {
   /// Damps and limits velocities, finds contacts, solves, bounces, corrects overlaps, and moves.
-  template <class Bodies, class Visitor>
-  HEDON_FN static void substep(const Batch<Bodies>& batch, Visitor& visitor) {
+  template <class Bodies, class Crew, class Visitor>
+  HEDON_FN static void substep(const Batch<Bodies, Crew>& batch, Visitor& visitor) {
     damp(batch);
     const auto nearest = [&](int32_t wall, Vec2 center) { return ring_point(batch.state, wall, center); };
-    auto* bodies = batch.body_contacts();
-    StaticContact* statics = batch.static_contacts();
-    const FoundContacts body = find_in_order(batch, visitor);
-    const FoundContacts circle = find_circle_contacts(batch, jacobi_reach, statics, visitor);
-    StaticContact* on_walls = statics + circle.count;
-    const FoundContacts wall = find_wall_contacts(batch, jacobi_reach, on_walls, visitor, nearest);
-    const JacobiContacts<Bodies> found{bodies, statics, body.count, circle.count + wall.count};
-    if (found.body_count + found.static_count > 0) {
+    const auto bodies = find_in_order(batch, visitor);
+    const StaticContacts statics = find_static_contacts(batch, jacobi_reach, visitor, nearest);
+    const JacobiContacts<typename Bodies::Contact> found{bodies, statics};
+    if (bodies.count + statics.count > 0) {
       for (int32_t pass = 0; pass < batch.config.velocity_passes; ++pass) {
         const float kept = pass == 0 ? 0.0f : 1.0f;
         jacobi_pass(batch, found, [&](auto& contact, ContactVelocity velocity) {
           return solve_biased(contact, batch, velocity, kept);
         });
       }
-      if (body.fast || circle.fast || wall.fast) {
+      if (bodies.fast || statics.fast) {
         jacobi_pass(batch, found,
                     [&](auto& contact, ContactVelocity velocity) { return bounce_once(contact, batch.c, velocity); });
       }
-      keep_impulses(bodies, body.count, batch.scratch.bodies);
-      keep_impulses(statics, circle.count, batch.scratch.circles);
-      keep_impulses(on_walls, wall.count, batch.scratch.walls);
+      keep_impulses(batch, bodies.contact, bodies.count);
+      keep_impulses(batch, statics);
       for (int32_t pass = 0; pass < batch.config.position_passes; ++pass) correct_positions_at_once(batch, found);
     }
     move(batch);
@@ -219,33 +234,33 @@ struct JacobiSolver {
 
  private:
   /// Damps the velocities, then limits them: changes by contacts in this substep are not limited.
-  template <class Bodies>
-  HEDON_FN static void damp(const Batch<Bodies>& batch) {
+  template <class Bodies, class Crew>
+  HEDON_FN static void damp(const Batch<Bodies, Crew>& batch) {
     const SolverConstants& c = batch.c;
-    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+    batch.each_body([&](int32_t index) {
       Motion& motion = batch.scratch.motion[index];
       motion.x = clamp(motion.x * c.linear_decay, -c.max_speed, c.max_speed);
       motion.y = clamp(motion.y * c.linear_decay, -c.max_speed, c.max_speed);
       motion.angular = clamp(motion.angular * c.angular_decay, -c.max_angular_speed, c.max_angular_speed);
       batch.scratch.change[index] = {};
-    }
+    });
   }
 
-  template <class Bodies>
-  HEDON_FN static void move(const Batch<Bodies>& batch) {
+  template <class Bodies, class Crew>
+  HEDON_FN static void move(const Batch<Bodies, Crew>& batch) {
     const PhysicsScratch& scratch = batch.scratch;
-    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+    batch.each_body([&](int32_t index) {
       scratch.position[index].x += scratch.motion[index].x * batch.c.dt;
       scratch.position[index].y += scratch.motion[index].y * batch.c.dt;
       scratch.angle[index] += scratch.motion[index].angular * batch.c.dt;
       keep_inside(batch, index);
-    }
+    });
   }
 
   /// Puts a body whose center was pushed through an outer wall back onto it. A wall does not push a center that lies
   /// behind it, so the body would leave the arena for good.
-  template <class Bodies>
-  HEDON_FN static void keep_inside(const Batch<Bodies>& batch, int32_t index) {
+  template <class Bodies, class Crew>
+  HEDON_FN static void keep_inside(const Batch<Bodies, Crew>& batch, int32_t index) {
     constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
     const PairList& walls = batch.state.neighbors.walls;
     Vec2& center = batch.scratch.position[index];

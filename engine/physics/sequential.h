@@ -14,63 +14,89 @@
 
 namespace hedon {
 
-inline constexpr int COLORS = 32;
+/// The contacts of a batch between bodies, in the order of colors.
+template <class Contact>
+struct ColoredContacts {
+  Contact* contact;
+  const int32_t* color_start;
+  int32_t count;
+  bool fast;  ///< whether any approaches so fast that it may bounce
+
+  /// Calls body(contact) for each.
+  template <class Crew, class Body>
+  HEDON_FN void each(const Crew& crew, Body&& body) const {
+    crew.each_by_group(color_start, count, COLORS - 1, [&](int32_t i) { body(contact[i]); });
+  }
+};
+
+/// Gives each of the first `count` active pairs a color, in their order, and a number within it.
+/// start   becomes the first contact of each color
+HEDON_FN void give_colors(const PairList& pairs, const PhysicsScratch& scratch, const int32_t* active, int32_t* color,
+                          int32_t count, int32_t* start) {
+  uint32_t* colors = scratch.colors.data;
+  for (int32_t i = 0; i < count; ++i) {
+    uint32_t& a = colors[pairs.first[active[i]]];
+    uint32_t& b = colors[pairs.second[active[i]]];
+    // The last color takes all remaining contacts; they may share bodies, which only costs time.
+    const int taken = std::countr_zero(~(a | b) | 0x80000000u);
+    a |= 1u << taken;
+    b |= 1u << taken;
+    color[i] = start[taken]++ * COLORS + taken;
+  }
+  int32_t sum = 0, taken = 0;
+  for (; sum < count; ++taken) {
+    const int32_t size = start[taken];
+    start[taken] = sum;
+    sum += size;
+  }
+  start[taken] = count;
+}
 
 /// Finds the contacts of a batch between bodies, in the order of colors: no two of one color share a body, so that
 /// consecutive contacts do not wait for one another. Only overlapping pairs get a color, in canonical order. So the
 /// order of two contacts that share a body depends only on the contacts of their own cluster. A pair that does not
 /// overlap loses its impulses. Contacts are written from `first_body_pair` on. Each contact is reported to the visitor
 /// twice, once for each body.
-template <class Bodies, class Visitor>
-HEDON_FN FoundContacts find_in_colors(const Batch<Bodies>& batch, Visitor& visitor) {
+template <class Bodies, class Crew, class Visitor>
+HEDON_FN ColoredContacts<typename Bodies::Contact> find_in_colors(const Batch<Bodies, Crew>& batch, Visitor& visitor) {
   const PairList& pairs = batch.state.neighbors.bodies;
   const PhysicsScratch& scratch = batch.scratch;
   const BatchRange& range = batch.range;
+  const Crew& crew = batch.crew;
   const int32_t* first = pairs.first.data;
   const int32_t* second = pairs.second.data;
   float* normal_impulse = scratch.bodies.normal.data;
   float* tangent_impulse = scratch.bodies.tangent.data;
   const Vec2* position = scratch.position.data;
   const Bodies bodies = batch.bodies;
-  int32_t* active = scratch.active.data + range.first_body_pair;
-  int32_t count = 0;
-  for (int32_t pair = range.first_body_pair; pair < range.last_body_pair; ++pair) {
+  const auto touches = [&](int32_t pair) {
     const float touch = bodies.radius(first[pair]) + bodies.radius(second[pair]);
     const bool touching = squared_length(position[second[pair]] - position[first[pair]]) < touch * touch;
-    active[count] = pair;
-    count += touching;
     normal_impulse[pair] = touching ? normal_impulse[pair] : 0.0f;
     tangent_impulse[pair] = touching ? tangent_impulse[pair] : 0.0f;
-  }
-  if (count == 0) return {0, false};
-
-  uint32_t* colors = scratch.colors.data;
-  uint8_t* color = scratch.color.data + range.first_body_pair;
-  for (int32_t index = range.first_index; index < range.last_index; ++index) colors[index] = 0;
-  int32_t next[COLORS + 1] = {};
-  for (int32_t i = 0; i < count; ++i) {
-    uint32_t& a = colors[first[active[i]]];
-    uint32_t& b = colors[second[active[i]]];
-    // The last color takes all remaining contacts; they may share bodies, which only costs time.
-    const int taken = std::countr_zero(~(a | b) | 0x80000000u);
-    a |= 1u << taken;
-    b |= 1u << taken;
-    color[i] = static_cast<uint8_t>(taken);
-    ++next[taken + 1];
-  }
-  for (int taken = 0; taken < COLORS; ++taken) next[taken + 1] += next[taken];
-
+    return touching;
+  };
+  int32_t* active = scratch.active.data + range.first_body_pair;
+  const int32_t count = crew.select(range.first_body_pair, range.last_body_pair, touches,
+                                    [&](int32_t at, int32_t pair) { active[at] = pair; });
+  int32_t* start = batch.color_start();
   auto* contacts = batch.body_contacts();
+  if (count == 0) return {contacts, start, 0, false};
+
+  int32_t* color = scratch.color.data + range.first_body_pair;
+  batch.each_body([&](int32_t index) { scratch.colors[index] = 0; });
+  crew.each(0, COLORS, [&](int32_t taken) { start[taken] = 0; });
+  crew.once([&] { give_colors(pairs, scratch, active, color, count, start); });
   bool fast = false;
-  for (int32_t i = 0; i < count; ++i) {
+  crew.each(0, count, [&](int32_t i) {
     const int32_t pair = active[i];
-    auto& contact = contacts[next[color[i]]++];
+    auto& contact = contacts[start[color[i] % COLORS] + color[i] / COLORS];
     const Direction normal = direction_of(position[second[pair]] - position[first[pair]]);
     fill_contact(batch, pair, normal, contact);
     fast |= contact.approach < -batch.c.restitution_threshold;
     tell_bodies(batch, pair, {normal.x, normal.y}, visitor);
-  }
-  return {count, fast};
+  });
+  return {contacts, start, count, crew.any(fast)};
 }
 
 /// Accumulates one solution of a contact; returns by how much the impulses changed.
@@ -87,40 +113,39 @@ HEDON_FN ContactVelocity accumulate(Contact& contact, const SolverConstants& c, 
 }
 
 /// One pass of projected Gauss-Seidel over contacts between bodies.
-template <class Contact>
-HEDON_FN void solve_velocity(Contact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    Contact& contact = contacts[i];
+template <class Crew, class Contact>
+HEDON_FN void solve_velocity(const Crew& crew, const ColoredContacts<Contact>& found, const SolverConstants& c,
+                             Motion* motion) {
+  found.each(crew, [&](Contact& contact) {
     Motion &a = motion[contact.first], &b = motion[contact.second];
     const ContactVelocity change = accumulate(contact, c, relative_velocity(contact, a, b));
     apply(contact, change.normal, change.tangent, a, b);
-  }
+  });
 }
 
 /// One pass of projected Gauss-Seidel over contacts with static objects.
-HEDON_FN void solve_velocity(StaticContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    StaticContact& contact = contacts[i];
+template <class Crew>
+HEDON_FN void solve_velocity(const Crew& crew, const StaticContacts& found, const SolverConstants& c, Motion* motion) {
+  found.each(crew, [&](StaticContact& contact) {
     Motion& a = motion[contact.body];
     const ContactVelocity change = accumulate(contact, c, relative_velocity(contact, a));
     apply(contact, change.normal, change.tangent, a);
-  }
+  });
 }
 
 /// Applies the impulses of the substep before.
-template <class Contact>
-HEDON_FN void warm_start(const Contact* contacts, int32_t count, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    const Contact& contact = contacts[i];
+template <class Crew, class Contact>
+HEDON_FN void warm_start(const Crew& crew, const ColoredContacts<Contact>& found, Motion* motion) {
+  found.each(crew, [&](const Contact& contact) {
     apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.first], motion[contact.second]);
-  }
+  });
 }
 
-HEDON_FN void warm_start(const StaticContact* contacts, int32_t count, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    const StaticContact& contact = contacts[i];
+template <class Crew>
+HEDON_FN void warm_start(const Crew& crew, const StaticContacts& found, Motion* motion) {
+  found.each(crew, [&](const StaticContact& contact) {
     apply(contact, contact.normal_impulse, contact.tangent_impulse, motion[contact.body]);
-  }
+  });
 }
 
 /// Normal impulse per mass after which a contact separates at `restitution` times its approach speed; 0 if it was slow
@@ -136,33 +161,33 @@ HEDON_FN float bounce(Contact& contact, const SolverConstants& c, float normal_v
   return change;
 }
 
-template <class Contact>
-HEDON_FN void apply_restitution(Contact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    Contact& contact = contacts[i];
+template <class Crew, class Contact>
+HEDON_FN void apply_restitution(const Crew& crew, const ColoredContacts<Contact>& found, const SolverConstants& c,
+                                Motion* motion) {
+  found.each(crew, [&](Contact& contact) {
     Motion &a = motion[contact.first], &b = motion[contact.second];
     const float change = bounce(contact, c, relative_velocity(contact, a, b).normal);
     if (change != 0.0f) apply(contact, change, 0.0f, a, b);
-  }
+  });
 }
 
-HEDON_FN void apply_restitution(StaticContact* contacts, int32_t count, const SolverConstants& c, Motion* motion) {
-  for (int32_t i = 0; i < count; ++i) {
-    StaticContact& contact = contacts[i];
+template <class Crew>
+HEDON_FN void apply_restitution(const Crew& crew, const StaticContacts& found, const SolverConstants& c,
+                                Motion* motion) {
+  found.each(crew, [&](StaticContact& contact) {
     Motion& a = motion[contact.body];
     const float change = bounce(contact, c, relative_velocity(contact, a).normal);
     if (change != 0.0f) apply(contact, change, 0.0f, a);
-  }
+  });
 }
 
 /// One pass of position correction between bodies: of two equal ones, each moves half the distance. The separation is
 /// measured between the present positions along the normal of the contact; after the motion of one substep it differs
 /// from the true one by less than the slop.
-template <class Bodies>
-HEDON_FN void correct_positions(const Batch<Bodies>& batch, const typename Bodies::Contact* contacts, int32_t count,
+template <class Bodies, class Crew, class Contact>
+HEDON_FN void correct_positions(const Batch<Bodies, Crew>& batch, const ColoredContacts<Contact>& found,
                                 Vec2* position) {
-  for (int32_t i = 0; i < count; ++i) {
-    const auto& contact = contacts[i];
+  found.each(batch.crew, [&](const Contact& contact) {
     const float touch = batch.body_touch(contact.first, contact.second);
     const Vec2 normal{contact.normal_x, contact.normal_y};
     const Vec2 a = position[contact.first], b = position[contact.second];
@@ -170,23 +195,25 @@ HEDON_FN void correct_positions(const Batch<Bodies>& batch, const typename Bodie
     const Shares share = shares(contact);
     position[contact.first] = a + (share.first * push) * normal;
     position[contact.second] = b - (share.second * push) * normal;
-  }
+  });
 }
 
 /// One pass of position correction against static objects.
-HEDON_FN void correct_positions(const StaticContact* contacts, int32_t count, const SolverConstants& c,
-                                Vec2* position) {
-  for (int32_t i = 0; i < count; ++i) {
-    const StaticContact& contact = contacts[i];
+template <class Bodies, class Crew>
+HEDON_FN void correct_positions(const Batch<Bodies, Crew>& batch, const StaticContacts& found, Vec2* position) {
+  found.each(batch.crew, [&](const StaticContact& contact) {
     const Vec2 normal{contact.normal_x, contact.normal_y}, anchor{contact.anchor_x, contact.anchor_y};
     const Vec2 a = position[contact.body];
-    position[contact.body] = a + correction(c, dot(anchor - a, normal)) * normal;
-  }
+    position[contact.body] = a + correction(batch.c, dot(anchor - a, normal)) * normal;
+  });
 }
 
 /// Limits the velocities and moves the bodies by them.
-HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, const SolverConstants& c) {
-  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+template <class Bodies, class Crew>
+HEDON_FN void integrate(const Batch<Bodies, Crew>& batch) {
+  const PhysicsScratch& scratch = batch.scratch;
+  const SolverConstants& c = batch.c;
+  batch.each_body([&](int32_t index) {
     Motion motion = scratch.motion[index];
     motion.x = clamp(motion.x, -c.max_speed, c.max_speed);
     motion.y = clamp(motion.y, -c.max_speed, c.max_speed);
@@ -195,51 +222,46 @@ HEDON_FN void integrate(const PhysicsScratch& scratch, const BatchRange& range, 
     scratch.position[index].x += motion.x * c.dt;
     scratch.position[index].y += motion.y * c.dt;
     scratch.angle[index] += motion.angular * c.dt;
-  }
+  });
 }
 
 /// The solver by name `sequential`, for `try_batch`.
 struct SequentialSolver {
   /// Damps velocities, finds contacts, solves, bounces, moves, and corrects overlaps.
-  template <class Bodies, class Visitor>
-  HEDON_FN static void substep(const Batch<Bodies>& batch, Visitor& visitor) {
-    const PhysicsScratch& scratch = batch.scratch;
+  template <class Bodies, class Crew, class Visitor>
+  HEDON_FN static void substep(const Batch<Bodies, Crew>& batch, Visitor& visitor) {
     const SolverConstants& c = batch.c;
-    Motion* motion = scratch.motion.data;
-    for (int32_t index = batch.range.first_index; index < batch.range.last_index; ++index) {
+    const Crew& crew = batch.crew;
+    Motion* motion = batch.scratch.motion.data;
+    Vec2* position = batch.scratch.position.data;
+    batch.each_body([&](int32_t index) {
       motion[index].x *= c.linear_decay;
       motion[index].y *= c.linear_decay;
       motion[index].angular *= c.angular_decay;
-    }
+    });
     const Array<Segment>& walls = batch.state.walls;
     const auto nearest = [&](int32_t wall, Vec2 center) {
       return nearest_on_segment(walls[wall].a, walls[wall].b, center);
     };
     const auto below = [](float touch) { return Reach{touch * touch, touch * touch}; };
-    auto* bodies = batch.body_contacts();
-    StaticContact* statics = batch.static_contacts();
-    const FoundContacts body = find_in_colors(batch, visitor);
-    const FoundContacts circle = find_circle_contacts(batch, below, statics, visitor);
-    StaticContact* on_walls = statics + circle.count;
-    const FoundContacts wall = find_wall_contacts(batch, below, on_walls, visitor, nearest);
-    const int32_t static_count = circle.count + wall.count;
+    const auto bodies = find_in_colors(batch, visitor);
+    const StaticContacts statics = find_static_contacts(batch, below, visitor, nearest);
 
-    warm_start(bodies, body.count, motion);
-    warm_start(statics, static_count, motion);
+    warm_start(crew, bodies, motion);
+    warm_start(crew, statics, motion);
     for (int32_t pass = 0; pass < batch.config.velocity_passes; ++pass) {
-      solve_velocity(bodies, body.count, c, motion);
-      solve_velocity(statics, static_count, c, motion);
+      solve_velocity(crew, bodies, c, motion);
+      solve_velocity(crew, statics, c, motion);
     }
-    if (body.fast) apply_restitution(bodies, body.count, c, motion);
-    if (circle.fast || wall.fast) apply_restitution(statics, static_count, c, motion);
-    keep_impulses(bodies, body.count, scratch.bodies);
-    keep_impulses(statics, circle.count, scratch.circles);
-    keep_impulses(on_walls, wall.count, scratch.walls);
+    if (bodies.fast) apply_restitution(crew, bodies, c, motion);
+    if (statics.fast) apply_restitution(crew, statics, c, motion);
+    keep_impulses(batch, bodies.contact, bodies.count);
+    keep_impulses(batch, statics);
 
-    integrate(scratch, batch.range, c);
+    integrate(batch);
     for (int32_t pass = 0; pass < batch.config.position_passes; ++pass) {
-      correct_positions(batch, bodies, body.count, scratch.position.data);
-      correct_positions(statics, static_count, c, scratch.position.data);
+      correct_positions(batch, bodies, position);
+      correct_positions(batch, statics, position);
     }
   }
 };

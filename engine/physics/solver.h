@@ -136,13 +136,11 @@ HEDON_FN float correction(const SolverConstants& c, float separation) {
   return clamp(c.correction_rate * (separation + c.slop), -c.max_correction, 0.0f);
 }
 
-/// Keeps the accumulated impulses of the contacts for the next substep.
+/// Keeps the accumulated impulses of a contact for the next substep.
 template <class Contact>
-HEDON_FN void keep_impulses(const Contact* contacts, int32_t count, const PairScratch& work) {
-  for (int32_t i = 0; i < count; ++i) {
-    work.normal[contacts[i].pair] = contacts[i].normal_impulse;
-    work.tangent[contacts[i].pair] = contacts[i].tangent_impulse;
-  }
+HEDON_FN void keep_impulse(const Contact& contact, const PairScratch& work) {
+  work.normal[contact.pair] = contact.normal_impulse;
+  work.tangent[contact.pair] = contact.tangent_impulse;
 }
 
 }  // namespace hedon

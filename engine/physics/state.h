@@ -18,6 +18,7 @@
 namespace hedon {
 
 inline constexpr int MAX_BATCHES = 32;  ///< independent parts of one step, for as many threads
+inline constexpr int COLORS = 32;       ///< of contacts between bodies
 
 /// Pairs that may touch before the list is built again. Pairs with the same first body are consecutive.
 struct PairList {
@@ -95,18 +96,19 @@ struct BatchReport {
 };
 
 struct PhysicsScratch {
-  Array<int32_t> rank;       ///< of each slot in the caller's order
-  Array<int32_t> parent;     ///< union-find over ranks
-  Array<int32_t> work;       ///< pairs and bodies of the island, by the rank of its root
-  Array<int32_t> batch;      ///< of the island, by the rank of its root
-  Array<int32_t> new_index;  ///< of each rank
-  Array<Vec2> position;      ///< by index [u]
-  Array<Motion> motion;      ///< by index
-  Array<Motion> change;      ///< by index: changes by contacts in a pass of the solver jacobi
-  Array<float> angle;        ///< by index, not wrapped within a step [rad]
-  Array<uint32_t> colors;    ///< by index: colors of the contacts of the body
-  Array<int32_t> active;     ///< pairs of bodies that touch in this substep
-  Array<uint8_t> color;      ///< of each of them
+  Array<int32_t> rank;         ///< of each slot in the caller's order
+  Array<int32_t> parent;       ///< union-find over ranks
+  Array<int32_t> work;         ///< pairs and bodies of the island, by the rank of its root
+  Array<int32_t> batch;        ///< of the island, by the rank of its root
+  Array<int32_t> new_index;    ///< of each rank
+  Array<Vec2> position;        ///< by index [u]
+  Array<Motion> motion;        ///< by index
+  Array<Motion> change;        ///< by index: changes by contacts in a pass of the solver jacobi
+  Array<float> angle;          ///< by index, not wrapped within a step [rad]
+  Array<uint32_t> colors;      ///< by index: colors of the contacts of the body
+  Array<int32_t> active;       ///< pairs of bodies that touch in this substep
+  Array<int32_t> color;        ///< of each of them, and its number among those of its color
+  Array<int32_t> color_start;  ///< first contact of each color of each batch; (MAX_BATCHES · 33)
   PairScratch bodies;
   PairScratch circles;
   PairScratch walls;
@@ -117,7 +119,8 @@ struct PhysicsScratch {
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
   HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_index, position, motion, change, angle, colors, active,
-               color, bodies, circles, walls, body_class, body_contacts, mixed_contacts, static_contacts, reports)
+               color, color_start, bodies, circles, walls, body_class, body_contacts, mixed_contacts, static_contacts,
+               reports)
 };
 
 /// The sizes of the arrays.
@@ -226,6 +229,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit("colors", scratch.colors, capacity.bodies);
   visit("active", scratch.active, capacity.body_pairs);
   visit("color", scratch.color, capacity.body_pairs);
+  visit("color_start", scratch.color_start, int64_t{MAX_BATCHES} * (COLORS + 1));
   visit_arrays(scratch.bodies, capacity.body_pairs, visit);
   visit_arrays(scratch.circles, capacity.circle_pairs, visit);
   visit_arrays(scratch.walls, capacity.wall_pairs, visit);

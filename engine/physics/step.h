@@ -2,14 +2,15 @@
 ///
 /// Every contact in every substep is reported to the caller's visitor:
 ///   visitor.on_start(slot)   before a body's first substep of each try of a step: delete all notes about the body
-///   visitor.on_contact(kind, body, other, direction, angle, bit, mark)
+///   visitor.on_contact(crew, kind, body, other, direction, angle, bit, mark)
+///     crew       who works on the body's island; its threads may report contacts of one body at the same time
 ///     body       slot of the body; a pair of bodies is reported for each of them
 ///     other      slot of the other body or circle, or index of the wall
 ///     direction  from the body's center to the contact, unit vector in the world's frame
 ///     angle      of the body in this substep [rad]: its angle before the step plus its rotation since then
 ///     mark       a byte of the pair, 0 when the step begins, free for the visitor's use
 ///     bit        a bit for the mark that tells the two bodies of a pair apart: FIRST or SECOND
-/// The thread that works on the body's island calls both, so they may write data of the body or pair.
+/// So they may write data of the pair, and set bits of the body by `crew.set_bits`.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +28,16 @@
 namespace hedon {
 
 /// Copies a batch's bodies and impulses to scratch memory for the substeps, and adds the forces of the first substep.
-template <class Bodies, class Visitor>
-HEDON_FN void load_batch(const Batch<Bodies>& batch, const BodyForce& force, BatchReport& report, Visitor& visitor) {
+template <class Bodies, class Crew, class Visitor>
+HEDON_FN void load_batch(const Batch<Bodies, Crew>& batch, const BodyForce& force, BatchReport& report,
+                         Visitor& visitor) {
   const PhysicsState& state = batch.state;
   const PhysicsScratch& scratch = batch.scratch;
   const BatchRange& range = batch.range;
   const float dt = batch.c.dt;
   const NeighborList& list = state.neighbors;
   const BodyState& bodies = state.bodies;
-  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+  batch.each_body([&](int32_t index) {
     const int32_t slot = list.slot[index];
     const float push_x = force.x[slot], push_y = force.y[slot];
     batch.bodies.note(index, slot);
@@ -48,13 +50,13 @@ HEDON_FN void load_batch(const Batch<Bodies>& batch, const BodyForce& force, Bat
     const float squared_force = push_x * push_x + push_y * push_y;
     if (squared_force > report.squared_force) report.squared_force = squared_force;
     visitor.on_start(slot);
-  }
-  const auto load_pairs = [](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
-    for (int32_t pair = first; pair < last; ++pair) {
+  });
+  const auto load_pairs = [&](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
+    batch.crew.each(first, last, [&](int32_t pair) {
       work.normal[pair] = pairs.normal_impulse[pair];
       work.tangent[pair] = pairs.tangent_impulse[pair];
       pairs.mark[pair] = 0;
-    }
+    });
   };
   load_pairs(list.bodies, scratch.bodies, range.first_body_pair, range.last_body_pair);
   load_pairs(list.circles, scratch.circles, range.first_circle_pair, range.last_circle_pair);
@@ -75,13 +77,15 @@ HEDON_FN void commit_body(const PhysicsState& state, const PhysicsScratch& scrat
 }
 
 /// Writes back the impulses of a batch's pairs.
-HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scratch, const BatchRange& range) {
+template <class Crew>
+HEDON_FN void commit_pairs(const Crew& crew, const PhysicsState& state, const PhysicsScratch& scratch,
+                           const BatchRange& range) {
   const NeighborList& list = state.neighbors;
-  const auto store_pairs = [](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
-    for (int32_t pair = first; pair < last; ++pair) {
+  const auto store_pairs = [&](const PairList& pairs, const PairScratch& work, int32_t first, int32_t last) {
+    crew.each(first, last, [&](int32_t pair) {
       pairs.normal_impulse[pair] = work.normal[pair];
       pairs.tangent_impulse[pair] = work.tangent[pair];
-    }
+    });
   };
   store_pairs(list.bodies, scratch.bodies, range.first_body_pair, range.last_body_pair);
   store_pairs(list.circles, scratch.circles, range.first_circle_pair, range.last_circle_pair);
@@ -89,39 +93,42 @@ HEDON_FN void commit_pairs(const PhysicsState& state, const PhysicsScratch& scra
 }
 
 /// Largest squared distance of a batch's bodies from their positions at the last build; infinite if one is not finite.
-HEDON_FN float squared_moved(const NeighborList& list, const PhysicsScratch& scratch, const BatchRange& range) {
+template <class Bodies, class Crew>
+HEDON_FN float squared_moved(const Batch<Bodies, Crew>& batch) {
+  const NeighborList& list = batch.state.neighbors;
   float largest = 0.0f;
-  for (int32_t index = range.first_index; index < range.last_index; ++index) {
-    const Vec2 moved = scratch.position[index] - Vec2{list.build_x[index], list.build_y[index]};
+  batch.each_body([&](int32_t index) {
+    const Vec2 moved = batch.scratch.position[index] - Vec2{list.build_x[index], list.build_y[index]};
     const float squared = squared_length(moved);
     if (!(squared <= largest)) largest = squared == squared ? squared : std::numeric_limits<float>::infinity();
-  }
-  return largest;
+  });
+  return batch.crew.largest(largest);
 }
 
 /// Tries all substeps of one batch in the scratch memory. Stops early if a body moved too far for the skin.
-template <class Solver, class Bodies, class Visitor>
-HEDON_CLONED HEDON_FN void try_batch(const PhysicsConfig& config, const BodyTable& table, const SolverConstants& c,
-                                     const PhysicsState& state, const PhysicsScratch& scratch, const BodyForce& force,
-                                     float squared_limit, int32_t number, Visitor& visitor) {
-  const NeighborList& list = state.neighbors;
+template <class Solver, class Bodies, class Crew, class Visitor>
+HEDON_CLONED HEDON_FN void try_batch(const Crew& crew, const PhysicsConfig& config, const BodyTable& table,
+                                     const SolverConstants& c, const PhysicsState& state, const PhysicsScratch& scratch,
+                                     const BodyForce& force, float squared_limit, int32_t number, Visitor& visitor) {
   const Bodies bodies(table, scratch);
-  const Batch<Bodies> batch{config, bodies, table, c, state, scratch, batch_range(list, number)};
-  const BatchRange& range = batch.range;
+  const BatchRange range = batch_range(state.neighbors, number);
+  const Batch<Bodies, Crew> batch{crew, config, bodies, table, c, state, scratch, range};
   BatchReport report{};
   load_batch(batch, force, report, visitor);
   for (int32_t substep = 0; substep < config.substeps; ++substep) {
     Solver::substep(batch, visitor);
-    const float moved = squared_moved(list, scratch, range);
+    const float moved = squared_moved(batch);
     if (moved > report.squared_moved) report.squared_moved = moved;
     if (report.squared_moved > squared_limit) break;
   }
   const Motion* motion = scratch.motion.data;
-  for (int32_t index = range.first_index; index < range.last_index; ++index) {
+  batch.each_body([&](int32_t index) {
     const float squared = motion[index].x * motion[index].x + motion[index].y * motion[index].y;
     if (squared > report.squared_speed) report.squared_speed = squared;
-  }
-  scratch.reports[number] = report;
+  });
+  report.squared_speed = crew.largest(report.squared_speed);
+  report.squared_force = crew.largest(report.squared_force);
+  crew.once([&] { scratch.reports[number] = report; });
 }
 
 /// The maxima over all batches.
@@ -171,9 +178,9 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
     }
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
-    group.for_each(head.batches, [&](int32_t batch) {
+    group.for_each_by_crew(head.batches, [&](const auto& crew, int32_t batch) {
       const auto attempt = [&]<class Solver, class Bodies>() {
-        try_batch<Solver, Bodies>(config, table, constants, state, scratch, force, limit * limit, batch, visitor);
+        try_batch<Solver, Bodies>(crew, config, table, constants, state, scratch, force, limit * limit, batch, visitor);
       };
       const bool sequential = config.solver == ContactSolver::sequential;
       if (table.classes == 1)
@@ -209,13 +216,14 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   // Bodies by slot, not by batch: otherwise two members would write to most cache lines in turn.
   group.for_each(static_cast<int>(state.neighbors.index.count),
                  [&](int32_t slot) { commit_body(state, scratch, slot); });
-  group.for_each(head.batches, [&](int32_t batch) {
-    commit_pairs(state, scratch, batch_range(state.neighbors, batch));
-    if (batch == 0) {
+  group.for_each_by_crew(head.batches, [&](const auto& crew, int32_t batch) {
+    commit_pairs(crew, state, scratch, batch_range(state.neighbors, batch));
+    if (batch > 0) return;
+    crew.once([&] {
       head.stale = stale;
       head.free_path = free_path;
       head.repeats += repeat;
-    }
+    });
   });
   return true;
 }

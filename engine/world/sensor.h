@@ -106,8 +106,9 @@ struct TouchVisitor {
     return sectors - 1;
   }
 
-  HEDON_FN void on_contact(PairKind kind, int32_t slot, int32_t other, Vec2 direction, float angle, uint8_t bit,
-                           uint8_t& mark) {
+  template <class Crew>
+  HEDON_FN void on_contact(const Crew& crew, PairKind kind, int32_t slot, int32_t other, Vec2 direction, float angle,
+                           uint8_t bit, uint8_t& mark) {
     const WorldShape& shape = *world->shape;
     const Species& species = world->species(slot);
     bool mouth;
@@ -119,9 +120,9 @@ struct TouchVisitor {
     if (hurts || (mouth && eats(species, type))) mark |= bit;
     const int32_t touched = species.touch.of_type[type] * species.config->sensor.touch_sectors + at;
     if (touched < 64)
-      world->state.touch[slot] |= uint64_t{1} << touched;
+      crew.set_bits(world->state.touch[slot], uint64_t{1} << touched);
     else
-      world->state.touch_more[slot] |= uint64_t{1} << (touched - 64);
+      crew.set_bits(world->state.touch_more[slot], uint64_t{1} << (touched - 64));
   }
 
   /// Deletes the notes about a body, before each try of a step.

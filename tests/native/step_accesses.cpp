@@ -74,6 +74,10 @@ void __tsan_write_range(void*, unsigned long) { touch(); }
 void __tsan_func_entry(void*) {}
 void __tsan_func_exit() {}
 void __tsan_init() {}
+uint64_t __tsan_atomic64_fetch_or(volatile uint64_t* word, uint64_t bits, int) {
+  touch();
+  return __atomic_fetch_or(word, bits, __ATOMIC_RELAXED);
+}
 
 void __real__ZN5hedon13block_barrierEv();
 void __wrap__ZN5hedon13block_barrierEv() {
