@@ -2,7 +2,8 @@
 import { by, element, show, table } from "./element";
 import { castRays } from "./rays";
 import { smell } from "./smells";
-import type { Frame, Life, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame, Life } from "./types";
 
 const SHOWN_CHILDREN = 12;
 const ROUNDED = 1e4; // rewards are sums of numbers of 7 digits

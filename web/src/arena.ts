@@ -4,7 +4,8 @@ import { styleColor } from "./element";
 import { castRays } from "./rays";
 import { Scene } from "./scene";
 import { noses } from "./smells";
-import type { Frame, Layout, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame, Layout } from "./types";
 
 const TRAIL = 240; // places of the chosen agent that are kept
 const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it

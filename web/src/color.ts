@@ -1,5 +1,6 @@
 // What an agent's color means, for any world: names and values come from its layout and its lives.
-import type { Frame, Layout, Life, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame, Layout, Life } from "./types";
 
 type Rgb = [number, number, number];
 

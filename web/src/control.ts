@@ -1,13 +1,6 @@
 // Keys, mouse and touch: everything can also be done from the keyboard.
-import type { App } from "./main";
+import type { App } from "./app";
 import { by } from "./element";
-
-export const HELP = [
-  "Click an agent to inspect it. Drag to move, turn the wheel to zoom, 0 shows the whole arena.",
-  "Space plays and pauses. ← and → step, with Shift ten at a time. Home and End go to the ends.",
-  "+ and − change the speed. F follows the chosen agent, R shows its rays, T its trail. Tab or N chooses the next agent.",
-  "A, P, S and W open the panels: agent, plots, settings, world. Esc chooses none.",
-];
 
 export function bindKeys(app: App): void {
   const keys: Record<string, (event: KeyboardEvent) => void> = {

@@ -1,5 +1,6 @@
 // Lives as a file for a spreadsheet: the columns are called as in the table `agents` of a run.
-import type { Life, Source } from "./types";
+import type { Source } from "./source";
+import type { Life } from "./types";
 
 /** One line for each life, after the names of the columns; what is missing is empty. */
 export function csvOf(source: Source, seed: number, lives: Life[]): string {

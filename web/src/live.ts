@@ -2,7 +2,8 @@
 import { Lives } from "./lives";
 import type { Deed, Moment, Order, Report } from "./live.worker";
 import { Series } from "./series";
-import type { Frame, LiveWorld, Mind, Place, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame, LiveWorld, Mind, Place } from "./types";
 
 const SAMPLE_STEPS = 256; // between two points of the plots
 const KEPT_FRAMES = 2000; // that can be looked back at

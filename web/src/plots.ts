@@ -2,7 +2,8 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { by, element, option, show, styleColor } from "./element";
-import type { Frame, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame } from "./types";
 
 const HEIGHT = 130;
 const LINES = ["#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#999933"];

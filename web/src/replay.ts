@@ -2,7 +2,8 @@
 import { Lives } from "./lives";
 import type { Answer, Column, Request } from "./records.worker";
 import { Series } from "./series";
-import type { Frame, Layout, Part, Place, RunIndex, Source } from "./types";
+import type { Source } from "./source";
+import type { Frame, Layout, Part, Place, RunIndex } from "./types";
 
 const FOLLOW_MS = 2000; // between two looks at a run that goes on
 const KEPT_PARTS = 6; // parts of the frames in memory

@@ -1,6 +1,7 @@
 // The time line: population over time, births and deaths, events, and the place of the moment that is shown.
 import { styleColor } from "./element";
-import type { Event, Source } from "./types";
+import type { Source } from "./source";
+import type { Event } from "./types";
 
 const PAD = 6;
 

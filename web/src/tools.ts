@@ -3,7 +3,8 @@ import { csvOf, save } from "./csv";
 import { by, element, option, show } from "./element";
 import type { Live } from "./live";
 import { configFile, refusal } from "./settings";
-import type { Setting, Source } from "./types";
+import type { Source } from "./source";
+import type { Setting } from "./types";
 
 export class Tools {
   private readonly host = by<HTMLDivElement>("world-panel");

@@ -77,23 +77,6 @@ export interface Event {
   text: string;
 }
 
-/** Where moments come from: records, or a world that runs. */
-export interface Source {
-  readonly layout: Layout;
-  readonly live: boolean;
-  readonly obstacles: Place[][]; // their corners
-  readonly first: number;
-  readonly last: number;
-  readonly lives: import("./lives").Lives;
-  readonly series: import("./series").Series;
-  /** The moments at or before `step` and after it, where they are known; asks for what is not. */
-  around(step: number): { before?: Frame; after?: Frame };
-  mind(): Mind | undefined;
-  status(): string;
-  /** The world's digest, or "" where it is not known. */
-  digest(): string;
-}
-
 export interface Setting {
   path: string;
   engine: string[];
