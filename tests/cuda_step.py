@@ -26,8 +26,9 @@ ALONE = 0.1
 
 PHASES = {
     ("sense_and_act", False): "sense_and_act",
+    ("build_neighbors", False): "neighbor_list",
+    ("build_neighbors", True): "neighbor_list",
     ("physics_step", False): "islands",
-    ("physics_step", True): "neighbor_list",
     ("step", False): "rules_of_all_threads",
     ("step", True): "rules_of_one_thread",
 }
@@ -73,7 +74,7 @@ def count(program: Path, preset: str) -> dict[str, float]:
     for line in lines:
         address, *numbers = line.split()
         _, way, most, second, _ = map(float, numbers)
-        if function := function_of(program, address):
+        if most > 0 and (function := function_of(program, address)):
             found[PHASES[function, second < ALONE * most]] += way
     return {name: round(value) for name, value in found.items()}
 

@@ -1,5 +1,5 @@
-/// Who works on one piece of a phase: here a member of a team, alone; in a CUDA block, a tile of threads
-/// (`cuda/tile.h`).
+/// Who works on one piece of a phase: here a member of a team, alone. In a CUDA block, a tile of threads works on each
+/// of several pieces (`cuda/tile.h`), and all threads on a single one (`cuda/block_crew.h`).
 ///
 /// All threads of a crew call the same functions, each of which ends with a barrier of the crew. A loop body writes
 /// only data of its own index, so results do not depend on the size of the crew.
@@ -11,12 +11,19 @@
 
 namespace hedon {
 
+/// One thread. Of the functions, tiles have the first group and the second, whole blocks the first and the third.
 class Alone {
  public:
   /// Calls body(i) for i in [first, last).
   template <class Body>
   HEDON_INLINE void each(int32_t first, int32_t last, Body&& body) const {
     for (int32_t i = first; i < last; ++i) body(i);
+  }
+
+  /// Calls body() on one thread.
+  template <class Body>
+  HEDON_INLINE void once(Body&& body) const {
+    body();
   }
 
   /// Calls body(i) for i in [0, count), one group of consecutive i after another. Within the last group that there may
@@ -46,12 +53,6 @@ class Alone {
     return count;
   }
 
-  /// Calls body() on one thread.
-  template <class Body>
-  HEDON_INLINE void once(Body&& body) const {
-    body();
-  }
-
   /// Whether it is true on any thread.
   HEDON_INLINE bool any(bool value) const { return value; }
 
@@ -60,6 +61,55 @@ class Alone {
 
   /// Sets bits of a word in which other threads may set bits at the same time.
   HEDON_INLINE void set_bits(uint64_t& word, uint64_t bits) const { word |= bits; }
+
+  /// Calls keep(n, i, value) for the n-th value that find(i, add) adds, for i in [0, count) in order, and then
+  /// done(i, first, last) with the range of n of an i; returns how many there are. `find` may be called twice.
+  template <class Find, class Keep, class Done>
+  HEDON_INLINE int32_t collect(int32_t count, Find&& find, Keep&& keep, Done&& done) const {
+    int32_t n = 0;
+    for (int32_t i = 0; i < count; ++i) {
+      const int32_t first = n;
+      find(i, [&](int32_t value) { keep(n++, i, value); });
+      done(i, first, n);
+    }
+    return n;
+  }
+
+  /// Links the items of each key to a list, in the order of i in [0, count).
+  /// keys      how many there are
+  /// head      (keys) first item of each key; -1 on entry
+  /// next      of each item, -1 at the end of its list
+  /// key(i)    -1 for none
+  /// item(i)   and rank(item), which is i again
+  template <class Key, class Item, class Rank>
+  HEDON_INLINE void link(int32_t count, int32_t, int32_t* head, int32_t* next, Key&& key, Item&& item, Rank&&) const {
+    for (int32_t i = count - 1; i >= 0; --i) {
+      const int32_t k = key(i);
+      if (k < 0) continue;
+      next[item(i)] = head[k];
+      head[k] = item(i);
+    }
+  }
+
+  /// Sorts by key: calls place(i, at, key) for each i in [0, count) that has one. Equal ones keep their order.
+  /// start    (keys + 1) becomes the first place of each key, and the number of all
+  /// work     (count); key(i) may read from work[i]
+  /// key(i)   in [0, keys), or -1 for none; called once
+  template <class Key, class Place>
+  HEDON_INLINE void sort(int32_t count, int32_t keys, int32_t* start, int32_t* work, Key&& key, Place&& place) const {
+    for (int32_t k = 0; k < keys; ++k) start[k] = 0;
+    for (int32_t i = 0; i < count; ++i) {
+      const int32_t k = work[i] = key(i);
+      if (k >= 0) ++start[k];
+    }
+    int32_t sum = 0;
+    for (int32_t k = 0; k < keys; ++k) start[k] = sum += start[k];
+    start[keys] = sum;
+    for (int32_t i = count - 1; i >= 0; --i) {
+      const int32_t k = work[i];
+      if (k >= 0) place(i, --start[k], k);
+    }
+  }
 };
 
 }  // namespace hedon

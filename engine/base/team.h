@@ -86,6 +86,12 @@ class Team {
     barrier();
   }
 
+  /// Calls body(crew) with one crew.
+  template <class Body>
+  void together(Body&& body) {
+    once([&] { body(Alone{}); });
+  }
+
   /// Calls body() on one member while the others wait.
   template <class Body>
   void once(Body&& body) {

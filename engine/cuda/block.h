@@ -1,6 +1,7 @@
 /// The threads of a CUDA block as the group that every step rule is written for: see `base/team.h`.
 #pragma once
 
+#include "cuda/block_crew.h"
 #include "cuda/tile.h"
 
 namespace hedon {
@@ -39,6 +40,13 @@ class Block {
   template <class Body>
   HEDON_INLINE void for_each_by_crew(int count, Body&& body) const {
     for (int i = tile() / 2 + tile() % 2 * (tiles() / 2); i < count; i += tiles()) body(Tile{}, i);
+    barrier();
+  }
+
+  /// Calls body(crew) with all threads as one crew.
+  template <class Body>
+  HEDON_INLINE void together(Body&& body) const {
+    body(BlockCrew{});
     barrier();
   }
 

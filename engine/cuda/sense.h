@@ -25,8 +25,7 @@ struct TileKernel {
 HEDON_FN void drop_unseen_by_tile(const Block& block, const RayScene& scene, const Channels& sight,
                                   RayCandidates& candidates) {
   block.once_by_tile([&] { drop_unseen(scene, sight, candidates); });
-  for (int32_t a = 0; a < RAY_ARCS; ++a)
-    candidates.circles[a] = static_cast<int32_t>(tile_read(static_cast<float>(candidates.circles[a]), 0));
+  for (int32_t a = 0; a < RAY_ARCS; ++a) candidates.circles[a] = tile_read_count(candidates.circles[a], 0);
 }
 
 /// The same as `cast_agent_rays`.

@@ -35,6 +35,9 @@ HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) {
   atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
 }
 
+/// Puts a value in a place where other threads may put theirs at the same time; returns what was there.
+HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) { return atomicExch(&place, value); }
+
 /// The block's shared memory, aligned to 16 bytes; its size is given at the launch. Filled by nobody.
 HEDON_INLINE float* shared_memory() {
   extern __shared__ float4 memory[];
@@ -51,6 +54,11 @@ HEDON_INLINE void tile_barrier() {}
 HEDON_INLINE uint32_t tile_ballot(bool holds) { return holds ? 1u : 0u; }
 HEDON_INLINE float tile_read(float value, int) { return value; }
 HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) { word |= bits; }
+HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) {
+  const int32_t before = place;
+  place = value;
+  return before;
+}
 HEDON_INLINE float* shared_memory() { return nullptr; }
 
 #else
@@ -62,11 +70,19 @@ void tile_barrier();
 uint32_t tile_ballot(bool holds);
 float tile_read(float value, int lane);
 HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) { __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED); }
+HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) {
+  return __atomic_exchange_n(&place, value, __ATOMIC_RELAXED);
+}
 float* shared_memory();
 
 #endif
 
 HEDON_INLINE int thread_lane() { return thread_rank() % TILE; }
+
+/// The count, below 2^24, that another thread of the tile gives.
+HEDON_INLINE int32_t tile_read_count(int32_t count, int lane) {
+  return static_cast<int32_t>(tile_read(static_cast<float>(count), lane));
+}
 
 /// Bits that are set.
 HEDON_INLINE int count_bits(uint32_t bits) {

@@ -31,9 +31,26 @@ HEDON_FN int32_t cell_along(float position, float inverse_cell, int32_t cells) {
   return at < static_cast<float>(cells) ? static_cast<int32_t>(at) : cells - 1;
 }
 
-HEDON_FN void clear_grid(const Grid& grid) {
-  for (int64_t cell = 0; cell < grid.head.count; ++cell) grid.head[cell] = -1;
-  for (int64_t item = 0; item < grid.cell.count; ++item) grid.cell[item] = -1;
+/// Cell of a position.
+HEDON_FN int32_t cell_of(const Grid& grid, float x, float y) {
+  const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
+  return cell_along(y, grid.inverse_cell, grid.rows) * grid.columns + column;
+}
+
+template <class Crew>
+HEDON_FN void clear_grid(const Crew& crew, const Grid& grid) {
+  crew.each(0, static_cast<int32_t>(grid.head.count), [&](int32_t cell) { grid.head[cell] = -1; });
+  crew.each(0, static_cast<int32_t>(grid.cell.count), [&](int32_t item) { grid.cell[item] = -1; });
+}
+
+/// Clears a grid and inserts the items of all ranks in [0, count); in each cell, they are in the order of their ranks.
+/// cell(item)   of it, -1 for none
+/// item(rank)   and rank(item)
+template <class Crew, class Cell, class Item, class Rank>
+HEDON_FN void fill_grid(const Crew& crew, const Grid& grid, int32_t count, Cell&& cell, Item&& item, Rank&& rank) {
+  clear_grid(crew, grid);
+  const auto key = [&](int32_t i) { return grid.cell[item(i)] = cell(item(i)); };
+  crew.link(count, static_cast<int32_t>(grid.head.count), grid.head.data, grid.next.data, key, item, rank);
 }
 
 /// Removes an item; does nothing if it is not in the grid.
@@ -47,10 +64,8 @@ HEDON_FN void remove(const Grid& grid, int32_t item) {
 
 /// Inserts an item at a position; removes it from its old cell first.
 HEDON_FN void insert(const Grid& grid, int32_t item, float x, float y) {
-  const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
-  const int32_t row = cell_along(y, grid.inverse_cell, grid.rows);
+  const int32_t cell = cell_of(grid, x, y);
   remove(grid, item);
-  const int32_t cell = row * grid.columns + column;
   grid.next[item] = grid.head[cell];
   grid.head[cell] = item;
   grid.cell[item] = cell;

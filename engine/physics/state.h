@@ -8,6 +8,7 @@
 #include <initializer_list>
 
 #include "base/array.h"
+#include "base/crew.h"
 #include "base/fields.h"
 #include "base/vec2.h"
 #include "physics/body.h"
@@ -253,8 +254,8 @@ HEDON_FN void set_grid_shape(PhysicsState& state, const PhysicsCapacity& capacit
 
 HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity) {
   set_grid_shape(state, capacity);
-  clear_grid(state.body_grid);
-  clear_grid(state.circle_grid);
+  clear_grid(Alone{}, state.body_grid);
+  clear_grid(Alone{}, state.circle_grid);
   for (int64_t slot = 0; slot < state.neighbors.index.count; ++slot) state.neighbors.index[slot] = -1;
   state.neighbors.head[0].stale = 1;
 }

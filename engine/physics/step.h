@@ -173,7 +173,8 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   int repeat = 0;
   for (;; ++repeat) {
     if (build) {
-      group.once([&] { build_neighbors(state, table, scratch, order.data, count, skin, fault); });
+      group.together(
+          [&](const auto& crew) { build_neighbors(crew, state, table, scratch, order.data, count, skin, fault); });
       if (fault.status != Status::ok) return false;
     }
     skin = head.skin;

@@ -74,6 +74,10 @@ void __tsan_write_range(void*, unsigned long) { touch(); }
 void __tsan_func_entry(void*) {}
 void __tsan_func_exit() {}
 void __tsan_init() {}
+int32_t __tsan_atomic32_exchange(volatile int32_t* place, int32_t value, int) {
+  touch();
+  return __atomic_exchange_n(place, value, __ATOMIC_RELAXED);
+}
 uint64_t __tsan_atomic64_fetch_or(volatile uint64_t* word, uint64_t bits, int) {
   touch();
   return __atomic_fetch_or(word, bits, __ATOMIC_RELAXED);
