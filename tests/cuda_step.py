@@ -6,7 +6,6 @@ takes; and it says which part to shorten first.
 """
 
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -25,16 +24,16 @@ ALONE = 0.1
 """Of the accesses of the thread with the most, if no other thread has so many, that thread works alone."""
 
 PHASES = {
-    ("sense_and_act", False): "sense_and_act",
-    ("build_neighbors", False): "neighbor_list",
-    ("build_neighbors", True): "neighbor_list",
-    ("physics_step", False): "islands",
-    ("step", False): "rules_of_all_threads",
-    ("step", True): "rules_of_one_thread",
+    "cuda/sense.h": "sense_and_act",
+    "physics/neighbor.h": "neighbor_list",
+    "physics/grid.h": "neighbor_list",
+    "physics/step.h": "islands",
+    "world/": "rules",
+    "cuda/window.h": "",  # the beginning of a run
 }
-"""Where the work belongs: by the innermost of these functions with the barrier that ends it, and whether one thread was
-alone."""
-BEFORE_ALL_STEPS = "StepWorlds::operator"
+"""Where the work before a barrier belongs: by the innermost of these sources around it."""
+SHARES = {"rules": ("rules_of_all_threads", "rules_of_one_thread")}
+"""Phases that are told apart by whether one thread was alone."""
 
 
 def build() -> Path:
@@ -49,18 +48,16 @@ def build() -> Path:
     return folder / "step_accesses"
 
 
-def function_of(program: Path, address: str) -> str:
-    """The innermost of the functions of `PHASES` that holds a place of the code; "" for the beginning of a run."""
+def phase_of(program: Path, address: str) -> str:
+    """The phase that a place of the code belongs to."""
     call = hex(int(address, 16) - 1)  # it returns to the address, which may belong to what comes after
-    command = ["addr2line", "-Cfi", "-e", str(program), call]
-    names = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    for line in names.splitlines():
-        for function, _ in PHASES:
-            if re.search(rf"\bhedon::{function}\b[<(]", line):
-                return function
-        if BEFORE_ALL_STEPS in line:
-            return ""
-    raise ValueError(f"no phase has a barrier at {address}: {names}")
+    command = ["addr2line", "-i", "-e", str(program), call]
+    places = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    for place in places.splitlines():
+        for source, phase in PHASES.items():
+            if f"/engine/{source}" in place:
+                return phase
+    raise ValueError(f"no phase has a barrier at {address}: {places}")
 
 
 def count(program: Path, preset: str) -> dict[str, float]:
@@ -70,12 +67,13 @@ def count(program: Path, preset: str) -> dict[str, float]:
         world.write_text(engine_text(load_config(preset), 1))
         command = [str(program), str(WARM_STEPS), str(STEPS), str(world)]
         first, *lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
-    found = {"alive": float(first.split()[1]), **dict.fromkeys(PHASES.values(), 0.0)}
+    phases = [part for phase in PHASES.values() if phase for part in SHARES.get(phase, (phase,))]
+    found = {"alive": float(first.split()[1]), **dict.fromkeys(phases, 0.0)}
     for line in lines:
         address, *numbers = line.split()
         _, way, most, second, _ = map(float, numbers)
-        if most > 0 and (function := function_of(program, address)):
-            found[PHASES[function, second < ALONE * most]] += way
+        if most > 0 and (phase := phase_of(program, address)):
+            found[SHARES[phase][second < ALONE * most] if phase in SHARES else phase] += way
     return {name: round(value) for name, value in found.items()}
 
 

@@ -11,7 +11,7 @@
 
 namespace hedon {
 
-/// One thread. Of the functions, tiles have the first group and the second, whole blocks the first and the third.
+/// One thread. Tiles have the functions as far as `set_bits`; whole blocks `each`, `once`, `select` and those after it.
 class Alone {
  public:
   /// Calls body(i) for i in [first, last).
@@ -61,6 +61,15 @@ class Alone {
 
   /// Sets bits of a word in which other threads may set bits at the same time.
   HEDON_INLINE void set_bits(uint64_t& word, uint64_t bits) const { word |= bits; }
+
+  /// Whether any i in [0, count) holds.
+  template <class Holds>
+  HEDON_INLINE bool any_of(int32_t count, Holds&& holds) const {
+    for (int32_t i = 0; i < count; ++i) {
+      if (holds(i)) return true;
+    }
+    return false;
+  }
 
   /// Calls keep(n, i, value) for the n-th value that find(i, add) adds, for i in [0, count) in order, and then
   /// done(i, first, last) with the range of n of an i; returns how many there are. `find` may be called twice.

@@ -114,7 +114,7 @@ nb::object observations(PythonSimulation& self, int index, int32_t species) {
   const ObservationShape& shape = from.shape->of[species].network.observation;
   const size_t size = static_cast<size_t>(shape.size());
   std::vector<float> full;
-  gather_scene(from);
+  gather_scene(Alone{}, from);
   size_t count = 0;
   for (int32_t i = 0; i < from.head().living_count; ++i) {
     const int32_t slot = from.state.living[i];

@@ -19,6 +19,23 @@ class BlockCrew {
     block_barrier();
   }
 
+  template <class Holds, class Keep>
+  HEDON_INLINE int32_t select(int32_t first, int32_t last, Holds&& holds, Keep&& keep) const {
+    const auto held = [&](int32_t i) -> int32_t { return holds(first + i); };
+    return each_behind(last - first, held, [&](int32_t i, int32_t n, int32_t size) {
+      if (size > 0) keep(n, first + i);
+    });
+  }
+
+  template <class Holds>
+  HEDON_INLINE bool any_of(int32_t count, Holds&& holds) const {
+    bool held = false;
+    for (int32_t i = thread_rank(); i < count; i += thread_count()) held = held || holds(i);
+    int32_t all;
+    sum_before(held, all);
+    return all > 0;
+  }
+
   template <class Find, class Keep, class Done>
   HEDON_INLINE int32_t collect(int32_t count, Find&& find, Keep&& keep, Done&& done) const {
     const auto size = [&](int32_t i) {
@@ -26,7 +43,7 @@ class BlockCrew {
       find(i, [&](int32_t) { ++found; });
       return found;
     };
-    return each_behind(count, size, [&](int32_t i, int32_t first) {
+    return each_behind(count, size, [&](int32_t i, int32_t first, int32_t) {
       int32_t n = first;
       find(i, [&](int32_t value) { keep(n++, i, value); });
       done(i, first, n);
@@ -65,7 +82,7 @@ class BlockCrew {
       for (int32_t i = start[k]; i >= 0; i = work[i]) ++items;
       return items;
     };
-    const int32_t all = each_behind(keys, size, [&](int32_t k, int32_t first) {
+    const int32_t all = each_behind(keys, size, [&](int32_t k, int32_t first, int32_t) {
       int32_t at = first;
       for (int32_t i = start[k]; i >= 0; i = work[i]) place(i, at++, k);
       start[k] = first;
@@ -74,15 +91,17 @@ class BlockCrew {
   }
 
  private:
-  /// Calls body(i, n) for i in [0, count), where n is the sum of size(j) over all j < i; returns the sum over all.
+  /// Calls body(i, n, size(i)) for i in [0, count), where n is the sum of size(j) over all j < i; returns the sum over
+  /// all.
   template <class Size, class Body>
   HEDON_INLINE int32_t each_behind(int32_t count, Size&& size, Body&& body) const {
     int32_t total = 0;
     for (int32_t from = 0; from < count; from += thread_count()) {
       const int32_t i = from + thread_rank();
       int32_t all;
-      const int32_t before = sum_before(i < count ? size(i) : 0, all);
-      if (i < count) body(i, total + before);
+      const int32_t own = i < count ? size(i) : 0;
+      const int32_t before = sum_before(own, all);
+      if (i < count) body(i, total + before, own);
       total += all;
     }
     block_barrier();

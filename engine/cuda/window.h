@@ -45,7 +45,7 @@ struct StepWorlds {
     Block block;
     World& world = on.worlds[b];
     if (world.over()) return;
-    block.once([&] { prepare_step(world); });
+    block.together([&](const auto& crew) { prepare_step(crew, world); });
     for (int64_t i = 0; i < steps && !world.over(); ++i)
       step(block, world, world.head().step % world.shape->steps, [](Part) {});
     if (world.over() || world.head().step % world.shape->steps != 0) return;

@@ -257,12 +257,12 @@ HEDON_FN void build_neighbors(const Crew& crew, const PhysicsState& state, const
   });
 }
 
-/// Calls f(slot of the body, slot of the circle, mark) for each listed pair of a body and a circle.
+/// Calls f(slot of the body, slot of the circle) for each listed pair of a body and a circle that has a mark.
 template <class F>
-HEDON_FN void for_each_circle_pair(const NeighborList& list, F&& f) {
+HEDON_FN void for_each_marked_circle(const NeighborList& list, F&& f) {
   const int32_t pairs = list.circles.start[list.head[0].bodies];
   for (int32_t pair = 0; pair < pairs; ++pair) {
-    f(list.slot[list.circles.first[pair]], list.circles.second[pair], list.circles.mark[pair]);
+    if (list.circles.mark[pair] != 0) f(list.slot[list.circles.first[pair]], list.circles.second[pair]);
   }
 }
 

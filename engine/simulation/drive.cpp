@@ -60,7 +60,7 @@ void Simulation::show(int32_t species, const Shown& out) {
   const FloatMode mode(flush_);
   const Species& own = shape_.of[species];
   const int32_t blocks = (own.capacity() + SLOTS_AT_ONCE - 1) / SLOTS_AT_ONCE;
-  for (World& world : worlds_) gather_scene(world);
+  for (World& world : worlds_) gather_scene(Alone{}, world);
   std::atomic<int32_t> next{0};
   pool_->run([&](int rank) {
     for (int32_t i = next.fetch_add(1); i < world_count() * blocks; i = next.fetch_add(1)) {

@@ -81,7 +81,7 @@ template <class Group, class Pacer, class Lap>
 HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
                       Lap&& lap) {
   const int64_t window = world.shape->steps;
-  group.once([&] { prepare_step(world); });
+  group.together([&](const auto& crew) { prepare_step(crew, world); });
   while (steps > 0 && !world.over()) {
     const int64_t left = window - world.head().step % window;
     const int64_t stretch = left < steps ? left : steps;

@@ -81,7 +81,7 @@ std::string remove_food(World& world, int32_t food) {
 
 /// Prepares the next step if something has changed.
 std::string settle(World& world, std::string refused) {
-  if (refused.empty()) prepare_step(world);
+  if (refused.empty()) prepare_step(Alone{}, world);
   return refused;
 }
 

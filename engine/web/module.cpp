@@ -181,7 +181,7 @@ HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
                                             std::vector<int32_t>{});
   scratch.assign(static_cast<size_t>(scratch_stride() * threads) + 16, 0.0f);
   pace = Pace();
-  prepare_step(world());
+  prepare_step(Alone{}, world());
   return report_fault();
 }
 

@@ -91,19 +91,15 @@ HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
 }
 
 /// The nearest of the agents whose mouths touched a food in this step eats it; or all of them do.
-HEDON_FN void eat(World& world) {
+HEDON_FN void share_food(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
   const BodyState& body = state.physics.bodies;
-  for (int32_t i = 0; i < world.head().living_count; ++i) {
-    for (int32_t m = 0; m < world.shape->meals(); ++m) world.meal(state.living[i])[m] = 0;
-  }
   world.head().ghost_count = 0;
   const bool all = world.config->rules.mouths == Mouths::all;
   const bool seen = world.shape->ghosts;
   int32_t found = 0;
-  for_each_circle_pair(state.physics.neighbors, [&](int32_t slot, int32_t f, uint8_t mark) {
-    if (mark == 0) return;
+  for_each_marked_circle(state.physics.neighbors, [&](int32_t slot, int32_t f) {
     const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
     const float distance = squared_length(apart);
     if (all && scratch.eater[f] >= 0) return feed(world, slot, food_kind(*world.shape, f));
@@ -128,6 +124,15 @@ HEDON_FN void eat(World& world) {
       if (seen) state.ghost[world.head().ghost_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
     }
   }
+}
+
+/// All agents forget their meals, and eat.
+template <class Crew>
+HEDON_FN void eat(const Crew& crew, World& world) {
+  crew.each(0, world.head().living_count, [&](int32_t i) {
+    for (int32_t m = 0; m < world.shape->meals(); ++m) world.meal(world.state.living[i])[m] = 0;
+  });
+  crew.once([&] { share_food(world); });
 }
 
 /// n <- min(n + g - eaten, n_max), then new food up to the floor of n. `eat` has already subtracted the eaten food. If

@@ -18,11 +18,11 @@ namespace hedon {
 /// Lists the living by ascending slot. A team divides them in this order, so that each member's part of every array is
 /// contiguous. In the order of ids, slots of two members would share most cache lines, which would then move back and
 /// forth between the cores.
-HEDON_FN void list_by_slot(World& world) {
-  int32_t count = 0;
-  for (int32_t slot = 0; slot < world.shape->capacity; ++slot) {
-    if (world.state.alive[slot]) world.scratch.by_slot[count++] = slot;
-  }
+template <class Crew>
+HEDON_FN void list_by_slot(const Crew& crew, World& world) {
+  crew.select(
+      0, world.shape->capacity, [&](int32_t slot) { return world.state.alive[slot] != 0; },
+      [&](int32_t at, int32_t slot) { world.scratch.by_slot[at] = slot; });
 }
 
 /// Takes a slot from those of a species that are free; at least one must be.

@@ -10,59 +10,45 @@
 namespace hedon {
 
 /// Collects the circles that rays may hit and sorts them by cell; within a cell, the living come in their order, then
-/// the foods, then those just eaten if they are seen. (A counting sort: its time is in proportion to the circles and
-/// cells.)
-HEDON_FN void gather_scene(World& world) {
+/// the foods, then those just eaten if they are seen.
+template <class Crew>
+HEDON_FN void gather_scene(const Crew& crew, World& world) {
   RayScene& scene = world.scene;
   const WorldState& state = world.state;
-  const RayGrid& grid = world.shape->scene;
-  const int32_t cells = grid.columns * grid.rows;
-  for (int32_t cell = 0; cell <= cells; ++cell) scene.start[cell] = 0;
-  const auto find_cell = [&](int32_t circle, float x, float y) {
-    const int32_t column = cell_along(x, grid.inverse_cell, grid.columns);
-    const int32_t cell = cell_along(y, grid.inverse_cell, grid.rows) * grid.columns + column;
-    scene.cell[circle] = cell;
-    ++scene.start[cell];
-  };
-  const int32_t living = world.head().living_count, capacity = world.shape->capacity;
+  const WorldShape& shape = *world.shape;
+  const RayGrid& grid = shape.scene;
   const BodyState& body = state.physics.bodies;
   const StaticCircles& food = state.physics.circles;
-  for (int32_t i = 0; i < living; ++i) find_cell(i, body.x[state.living[i]], body.y[state.living[i]]);
-  for (int32_t f = 0; f < world.shape->foods; ++f) {
-    if (food.present[f]) find_cell(capacity + f, food.x[f], food.y[f]);
-  }
-  const int32_t ghosts = world.head().ghost_count, first_ghost = capacity + world.shape->foods;
-  for (int32_t g = 0; g < ghosts; ++g) find_cell(first_ghost + g, state.ghost[g].x, state.ghost[g].y);
-
-  int32_t sum = 0;
-  for (int32_t cell = 0; cell < cells; ++cell) {
-    sum += scene.start[cell];
-    scene.start[cell] = sum;  // the end of the cell; inserting its circles, last one first, makes it the start
-  }
-  scene.start[cells] = sum;
-  const auto put = [&](int32_t circle, float x, float y, float radius, int32_t type) {
-    const int32_t at = --scene.start[scene.cell[circle]];
-    scene.x[at] = x;
-    scene.y[at] = y;
-    scene.radius[at] = radius;
-    scene.type[at] = static_cast<float>(type);
-    return at;
+  const int32_t foods = world.head().living_count, ghosts = foods + shape.foods;  // where those begin
+  const auto place_of = [&](int32_t circle) {
+    if (circle < foods) return Vec2{body.x[state.living[circle]], body.y[state.living[circle]]};
+    if (circle < ghosts) return Vec2{food.x[circle - foods], food.y[circle - foods]};
+    return Vec2{state.ghost[circle - ghosts].x, state.ghost[circle - ghosts].y};
   };
-  for (int32_t g = ghosts - 1; g >= 0; --g) {
-    const Ghost& ghost = state.ghost[g];
-    put(first_ghost + g, ghost.x, ghost.y, world.config->food_radius, world.shape->food_type(ghost.kind));
-  }
-  for (int32_t k = world.shape->kinds - 1; k >= 0; --k) {
-    for (int32_t f = world.shape->food_offset[k + 1] - 1; f >= world.shape->food_offset[k]; --f) {
-      if (food.present[f])
-        put(capacity + f, food.x[f], food.y[f], world.config->food_radius, world.shape->food_type(k));
+  const auto cell_of = [&](int32_t circle) {
+    if (circle >= foods && circle < ghosts && !food.present[circle - foods]) return -1;
+    const Vec2 place = place_of(circle);
+    const int32_t column = cell_along(place.x, grid.inverse_cell, grid.columns);
+    return cell_along(place.y, grid.inverse_cell, grid.rows) * grid.columns + column;
+  };
+  const auto put = [&](int32_t circle, int32_t at, int32_t) {
+    const Vec2 place = place_of(circle);
+    scene.x[at] = place.x;
+    scene.y[at] = place.y;
+    if (circle < foods) {
+      const int32_t slot = state.living[circle], s = shape.species_of(slot);
+      scene.radius[at] = shape.of[s].body.radius;
+      scene.type[at] = static_cast<float>(s);
+      scene.own[slot] = at;
+    } else {
+      const int32_t kind =
+          circle < ghosts ? shape.bodies.circle_class(circle - foods) : state.ghost[circle - ghosts].kind;
+      scene.radius[at] = world.config->food_radius;
+      scene.type[at] = static_cast<float>(shape.food_type(kind));
     }
-  }
-  for (int32_t i = living - 1; i >= 0; --i) {
-    const int32_t slot = state.living[i];
-    const int32_t s = world.shape->species_of(slot);
-    scene.own[slot] = put(i, body.x[slot], body.y[slot], world.shape->of[s].body.radius, s);
-  }
+  };
+  crew.sort(ghosts + world.head().ghost_count, grid.columns * grid.rows, scene.start.data, scene.cell.data, cell_of,
+            put);
 }
 
 /// The scene in the form for the kernels.

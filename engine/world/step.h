@@ -35,21 +35,29 @@ HEDON_FN void name_fault(World& world) {
 }
 
 /// Finds bodies that were so fast that they passed through the outer walls.
-HEDON_FN void check_inside(World& world) {
+template <class Crew>
+HEDON_FN void check_inside(const Crew& crew, World& world) {
   const BodyState& body = world.state.physics.bodies;
   const ArenaConfig& arena = world.config->arena;
-  for (int32_t i = 0; i < world.head().living_count; ++i) {
+  const auto outside = [&](int32_t i) {
+    const float x = body.x[world.state.living[i]], y = body.y[world.state.living[i]];
+    return !(x >= 0.0f && x <= arena.width && y >= 0.0f && y <= arena.height);
+  };
+  if (!crew.any_of(world.head().living_count, outside)) return;
+  crew.once([&] {
+    int32_t i = 0;
+    while (!outside(i)) ++i;
     const int32_t slot = world.state.living[i];
     const float x = body.x[slot], y = body.y[slot];
-    if (x >= 0.0f && x <= arena.width && y >= 0.0f && y <= arena.height) continue;
-    return world.fail(Status::outside_arena, world.state.life[slot].agent_id, x < 0.0f || x > arena.width ? x : y);
-  }
+    world.fail(Status::outside_arena, world.state.life[slot].agent_id, x < 0.0f || x > arena.width ? x : y);
+  });
 }
 
 /// Computes the data for the start of a step from the state.
-HEDON_FN void prepare_step(World& world) {
-  list_by_slot(world);
-  gather_scene(world);
+template <class Crew>
+HEDON_FN void prepare_step(const Crew& crew, World& world) {
+  list_by_slot(crew, world);
+  gather_scene(crew, world);
 }
 
 /// Advances a world by one step, which must be prepared. All members of the group call it; `t` is the step
@@ -72,10 +80,10 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   }
   lap(Part::physics);
 
-  group.once([&] {
-    check_inside(world);
-    eat(world);
-    if (world.shape->obstacles > 0) feel_obstacles(world);
+  group.together([&](const auto& crew) {
+    check_inside(crew, world);
+    eat(crew, world);
+    if (world.shape->obstacles > 0) crew.once([&] { feel_obstacles(world); });
   });
   if (world.fault().status != Status::ok) return;
   const auto reward_and_fates = [&](int32_t slot) {
@@ -102,9 +110,9 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     if (world.config->rules.birth_order == BirthOrder::after_deaths) breed(world);
     grow(world);
     head.step += 1;
-    prepare_step(world);
     if (head.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(head.step));
   });
+  group.together([&](const auto& crew) { prepare_step(crew, world); });
   lap(Part::life);
 }
 
