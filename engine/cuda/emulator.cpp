@@ -58,7 +58,7 @@ struct Thread {
   EmulatedBlock* block;
   int rank;
   int turn = 0;
-  int64_t barriers = 0;  ///< of the block, reached so far
+  int64_t barriers = 0, tile_barriers = 0;  ///< reached so far
 };
 
 thread_local Thread* self = nullptr;
@@ -217,7 +217,10 @@ int thread_count() { return self->block->threads; }
 void block_barrier() {
   if (self->barriers++ != lost_barrier) self->block->barrier.wait();
 }
-void tile_barrier() { self->block->tiles[static_cast<size_t>(self->rank / TILE)].barrier.wait(); }
+void tile_barrier() {
+  if (self->tile_barriers++ != lost_tile_barrier)
+    self->block->tiles[static_cast<size_t>(self->rank / TILE)].barrier.wait();
+}
 float* shared_memory() { return self->block->shared.get(); }
 
 uint32_t tile_ballot(bool holds) {

@@ -10,8 +10,9 @@
 
 namespace hedon {
 
-/// A barrier of each block, counted from 0, at which no thread waits; none if negative. For tests that a mistake shows.
-inline int64_t lost_barrier = -1;
+/// A barrier of each block, and one of each tile, counted from 0, at which no thread waits; none if negative. For tests
+/// that a mistake shows.
+inline int64_t lost_barrier = -1, lost_tile_barrier = -1;
 
 /// Runs blocks 0 … blocks - 1 of `threads` threads each, one block after another, as kernel(block).
 /// threads   a multiple of 16

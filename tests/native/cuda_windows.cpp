@@ -1,7 +1,8 @@
 /// Windows of the emulated CUDA kernels against the processor's kernel, without Python: for the sanitizers.
 ///
 ///     cuda_windows STEPS FILE…     two worlds of each file; digests after STEPS steps
-///     cuda_windows --without N …   the same, with a mistake: no thread waits at the N-th barrier of its block
+///     cuda_windows --without N …   the same, with a mistake: no thread waits at the N-th barrier of its block, or,
+///     cuda_windows --without-tile N …   of its tile
 ///
 /// Exit status 1 where a digest differs or a world has a fault, 2 for a wrong file.
 #include <cstring>
@@ -36,12 +37,16 @@ bool same(const std::string& file, int64_t steps) {
 
 int main(int count, char** arguments) {
   int next = 1;
-  if (count > 3 && strcmp(arguments[1], "--without") == 0) {
-    hedon::lost_barrier = atoll(arguments[2]);
-    next = 3;
+  for (; count > next + 3; next += 2) {
+    if (strcmp(arguments[next], "--without") == 0)
+      hedon::lost_barrier = atoll(arguments[next + 1]);
+    else if (strcmp(arguments[next], "--without-tile") == 0)
+      hedon::lost_tile_barrier = atoll(arguments[next + 1]);
+    else
+      break;
   }
   if (count < next + 2) {
-    fprintf(stderr, "cuda_windows [--without N] STEPS FILE…\n");
+    fprintf(stderr, "cuda_windows [--without N] [--without-tile N] STEPS FILE…\n");
     return 2;
   }
   const int64_t steps = atoll(arguments[next]);
