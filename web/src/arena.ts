@@ -90,6 +90,7 @@ export class Arena {
     const reach = layout.types.map((_, type) =>
       Math.max(0, ...layout.species.filter((each) => each.smells.includes(type)).map((each) => Math.log(1 / FAINT) / each.noses.decay)),
     );
+    if (reach.every((each) => each === 0)) return;
     const halo = (type: number, x: number, y: number, color: number) => {
       if (reach[type]! > 0) this.scene.disc(x, y, reach[type]!, (color & 0xffffff) | HALO);
     };

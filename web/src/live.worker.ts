@@ -34,7 +34,7 @@ export type Report = { type: "made"; fused: boolean; bytes: number; threads: num
 const PIECE = 2; // learners of each thread between two looks at the clock
 const START_MS = 20_000; // that a thread may take to start
 const SHARED = self.crossOriginIsolated; // otherwise the browser shares no memory, and there is one thread
-const USUAL_THREADS = 4; // at most: more wait for one another more than they help
+const USUAL_THREADS = 4; // at most, so that a page leaves a large machine to others
 let engine: Engine | undefined;
 let layout: Layout | undefined;
 let meals = new LastMeals();
