@@ -14,7 +14,7 @@ from hedon.config.layout import (
     SOLID,
     chosen,
     inner_states,
-    layouts,
+    layout_of,
     rule_columns,
     set_point_of,
     smelled,
@@ -46,10 +46,12 @@ def species_problems(config: Config) -> Iterator[Problem]:
         yield from _body(config, species, path)
         yield from _life(config, species, path)
         yield from _lists(config, species, path)
-        yield from _sight(config, species, path)
-        yield from _genes(config, name, path)
         yield from schedule_problems(species.hazard.schedule, f"{path}hazard.schedule", {"scale": MAX_FACTOR})
-        yield from _rule(config, name, path)
+        unknown = [*_sight(config, species, path), *_settable(species, path)]
+        yield from unknown
+        if not unknown:  # else there is no layout
+            yield from _genes(config, species, path)
+            yield from _rule(config, name, path)
     yield from _nobody(config)
     yield from _crowd(config)
     yield from _collisions(config)
@@ -166,19 +168,17 @@ def _sight(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
             yield Problem(f"{path}reward.see.{name}.reads", rule, format_value(see.reads), nearest(see.reads, seen))
 
 
-def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
-    species = config.agents[name]
+def _settable(species: SpeciesConfig, path: str) -> Iterator[Problem]:
+    """Genes set what genes can set."""
+    for table, known in (("learning", LEARNING_GENES), ("family", FAMILY_GENES)):
+        for gene in getattr(species.genome, table):
+            if gene not in known:
+                rule = "no gene can set this: there are " + ", ".join(known)
+                yield Problem(f"{path}genome.{table}.{gene}", rule, nearest=nearest(gene, tuple(known)))
+
+
+def _genes(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
     genome, learning = species.genome, species.learning
-    for gene in genome.learning:
-        if gene not in LEARNING_GENES:
-            rule = "no gene can set this: there are " + ", ".join(LEARNING_GENES)
-            yield Problem(f"{path}genome.learning.{gene}", rule, nearest=nearest(gene, tuple(LEARNING_GENES)))
-            return
-    for gene in genome.family:
-        if gene not in FAMILY_GENES:
-            rule = "no gene can set this: there are " + ", ".join(FAMILY_GENES)
-            yield Problem(f"{path}genome.family.{gene}", rule, nearest=nearest(gene, tuple(FAMILY_GENES)))
-            return
     if genome.family and species.reward.family not in THRESHOLDS:
         rule = f'reward.family = "{species.reward.family}" has no threshold: ' + ", ".join(THRESHOLDS) + " have one"
         yield Problem(f"{path}genome.family", rule)
@@ -191,12 +191,7 @@ def _genes(config: Config, name: str, path: str) -> Iterator[Problem]:
     for value in ("learning_rate", "entropy_coef"):
         if value in genome.learning and getattr(learning, value) == 0:
             yield Problem(f"{path}learning.{value}", "a gene multiplies it, so it must not be 0", "0.0")
-    seen = chosen(config, species.sensor.sees)
-    if not set(species.reward.smell) <= set(smelled(config, species.sensor.smells)):
-        return
-    if any(name not in seen or (see.reads and see.reads not in seen) for name, see in species.reward.see.items()):
-        return  # that is said already
-    names = layouts(config)[name].gene_names
+    names = layout_of(config, species).gene_names
     for state in set(INNER_STATES) - set(inner_states(config, species)):
         point = set_point_of(state)
         if getattr(genome, point) != getattr(GenomeConfig(), point):

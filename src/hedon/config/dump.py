@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.earlier import GENE_SETTINGS, old_rows
+from hedon.config.earlier import old_rows
 from hedon.config.field import leaves, sections, settings
 from hedon.config.problem import format_value
 
@@ -128,7 +128,10 @@ def flatten(config: Config) -> dict[str, Any]:
 
 
 def digest(config: Config) -> str:
-    """A fingerprint of a config: equal if all settings are equal, apart from names and colors.
+    """A fingerprint of a config: equal exactly if all settings are equal, apart from names and colors.
+
+    What is left out can be told from the rest: a setting that has its value of earlier versions, and founders' genes
+    where the old settings, which are put in, say the same. So configs that differ have digests that differ.
 
     Returns:
         SHA-256, 64 hexadecimal digits.
@@ -136,17 +139,18 @@ def digest(config: Config) -> str:
     seen = [
         [path, value]
         for path, value in flatten(config).items()
-        if not path.endswith(".color") and not _is_earlier(path, value)
+        if not path.endswith(".color") and not is_earlier(path, value)
     ]
-    genes = old_rows(config)
-    if genes is not None:
-        seen = [row for row in seen if not row[0].endswith(GENE_SETTINGS)]
+    old = old_rows(config)
+    if old is not None:
+        genes, replaced = old
+        seen = [row for row in seen if row[0] not in replaced]
         at = next(i for i, row in enumerate(seen) if row[0] == "genome.neutral_count")
         seen[at + 1 : at + 1] = genes
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()
 
 
-def _is_earlier(path: str, value: Any) -> bool:
+def is_earlier(path: str, value: Any) -> bool:
     """Whether a setting has the value that it had before it existed, in the sections of a species too."""
     shared = re.sub(r"^species\.[^.]+\.", "", path)
     every = re.sub(r"^(food|reward\.see)\.[^.]+\.", r"\1.*.", shared)

@@ -10,8 +10,6 @@ from hedon.config.config import Config
 from hedon.config.layer import Table
 
 _FOOD, _ACTION, _SD = "initial_mean_food", "initial_mean_action", "initial_sd"
-GENE_SETTINGS = (".initial_mean", ".initial_sd")
-"""Ends of the paths that stand for them now."""
 
 
 def with_genes(tables: Table) -> Table:
@@ -29,11 +27,17 @@ def with_genes(tables: Table) -> Table:
     return tables | {"genome": kept, "food": food}
 
 
-def old_rows(config: Config) -> list[list[Any]] | None:
-    """The old settings' paths and values, if they can say what a config says; else None."""
+def old_rows(config: Config) -> tuple[list[list[Any]], set[str]] | None:
+    """The old settings' paths and values, and the paths of the settings for which they stand.
+
+    None if the old settings cannot say what a config says. Genes of species, of sight and of learning are not among
+    them: those versions had none.
+    """
     foods, action, neutral = [food.gene for food in config.food.values()], config.genome.action, config.genome.neutral
     means = {gene.initial_mean for gene in foods}
     if len(means) != 1 or len({gene.initial_sd for gene in (*foods, action, neutral)}) != 1 or neutral.initial_mean:
         return None
     rows = {_FOOD: means.pop(), _ACTION: action.initial_mean, _SD: action.initial_sd}
-    return [[f"genome.{name}", value] for name, value in rows.items()]
+    genes = ["genome.action", "genome.neutral", *(f"food.{kind}.gene" for kind in config.food)]
+    replaced = {f"{gene}.{name}" for gene in genes for name in ("initial_mean", "initial_sd")}
+    return [[f"genome.{name}", value] for name, value in rows.items()], replaced

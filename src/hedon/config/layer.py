@@ -1,6 +1,6 @@
 """Merges layers of nested tables: a later layer replaces the settings of earlier ones, one by one."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 from hedon.config.problem import Problem, format_value, nearest
@@ -54,8 +54,8 @@ def settle_food(tables: Table) -> Iterator[Problem]:
             yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
 
 
-def settle_species(tables: Table, sections: Iterable[str]) -> Iterator[Problem]:
-    """Completes the tables of each species, in place: what they do not say, the sections of the config say.
+def settle_species(tables: Table, common: Table) -> Iterator[Problem]:
+    """Completes the tables of each species, in place: what they do not say, `common` says.
 
     A species that is false is removed; yields what is wrong with the species.
     """
@@ -68,8 +68,54 @@ def settle_species(tables: Table, sections: Iterable[str]) -> Iterator[Problem]:
         elif not isinstance(own, dict):
             yield Problem(f"species.{name}", "must be a table", format_value(own))
         else:
-            shared = {section: tables[section] for section in sections if section in tables}
-            species[name] = _lay(shared, own)
+            species[name] = _lay(common, own)
+
+
+def reach_species(
+    tables: Table, layers: Sequence[Table], sections: Collection[str], rules: Collection[str]
+) -> Iterator[Problem]:
+    """Lets what users' layers say of the config's sections reach the species of `tables`, in place.
+
+    A rule of the world is every species' rule. Any other setting reaches those species that have none of their own:
+    yields a problem where all have one from below, so that the user's would change nothing.
+    """
+    species = tables.get("species")
+    owners = {name: own for name, own in species.items() if isinstance(own, dict)} if isinstance(species, dict) else {}
+    for i, layer in enumerate(layers) if owners else ():
+        over = stack(layers[i:]).get("species", {})
+        for path, value in _flat({name: layer[name] for name in sections if name in layer}):
+            name = ".".join(path)
+            if name in rules:
+                for own in owners.values():
+                    own.update(_lay(own, _nested(path, value)))
+            elif all(has(own, path) for own in owners.values()) and not all(
+                has(over, (each, *path)) for each in owners
+            ):
+                said = " and ".join(f"species.{each}.{name}" for each in owners)
+                yield Problem(name, f"changes nothing, since each species has its own: set {said}", format_value(value))
+
+
+def _flat(table: Table, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, (*path, name))
+        else:
+            yield (*path, name), value
+
+
+def _nested(path: Sequence[str], value: Any) -> Any:
+    for name in reversed(path):
+        value = {name: value}
+    return value
+
+
+def has(table: Any, path: Sequence[str]) -> bool:
+    """Whether nested tables have something at a path."""
+    for name in path:
+        if not isinstance(table, dict) or name not in table:
+            return False
+        table = table[name]
+    return True
 
 
 def settle_mutation(tables: Table) -> None:

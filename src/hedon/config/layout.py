@@ -119,7 +119,7 @@ def types(config: Config) -> tuple[str, ...]:
 
 def layouts(config: Config) -> dict[str, SpeciesLayout]:
     """The layouts of every species, by name, in the order of the config."""
-    return {name: _layout(config, species) for name, species in config.agents.items()}
+    return {name: layout_of(config, species) for name, species in config.agents.items()}
 
 
 def gene_columns(config: Config) -> tuple[str, ...]:
@@ -133,7 +133,7 @@ def gene_columns(config: Config) -> tuple[str, ...]:
 
 def observation_columns(config: Config, name: str) -> tuple[str, ...]:
     """Names of the entries of what a species observes, in order: model page, section 5."""
-    species, layout = config.agents[name], layouts(config)[name]
+    species, layout = config.agents[name], layout_of(config, config.agents[name])
     heading = ("heading",) if species.sensor.scaling == "raw" else ("heading_sine", "heading_cosine")
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
@@ -169,7 +169,7 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth. Where there are
     other inner states than energy, they stand before it, each as it was at the start of the step and as it is.
     """
-    layout, memory = layouts(config)[name], config.agents[name].reward.memory
+    layout, memory = layout_of(config, config.agents[name]), config.agents[name].reward.memory
     inner = inner_states(config, config.agents[name])[1:]
     states = (column for state in inner for column in (f"{state}_before", state))
     inputs = (term.name for term in layout.terms)
@@ -300,7 +300,8 @@ def _most(family: str, role: str, name: str) -> float:
     return MAX_EXPONENT if exponent else math.inf
 
 
-def _layout(config: Config, species: SpeciesConfig) -> SpeciesLayout:
+def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
+    """The layouts of one species. It must see and smell all that it is rewarded for."""
     made, genome, reward = _Layout(species), species.genome, species.reward
     eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
     inner = inner_states(config, species)

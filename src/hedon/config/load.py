@@ -7,13 +7,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import Config
-from hedon.config.dump import EARLIER, digest
+from hedon.config.config import PROVENANCE, Config
+from hedon.config.dump import EARLIER, digest, is_earlier
 from hedon.config.earlier import with_genes
-from hedon.config.layer import Table, settle_food, settle_mutation, settle_species, stack
+from hedon.config.field import leaves
+from hedon.config.layer import Table, has, reach_species, settle_food, settle_mutation, settle_species, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
-from hedon.config.species import PER_SPECIES
+from hedon.config.species import PER_SPECIES, RULES
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import from_tables
 from hedon.error import ArgumentError
@@ -70,11 +71,8 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     below = _layers_below(own, fidelity, problems)
     if problems:
         raise ConfigError(origin, problems)
-    if own.get("complete") is True:
-        own = with_genes(own)
     name = {"name": str(source) if path is None else _name_of(path)}
-    merged = _settled([name, *below, own, *tables], origin)
-    return from_tables(merged, origin + " with --set" if tables else origin)
+    return _from_layers([name, *below], [own, *tables], origin + " with --set" if tables else origin)
 
 
 def parse_config(text: str, origin: str) -> Config:
@@ -83,7 +81,7 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Something in it is wrong or missing.
     """
-    return from_tables(_settled([_earlier(), with_genes(parse_toml(text, origin))], origin), origin)
+    return _from_layers([_earlier()], [parse_toml(text, origin) | {"complete": True}], origin)
 
 
 def is_modified(config: Config) -> bool:
@@ -151,14 +149,34 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
     return [*_preset_layers(own["preset"]), _settings_of(_FOLDER / "overlays" / f"{own['fidelity']}.toml")]
 
 
-def _settled(layers: list[Table], origin: str) -> Table:
-    merged = stack(layers)
+def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
+    """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
+    complete = above[0].get("complete") is True
+    if complete:
+        above = [with_genes(above[0]), *above[1:]]
+    merged = stack([*below, *above])
     merged.pop("complete", None)
-    problems = [*settle_food(merged), *settle_species(merged, PER_SPECIES)]
+    problems = [*settle_food(merged), *reach_species(merged, above, PER_SPECIES, RULES)]
+    # The species of a complete file have all their settings. A table of the config that they lack, they lack.
+    common = _earlier() if complete else merged
+    problems += settle_species(merged, {name: common[name] for name in PER_SPECIES if name in common})
     settle_mutation(merged)
     if problems:
         raise ConfigError(origin, problems)
-    return merged
+    config = from_tables(merged, origin)
+    if complete:
+        _require_complete(config, merged, origin)
+    return config
+
+
+def _require_complete(config: Config, tables: Table, origin: str) -> None:
+    """ConfigError: a file that says it is complete lacks a setting, which would have a default that nobody chose."""
+    problems = []
+    for path, setting, value in leaves(config):
+        if path not in PROVENANCE and not has(tables, path.split(".")) and not is_earlier(path, value):
+            problems.append(Problem(path, f"is missing in a file that says it is complete; {setting.allowed}"))
+    if problems:
+        raise ConfigError(origin, problems)
 
 
 def _earlier() -> Table:

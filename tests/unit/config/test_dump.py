@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_toml, load_config
 from hedon.config import field as doc
-from hedon.config.config import Config
+from hedon.config.config import PROVENANCE, Config
 from hedon.config.dump import EARLIER, flatten, section_paths
-from hedon.config.evolution import GeneConfig
+from hedon.config.evolution import GeneConfig, MutationConfig, SeeConfig, SmellConfig
 from hedon.config.load import parse_config
+from hedon.config.schedule import ScheduleConfig
 
 
 def reload(config: Config, folder: Path) -> Config:
@@ -136,6 +137,90 @@ def test_digest_knows_what_matters() -> None:
     assert digest(backwards) != digest(config), "the order of the kinds is the order of the channels"
     assert diff(config, backwards) == [("food", ("normal", "poor"), ("poor", "normal"))]
     assert len(digest(config)) == 64
+
+
+RICH = (
+    "genome.learning.gamma={}",
+    "genome.family.threshold={}",
+    'genome.mutation.w_action={law="normal"}',
+    "hazard.schedule.scale={points=[[0, 1.0], [5, 2.0]]}",
+    "obstacle.schedule.harmful={points=[[0, 1.0], [5, 0.0]]}",
+    "food.normal.schedule.capacity={points=[[0, 1.0], [5, 0.5]]}",
+    'reward.family="fed"',
+    'sensor.smells=["normal"]',
+    "reward.smell.normal={}",
+    "species.prey.reward.see.normal={}",
+    "reward.relief_coef=1",
+    "food.normal.nutrient=1",
+)
+"""What gives a config one entry in each of its tables."""
+
+
+def rich() -> Config:
+    """Two species, and a config whose own sections differ from both."""
+    both = load_config("predator", overrides=RICH)
+    return dataclasses.replace(both, genome=dataclasses.replace(both.genome, action=GeneConfig(1.0, 0.2)))
+
+
+def put(section: Any, path: list[str], value: Any) -> Any:
+    """A section with another value at a path below it."""
+    name, *below = path
+    inner = section[name] if isinstance(section, dict) else getattr(section, name)
+    new = put(inner, below, value) if below else value
+    return section | {name: new} if isinstance(section, dict) else dataclasses.replace(section, **{name: new})
+
+
+def others(value: Any, setting: doc.Setting) -> list[Any]:
+    """Two values that differ from a setting's."""
+    if isinstance(value, bool):
+        return [not value]
+    if setting.choices:
+        return [choice for choice in setting.choices if choice != value]
+    if isinstance(value, int | float):
+        return [value + 1, value * 2 + 3]
+    return [value + "x", value + "y"] if isinstance(value, str) else [(*value, 7), (*value, 8)]
+
+
+@pytest.mark.parametrize("config", [load_config("poison"), load_config("predator"), load_config("pitfall"), rich()])
+def test_no_two_configs_have_one_digest(config: Config) -> None:
+    found = {digest(config): "none"}
+    for path, setting, value in doc.leaves(config):
+        if path in PROVENANCE or path.endswith(".color"):
+            continue
+        for other in others(value, setting):
+            changed = put(config, path.split("."), other)
+            # The config's value in the place of another species' would also do, so all are compared with all.
+            assert digest(changed) not in found, (path, other, found[digest(changed)])
+            found[digest(changed)] = f"{path} = {other}"
+    assert len(found) > 300
+
+
+tables = {
+    "reward": st.builds(
+        lambda see, smell: {"see": see, "smell": smell},
+        st.dictionaries(st.sampled_from(["prey", "predator"]), st.builds(SeeConfig)),
+        st.dictionaries(st.just("normal"), st.builds(SmellConfig)),
+    ),
+    "genome": st.builds(
+        lambda learning, mutation: {"learning": learning, "mutation": mutation},
+        st.dictionaries(st.sampled_from(["gamma", "action_sd"]), st.builds(GeneConfig)),
+        st.dictionaries(st.just("w_action"), st.builds(MutationConfig)),
+    ),
+    "hazard": st.sampled_from([{"schedule": {}}, {"schedule": {"scale": ScheduleConfig(points=((0, 1.0), (9, 2.0)))}}]),
+}
+
+
+@settings(max_examples=60, deadline=None)
+@given(own=st.fixed_dictionaries({name: st.fixed_dictionaries(tables) for name in ("", "prey", "predator")}))
+def test_a_species_lacks_the_tables_that_it_lacked_when_it_was_written(own: dict[str, Any]) -> None:
+    config = load_config("predator", overrides=['sensor.smells=["normal"]'])
+    for name, sections in own.items():
+        for section, values in sections.items():
+            for table, value in values.items():
+                config = put(config, [*(["species", name] if name else []), section, table], value)
+    again = parse_config(dump_toml(config), "text")
+    assert again == config
+    assert digest(again) == digest(config)
 
 
 def test_diff_names_what_is_absent() -> None:

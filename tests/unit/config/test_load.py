@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, load_config
+from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, dump_toml, load_config
 from hedon.config.load import PAPER_PRESETS, describe_fidelity, describe_preset, is_modified
 
 Write = Callable[[str], Path]
@@ -172,10 +172,40 @@ def test_bad_names_at_the_top_come_together(write: Write) -> None:
 
 
 def test_complete_file_takes_no_fidelity(write: Write) -> None:
-    path = write('complete = true\nfidelity = "text"\n')
-    assert load_config(path).energy.initial == 40.0, "nothing is taken from the overlay"
+    path = write(dump_toml(load_config("baseline")).replace('fidelity = "corrected"', 'fidelity = "text"'))
+    assert load_config(path) == dataclasses.replace(load_config("baseline"), fidelity="text"), (
+        "nothing is taken from the overlay"
+    )
     assert load_config(path, "text") == load_config(path)
     assert "--fidelity = released: the file already has all settings" in problems(path, "released")
+
+
+def test_complete_file_without_a_setting_is_refused(write: Write) -> None:
+    text = dump_toml(load_config("predator"))
+    lines = [line for line in text.splitlines() if not line.startswith(("digestion_steps", "width"))]
+    message = problems(write("\n".join(lines)))
+    assert "arena.width: is missing in a file that says it is complete; a number > 0" in message
+    # Versions before it did what the default does.
+    assert "digestion_steps" not in message
+
+
+def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> None:
+    message = problems("predator", overrides=["energy.basic_cost=1"])
+    assert "energy.basic_cost = 1: changes nothing, since each species has its own" in message
+    assert "set species.prey.energy.basic_cost and species.predator.energy.basic_cost" in message
+    assert "changes nothing" in problems(write('preset = "predator"\n[energy]\nbasic_cost = 1.0\n'))
+    dumped = write(dump_toml(load_config("predator")))
+    assert "energy.capacity = 5: changes nothing" in problems(dumped, overrides=["energy.capacity=5"])
+    # What reaches a species, or is said with the species' own, is no mistake.
+    species = load_config("predator", overrides=["motor.max_force=30"]).species
+    assert [each.motor.max_force for each in species.values()] == [30, 30]
+    own = "[species.prey.energy]\nbasic_cost = 2.0\n[species.predator.energy]\nbasic_cost = 3.0\n"
+    assert load_config(write('preset = "predator"\n[energy]\nbasic_cost = 1.0\n' + own)).energy.basic_cost == 1.0
+
+
+def test_a_rule_of_the_world_reaches_the_species_of_a_complete_file(write: Write) -> None:
+    config = load_config(write(dump_toml(load_config("predator"))), overrides=["birth.order=after_deaths"])
+    assert {each.birth.order for each in (config, *config.species.values())} == {"after_deaths"}
 
 
 def test_name_can_be_given(write: Write) -> None:
