@@ -46,16 +46,18 @@ def reference() -> str:
     """The whole page, in Markdown."""
     names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
     overlays = _table(("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES))
-    return "\n".join([_HEAD, names, overlays, *_sections(Config, "")]).rstrip() + "\n"
+    return "\n".join([_HEAD, names, overlays, *_sections(Config(), "")]).rstrip() + "\n"
 
 
-def _sections(section: type, path: str) -> Iterator[str]:
+def _sections(default: object, path: str) -> Iterator[str]:
+    """The parts of the page on a section as it is by default, and on those within it."""
+    section = type(default)
     yield f"## `[{path}]`\n" if path else "## At the top\n"
     yield f"{getdoc(section)}\n"
     rows = (
         (
             f"`{setting.name}`",
-            f"`{format_value(setting.default)}`",
+            f"`{format_value(getattr(default, setting.name))}`",
             setting.doc.meaning,
             setting.doc.unit,
             " or ".join(f"`{choice}`" for choice in setting.choices)
@@ -72,7 +74,7 @@ def _sections(section: type, path: str) -> Iterator[str]:
         return
     for name, inner in sections(section).items():
         below = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
-        yield from _sections(inner.type, below)
+        yield from _sections(inner.type() if inner.repeated else getattr(default, name), below)
 
 
 def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
