@@ -4,13 +4,18 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
+from collections.abc import Iterator
 from importlib.util import find_spec
+from math import prod
 from pathlib import Path
+from typing import Any
 
 import pytest
+from setting_page import values
 
 from hedon.config import load_config
-from hedon.sweep.read import read_sweep
+from hedon.sweep.read import SweepFile, read_sweep
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs" / "guide").glob("*.md"))]
@@ -59,12 +64,43 @@ def test_python_of_a_page_runs_from_top_to_bottom(page, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+def said(table: dict, path: str = "") -> Iterator[tuple[str, Any]]:
+    """What a block says, by the path of each setting."""
+    for name, value in table.items():
+        if isinstance(value, dict) and value:
+            yield from said(value, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", value
+
+
 @pytest.mark.parametrize("page", names("toml"))
-def test_configs_of_a_page_load(page, tmp_path):
+def test_configs_of_a_page_are_what_they_say(page, tmp_path):
     for i, block in enumerate(blocks(page, "toml")):
         file = tmp_path / f"config{i}.toml"
         file.write_text(block, encoding="utf-8")
-        if "[factor]" in block:
-            assert read_sweep(file).conditions, block
-        else:
-            assert load_config(file).food, block
+        table = tomllib.loads(block)
+        told = dict(said(table))
+        if "factor" in table:
+            assert_every_setting_has_its_value(read_sweep(file), table)
+            continue
+        config = load_config(file)
+        have = values(config)
+        for path, value in told.items():
+            if "*" in path:
+                assert {have[path.replace("*", kind)] for kind in config.food} == {value}, path
+            elif value is False and path.startswith("food."):
+                assert path.removeprefix("food.") not in config.food
+            elif value == {}:
+                assert any(name.startswith(f"{path}.") for name in have), path
+            else:
+                assert have[path] == value, path
+
+
+def assert_every_setting_has_its_value(sweep: SweepFile, table: dict) -> None:
+    counts = [each["count"] if isinstance(each, dict) else len(each) for each in table["factor"].values()]
+    assert len(sweep.conditions) == prod(counts) > 1
+    assert len({tuple(condition.settings.values()) for condition in sweep.conditions}) == prod(counts)
+    for condition in sweep.conditions:
+        have = values(condition.config)
+        for path, value in {**table.get("set", {}), **condition.settings}.items():
+            assert have[path] == value, path

@@ -1,18 +1,15 @@
 """The page of settings is what its program writes, and what it says of each setting is what a config has and takes."""
 
 import re
-import tomllib
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
+from setting_page import PAGE, page_rows, values
 
 from hedon.config import ConfigError, load_config
 from hedon.config.reference import reference
 
-PAGE = Path(__file__).parents[3] / "docs" / "config.md"
 EVERY_TABLE = """
 [food.fungus]
 energy = 1.0
@@ -55,35 +52,6 @@ KINDS = {
 }
 
 
-def rows() -> list[tuple[str, Any, str]]:
-    """Path in that config, printed default and what is printed as allowed, of each setting on the page."""
-    found, section = [], None
-    for line in PAGE.read_text(encoding="utf-8").splitlines():
-        if line.startswith("## "):
-            section = re.sub(r"^## (`\[(.*)\]`|At the top)$", r"\2", line)
-            for pattern in sorted(KINDS, key=len, reverse=True):
-                section = section.replace(pattern, KINDS[pattern])
-        elif section is not None and line.startswith("| `"):
-            name, default, _, _, allowed, _ = (cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1])
-            path = f"{section}.{name.strip('`')}".lstrip(".")
-            found.append((path, tomllib.loads(f"it = {default.strip('`')}")["it"], allowed))
-    return found
-
-
-def values(part: Any, path: str = "") -> dict[str, Any]:
-    """Each value of a config by its path, lists for tuples."""
-    inner = part.items() if isinstance(part, dict) else ((each.name, getattr(part, each.name)) for each in fields(part))
-    found = {}
-    for name, value in inner:
-        if isinstance(value, dict) or is_dataclass(value):
-            found |= values(value, f"{path}{name}.")
-        else:
-            found[path + name] = (
-                [list(x) if isinstance(x, tuple) else x for x in value] if isinstance(value, tuple) else value
-            )
-    return found
-
-
 def test_the_committed_page_is_current() -> None:
     current = PAGE.read_text(encoding="utf-8")
     assert current == reference(), "run: uv run python -m hedon.config.reference > docs/config.md"
@@ -92,7 +60,7 @@ def test_the_committed_page_is_current() -> None:
 def test_a_config_that_says_nothing_has_the_defaults_of_the_page(write: Callable[[str], Path]) -> None:
     config = load_config(str(write(EVERY_TABLE)))
     have = {path: value for path, value in values(config).items() if not path.startswith("food.normal.")}
-    told = {path: default for path, default, _ in rows()}
+    told = {path: row.default for path, row in page_rows(KINDS).items()}
     assert told.keys() == have.keys()
     assert {path for path in told if told[path] != have[path]} == SAID
 
@@ -100,7 +68,7 @@ def test_a_config_that_says_nothing_has_the_defaults_of_the_page(write: Callable
 @pytest.mark.parametrize("way", ["from", "to"])
 def test_what_the_page_does_not_allow_is_refused_with_its_words(write: Callable[[str], Path], way: str) -> None:
     file, tried = str(write(EVERY_TABLE)), 0
-    for path, default, allowed in rows():
+    for path, (default, _, _, allowed, _) in page_rows(KINDS).items():
         bounds = re.fullmatch(r"an? (number|integer) from (\S+) to (\S+)", allowed)
         if bounds is None:
             continue

@@ -1,10 +1,11 @@
+import tomllib
+
 import pytest
+from setting_page import page_rows, values
 
 from hedon.analysis.table import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
-from hedon.config.dump import flatten
-from hedon.config.field import leaves, sections
-from hedon.config.problem import format_value
+from hedon.config.field import sections
 from hedon.replication.item.item import Material
 from hedon.replication.item.parameter import CONCERNS, PARAMETERS
 from hedon.report.table import cells
@@ -25,16 +26,15 @@ def test_every_section_belongs_to_one_concern() -> None:
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_every_setting_stands_once_with_what_its_annotation_says(fidelity: str) -> None:
+def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_says(fidelity: str) -> None:
     config = load_config("baseline", fidelity)
     rows = {row["setting"]: row for row in settings(fidelity)}
     assert len(rows) == len(settings(fidelity))
-    assert sorted(rows) == sorted(flatten(config))
-    for path, setting, value in leaves(config):
-        if path in rows:
-            doc, row = setting.doc, rows[path]
-            told = (row["value"], row["meaning"], row["unit"], row["origin"])
-            assert told == (format_value(value), doc.meaning, doc.unit, doc.source)
+    assert sorted(rows) == sorted(values(config).keys() - {"name", "preset", "fidelity"})
+    page, have = page_rows({"food.<kind>": "food.normal"}), values(config)
+    for path, row in rows.items():
+        assert tomllib.loads(f"it = {row['value']}")["it"] == have[path], path
+        assert (row["meaning"], row["unit"], row["origin"]) == (page[path].meaning, page[path].unit, page[path].source)
 
 
 def test_fidelities_are_told_exactly_where_they_differ() -> None:
