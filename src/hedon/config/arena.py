@@ -25,7 +25,7 @@ class ArenaConfig:
     ] = 360.0
     corner_radius: Annotated[
         float,
-        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0)),
+        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0, le=1e5)),
     ] = 19.0
     corner_chords: Annotated[
         int,
@@ -37,7 +37,7 @@ class ArenaConfig:
             "inner walls: a list of [ax, ay, bx, by], each a wall from (ax, ay) to (bx, by)",
             "u",
             OURS,
-            Range(max_items=256),
+            Range(max_items=256, each=(0, 1e5)),
         ),
     ] = ()
 

@@ -2,8 +2,8 @@
 
 import math
 import re
-import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.check_schedule import schedule_problems
@@ -11,11 +11,11 @@ from hedon.config.check_species import MAX_COVERAGE, species_problems
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves
 from hedon.config.food import MAX_KINDS, FoodConfig
-from hedon.config.problem import Problem, format_value
+from hedon.config.problem import Problem, format_value, single
 from hedon.config.schedule import MAX_FACTOR
 
 MIN_WALL = 0.01
-"""Length of the shortest outer wall whose direction float32 can still hold [u]."""
+"""Length of the shortest wall whose direction float32 can still hold [u]."""
 RESERVED_KINDS = ("agent", "wall", "obstacle", "action")
 """Names with another meaning in sensor channels or in the columns of records."""
 
@@ -40,13 +40,25 @@ def _names(config: Config) -> Iterator[Problem]:
 
 
 def _rounding(config: Config) -> Iterator[Problem]:
-    """Numbers that are outside their range after rounding to the engine's 32 bits."""
+    """Numbers that are outside their range after rounding to the engine's 32 bits, and those in lists."""
     for path, setting, value in leaves(config):
-        if setting.type is float:
-            rounded = struct.unpack("f", struct.pack("f", value))[0]
-            if rounded not in setting.doc.range:
-                message = f"is {rounded:g} in the engine's 32-bit numbers, but must be {setting.allowed}"
-                yield Problem(path, message, format_value(value))
+        if setting.type is float and single(value) not in setting.doc.range:
+            message = f"is {single(value):g} in the engine's 32-bit numbers, but must be {setting.allowed}"
+            yield Problem(path, message, format_value(value))
+        if setting.doc.range.each is not None:
+            low, high = setting.doc.range.each
+            for place, number in _numbers(value):
+                if not low <= number <= high:
+                    yield Problem(path + place, f"must be from {low:.10g} to {high:.10g}", format_value(number))
+
+
+def _numbers(items: Sequence[Any], path: str = "") -> Iterator[tuple[str, float]]:
+    """The numbers in a list and in the lists in it, each with its place: [2][0]."""
+    for i, item in enumerate(items):
+        if isinstance(item, Sequence) and not isinstance(item, str):
+            yield from _numbers(item, f"{path}[{i}]")
+        elif not isinstance(item, str):
+            yield f"{path}[{i}]", item
 
 
 def _arena(config: Config) -> Iterator[Problem]:
@@ -59,8 +71,8 @@ def _arena(config: Config) -> Iterator[Problem]:
         ax, ay, bx, by = wall
         if _is_outside(arena, ax, ay) or _is_outside(arena, bx, by):
             yield Problem(f"arena.inner_walls[{i}]", "lies outside the arena", format_value(wall))
-        if (ax, ay) == (bx, by):
-            yield Problem(f"arena.inner_walls[{i}]", "has no length", format_value(wall))
+        if math.dist((ax, ay), (bx, by)) < MIN_WALL:
+            yield Problem(f"arena.inner_walls[{i}]", f"must be at least {MIN_WALL:g} [u] long", format_value(wall))
 
 
 def _corners_fit(arena: ArenaConfig) -> bool:
@@ -121,7 +133,7 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
         yield Problem(f"{path}.centers", f'"{place.form}" takes one center, not {len(place.centers)}')
     if place.form in ("switching", "mixture") and len(place.centers) < 2:
         yield Problem(f"{path}.centers", f'"{place.form}" takes at least two centers, not {len(place.centers)}')
-    if min(place.sd) <= 0:
+    if single(min(place.sd)) <= 0:
         yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', format_value(place.sd))
 
 

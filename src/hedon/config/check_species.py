@@ -19,7 +19,7 @@ from hedon.config.layout import (
     set_point_of,
     smelled,
 )
-from hedon.config.problem import Problem, format_value, nearest
+from hedon.config.problem import Problem, format_value, nearest, single
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, RULES, SpeciesConfig
 
@@ -29,6 +29,8 @@ MAX_SMELLS = 12
 """Most smells times noses that the engine has room for, beside inner states."""
 MAX_GENES = 64
 """Most genes that the engine has room for."""
+MAX_FORCE = 1e6
+"""Largest force of a motor, in the engine as for all its numbers: squares of it are finite [mass·u/s²]."""
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
 """A rule: its file, its function and, once a run has it, the digest of the file."""
 THRESHOLDS = ("fed", "hungry", "by_age")
@@ -77,10 +79,14 @@ def _rules(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
 
 def _body(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
     arena, motor = config.arena, species.motor
-    if motor.min_force >= motor.max_force:
+    forces = [single(motor.force_scale * force) for force in (motor.min_force, motor.max_force)]
+    if forces[0] >= forces[1]:
         rule = f"must be below motor.max_force = {motor.max_force:g}"
         yield Problem(f"{path}motor.min_force", rule, format_value(motor.min_force))
-    if 2 * max(species.body.radius, config.body.food_radius) >= min(arena.width, arena.height):
+    if max(map(abs, forces)) > MAX_FORCE:
+        rule = f"makes forces of {max(map(abs, forces)):g}: at most {MAX_FORCE:g} is allowed"
+        yield Problem(f"{path}motor.force_scale", rule, format_value(motor.force_scale))
+    if 2 * single(max(species.body.radius, config.body.food_radius)) >= single(min(arena.width, arena.height)):
         yield Problem(f"{path}body.radius", "a body does not fit into the arena", format_value(species.body.radius))
     touched = len(chosen(config, species.body.collides))
     if touched * species.sensor.touch_sectors > MAX_TOUCH_BITS:

@@ -20,7 +20,8 @@ OURS = "ours"
 class Range:
     """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`.
 
-    `form` shows how a text must look; `config.check` checks it.
+    `each` has the least and the largest number in a list, `form` shows how a text must look: `config.check` checks
+    both.
     """
 
     ge: float | None = None
@@ -28,6 +29,7 @@ class Range:
     le: float | None = None
     lt: float | None = None
     max_items: int | None = None
+    each: tuple[float, float] | None = None
     form: str | None = None
 
     def __contains__(self, value: float) -> bool:
@@ -41,8 +43,10 @@ class Range:
     def __str__(self) -> str:
         if self.form is not None:
             return f"of the form `{self.form}`"
-        if self.max_items is not None:
-            return f"with at most {self.max_items} items"
+        if self.max_items is not None or self.each is not None:
+            items = "" if self.max_items is None else f"with at most {self.max_items} items"
+            numbers = "" if self.each is None else f"with numbers from {self.each[0]:.10g} to {self.each[1]:.10g}"
+            return ", ".join(filter(None, (items, numbers)))
         if self.ge is not None and self.le is not None:
             return f"from {self.ge:.10g} to {self.le:.10g}"
         signs = {">=": self.ge, ">": self.gt, "<=": self.le, "<": self.lt}

@@ -30,12 +30,17 @@ class PlacementConfig:
             "centers: one for gaussian and rectangle, at least two for switching and mixture",
             "u",
             CODE,
-            Range(max_items=16),
+            Range(max_items=16, each=(0, 1e5)),
         ),
     ] = ()
     sd: Annotated[
         tuple[float, float],
-        Doc("standard deviations of the Gaussians, or half sides of the rectangle, along x and y", "u", CODE),
+        Doc(
+            "standard deviations of the Gaussians, or half sides of the rectangle, along x and y",
+            "u",
+            CODE,
+            Range(each=(0, 1e5)),
+        ),
     ] = (0.0, 0.0)
     switch_after: Annotated[
         int,
@@ -48,7 +53,7 @@ class PlacementConfig:
     ] = 1000
     drift: Annotated[
         tuple[float, float],
-        Doc("how the centers move; at the end of the arena they stop", "u/step", OURS),
+        Doc("how the centers move; at the end of the arena they stop", "u/step", OURS, Range(each=(-1e4, 1e4))),
     ] = (0.0, 0.0)
     spacing: Annotated[
         float,

@@ -33,7 +33,12 @@ class NutrientConfig:
     ] = 2e-6
     hazard_share: Annotated[
         float,
-        Doc("the hazard's part by energy, with this store in place of energy, counts so much", "", CODE, Range(ge=0)),
+        Doc(
+            "the hazard's part by energy, with this store in place of energy, counts so much",
+            "",
+            CODE,
+            Range(ge=0, le=1e4),
+        ),
     ] = 0.2
     observed: Annotated[
         bool,

@@ -1,6 +1,8 @@
 """The problems of a config: each with its place, what is allowed, and the nearest valid name."""
 
 import json
+import math
+import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -9,6 +11,8 @@ from typing import Any
 from hedon.error import HedonError
 from hedon.text import LINE, brief
 
+SMALLEST = 2.0**-126
+"""Smallest number above 0 that the engine tells from 0: it flushes what is denormal."""
 SHOWN = 20
 """Most problems that a message lists."""
 
@@ -65,6 +69,15 @@ def format_value(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(format_value(item) for item in value) + "]"
     return "a table" if isinstance(value, dict) else repr(value)
+
+
+def single(value: float) -> float:
+    """A number as the engine holds it, in 32 bits: infinite where these end, 0 where they lose precision."""
+    try:
+        rounded = struct.unpack("f", struct.pack("f", value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+    return rounded if abs(rounded) >= SMALLEST else 0.0
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:

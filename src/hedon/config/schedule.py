@@ -15,7 +15,12 @@ class ScheduleConfig:
 
     points: Annotated[
         tuple[tuple[int, float], ...],
-        Doc("steps and the factor from there on, [[step, factor], …], in order", "step", OURS, Range(max_items=16)),
+        Doc(
+            "steps and the factor from there on, [[step, factor], …], in order",
+            "step",
+            OURS,
+            Range(max_items=16, each=(0, 1e9)),
+        ),
     ] = ()
     form: Annotated[
         Literal["steps", "linear"],

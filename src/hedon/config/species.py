@@ -31,7 +31,7 @@ class DietConfig:
             'gained; "*" for every kind of food. What is not named is touched, but not eaten',
             "",
             OURS,
-            Range(max_items=12),
+            Range(max_items=12, each=(-1e4, 1e4)),
         ),
     ] = ((EVERYTHING, 1.0),)
     digestion_steps: Annotated[

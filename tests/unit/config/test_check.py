@@ -64,7 +64,7 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
         ),
         (
             ["arena.inner_walls=[[50, 60, 50, 60]]"],
-            "arena.inner_walls[0] = [50.0, 60.0, 50.0, 60.0]: has no length",
+            "arena.inner_walls[0] = [50.0, 60.0, 50.0, 60.0]: must be at least 0.01 [u] long",
         ),
         (
             ["birth.distance_unit=arena_width"],

@@ -36,7 +36,10 @@ def test_every_field_is_a_setting_or_a_section() -> None:
         (("body", "radius"), "a number > 0 and <= 1000 [u]"),
         (("sensor", "scaling"), 'one of "raw", "unit"'),
         (("sensor", "ray_count"), "an integer from 1 to 32"),
-        (("food", "x", "placement", "centers"), "a list of [number, number] with at most 16 items [u]"),
+        (
+            ("food", "x", "placement", "centers"),
+            "a list of [number, number] with at most 16 items, with numbers from 0 to 100000 [u]",
+        ),
         (("food", "x", "color"), "a text of the form `#rrggbb`"),
     ],
 )

@@ -52,12 +52,12 @@ def lines(tables: dict[str, Any]) -> list[str]:
         ({"food": {"a": {"placment": {}}}}, "food.a.placment: unknown name; did you mean placement?"),
         (
             {"food": {"a": {"placement": {"sd": [1, 2, 3]}}}},
-            "food.a.placement.sd = [1, 2, 3]: must be [number, number] [u]",
+            "food.a.placement.sd = [1, 2, 3]: must be [number, number] with numbers from 0 to 100000 [u]",
         ),
         (
             {"arena": {"inner_walls": [[1, 2, 3]]}},
             "arena.inner_walls[0][3] = [1, 2, 3]: "
-            "must be a list of [number, number, number, number] with at most 256 items [u]",
+            "must be a list of [number, number, number, number] with at most 256 items, with numbers from 0 to 100000 [u]",
         ),
     ],
 )
