@@ -1,11 +1,12 @@
 import dataclasses
+import math
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from hedon.config import FIDELITIES, PRESETS, Config, ConfigError, dump_toml, load_config
-from hedon.config.load import PAPER_PRESETS, describe_fidelity, describe_preset, is_modified
+from hedon.config.load import PAPER_PRESETS, SEQUEL_PRESETS, describe_fidelity, describe_preset, is_modified
 
 Write = Callable[[str], Path]
 
@@ -206,6 +207,18 @@ def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> N
 def test_a_rule_of_the_world_reaches_the_species_of_a_complete_file(write: Write) -> None:
     config = load_config(write(dump_toml(load_config("predator"))), overrides=["birth.order=after_deaths"])
     assert {each.birth.order for each in (config, *config.species.values())} == {"after_deaths"}
+
+
+def test_agents_of_the_sequel_see_and_turn_as_in_its_program() -> None:
+    for preset in SEQUEL_PRESETS:
+        config = load_config(preset)
+        assert {each.sensor.ray_spread for each in config.agents.values()} == {60.0}
+        assert {(each.hazard.alpha_age, each.hazard.beta_age) for name, each in config.agents.items()} == {
+            (2e-7, 4e-6) if name == "predator" else (4e-7, 2e-6) for name in config.agents
+        }
+        for each in config.agents.values():
+            lever = each.body.radius * math.sin(math.radians(each.motor.angle))
+            assert lever == pytest.approx(10 * math.sin(math.radians(45)), abs=1e-6)
 
 
 def test_name_can_be_given(write: Write) -> None:
