@@ -101,7 +101,7 @@ def test_what_comes_beside_a_config_is_checked(arguments, words):
 
 def test_the_engine_takes_whatever_the_settings_allow():
     """Its own limits are nowhere narrower than those that people read."""
-    base = hedon.load_config("poison")
+    base, taken, left_out = hedon.load_config("poison"), 0, 0
     for path, setting, _ in leaves(base):
         for bound in (setting.doc.range.ge, setting.doc.range.le):
             if bound is None or setting.type not in (int, float):
@@ -109,8 +109,11 @@ def test_the_engine_takes_whatever_the_settings_allow():
             try:
                 given = engine_input(changed(base, path, setting.type(bound)))
             except hedon.ConfigError:
-                continue  # it contradicts another setting
+                left_out += 1  # it contradicts another setting
+                continue
             _engine.memory_needed(given.settings, len(given.walls), 1, 1)
+            taken += 1
+    assert taken > 4 * left_out
 
 
 def test_every_integer_has_a_limit_in_the_engine():
@@ -154,6 +157,7 @@ TRIAL = """
     import hedon
     from contract.test_door import random_config, SECONDS
 
+    lived = 0
     for seed in range(int(sys.argv[1]), int(sys.argv[2])):
         print(seed, flush=True)
         signal.alarm(int(SECONDS))  # ends the process, and so the test
@@ -164,11 +168,12 @@ TRIAL = """
                 continue
             simulation = hedon.Simulation(config, [1], 1)
             simulation.run(3)
+            lived += 1
             if config.learning.rollout_steps * config.learning.update_epochs <= 1000:
                 simulation.run(30)
         except hedon.HedonError as error:
             assert str(error).strip()
-    print("done", flush=True)
+    print(lived, "done", flush=True)
 """
 
 
@@ -186,3 +191,4 @@ def test_random_configs_are_refused_by_name_or_lived_in():
     )
     last = done.stdout.split()[-1] if done.stdout else ""
     assert (done.returncode, last) == (0, "done"), f"config {last}: {done.stderr[-2000:]}"
+    assert int(done.stdout.split()[-2]) > 0.05 * TRIALS, "too few were lived in to tell"

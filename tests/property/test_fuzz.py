@@ -6,6 +6,7 @@ HEDON_FUZZ=N tries N examples of each kind instead of the few of the suite.
 import os
 import shutil
 import tomllib
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from typer.testing import CliRunner
 from hedon.cli.main import app
 from hedon.config.config import Config
 from hedon.config.dump import dump_toml
-from hedon.config.field import leaves
+from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, load_config
 from hedon.config.problem import ConfigError
 from hedon.error import EngineError, HedonError
@@ -31,6 +32,11 @@ EXAMPLES = int(os.environ.get("HEDON_FUZZ", "0"))
 FUZZ = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 DUMPS = {preset: dump_toml(load_config(preset)) for preset in PRESETS}
 PATHS = [path for path, _, _ in leaves(load_config("poison"))]
+PLAIN = [
+    (path, setting)
+    for path, setting, _ in leaves(load_config("baseline"))
+    if setting.type in (int, float) or setting.choices
+]
 SECTIONS = sorted({path.rpartition(".")[0] for path in PATHS} - {""})
 
 text = st.one_of(
@@ -74,8 +80,20 @@ line = st.one_of(
     st.builds('fidelity = "{}"'.format, st.sampled_from(["released", "text", "none"])),
     st.sampled_from(["complete = true", "complete = 1", "food = 3", "arena = []", "food.normal = {}", "food.x = {}"]),
 )
+
+
+def allowed(path: str, setting: Setting) -> st.SearchStrategy[str]:
+    """A line that gives a setting what its range allows, alone at least."""
+    if setting.choices:
+        return st.sampled_from(setting.choices).map(lambda choice: f'{path} = "{choice}"')
+    low, high = (-1e3 if setting.doc.range.ge is None else setting.doc.range.ge), setting.doc.range.le
+    values = st.integers(int(low), int(min(high or 1e3, 1e3))) if setting.type is int else st.floats(low, high or 1e3)
+    return values.map(lambda value: f"{path} = {value!r}")
+
+
 document = st.one_of(
     st.lists(line, max_size=8).map("\n".join),
+    st.lists(st.one_of([allowed(*each) for each in PLAIN]), min_size=1, max_size=3).map("\n".join),
     st.builds(
         mutate,
         st.sampled_from(list(DUMPS.values())),
@@ -85,18 +103,25 @@ document = st.one_of(
 override = st.one_of(st.builds("{}={}".format, st.one_of(st.sampled_from(PATHS), name), value), text)
 
 
-@settings(max_examples=EXAMPLES or 300, **FUZZ)
-@given(content=document, overrides=st.lists(override, max_size=2), fidelity=st.sampled_from([None, "text", "x"]))
-def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path_factory, content, overrides, fidelity):
-    path = tmp_path_factory.getbasetemp() / "fuzz.toml"
-    path.write_text(content, encoding="utf-8", errors="surrogatepass")
-    said, config = outcome(lambda: load_config(path, fidelity, overrides), ConfigError)
-    if config is None:
-        assert "fuzz.toml" in said or "--set" in said
-        return
-    assert load_from_text(dump_toml(config), path) == config
-    if memory_needed(config, 1, 1)["rollouts"] < 10**8:
-        run_briefly(config)
+def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path):
+    path, found = tmp_path / "fuzz.toml", Counter()
+
+    @settings(max_examples=EXAMPLES or 300, **FUZZ)
+    @given(content=document, overrides=st.lists(override, max_size=2), fidelity=st.sampled_from([None, "text", "x"]))
+    def trial(content: str, overrides: list[str], fidelity: str | None) -> None:
+        path.write_text(content, encoding="utf-8", errors="surrogatepass")
+        said, config = outcome(lambda: load_config(path, fidelity, overrides), ConfigError)
+        found["config" if said is None else "error"] += 1
+        if config is None:
+            assert "fuzz.toml" in said or "--set" in said
+            return
+        assert load_from_text(dump_toml(config), path) == config
+        if memory_needed(config, 1, 1)["rollouts"] < 10**8:
+            found["lived"] += run_briefly(config)
+
+    trial()
+    print(dict(found))
+    assert min(found["config"], found["error"], found["lived"]) > 0.04 * found.total()
 
 
 def load_from_text(content: str, path: Path) -> Config:
@@ -105,12 +130,13 @@ def load_from_text(content: str, path: Path) -> Config:
     return load_config(path)
 
 
-def run_briefly(config: Config) -> None:
+def run_briefly(config: Config) -> bool:
     """What passes as a config can be lived in, or the engine says why not."""
     if config.physics.substeps * config.population.capacity > 10**5 or config.population.initial_count > 500:
-        return
+        return False
     said, _ = outcome(lambda: Simulation(config, (1,), 1).run(3), EngineError)
     assert said is None or ":" in said
+    return said is None
 
 
 def outcome(call: Callable[[], Any], error: type[HedonError]) -> tuple[Any, Any]:

@@ -125,10 +125,21 @@ def test_a_checkpoint_of_another_shape_says_so(saved):
         refused(other, saved, array)
 
 
-@settings(max_examples=150, deadline=None)
-@given(data=st.data())
-def test_random_numbers_are_refused_or_do_no_harm(saved, data):
+def test_random_numbers_are_refused_or_do_no_harm(saved):
     """Every byte of a small array, or any number of a large one, at random; what passes is then lived through."""
+    passed = []
+
+    @settings(max_examples=150, deadline=None)
+    @given(data=st.data())
+    def trial(data: st.DataObject) -> None:
+        passed.append(passes(saved, data))
+
+    trial()
+    assert 0.1 < sum(passed) / len(passed) < 0.9
+
+
+def passes(saved, data: st.DataObject) -> bool:
+    """Whether the engine takes the arrays with numbers replaced, and then they do no harm."""
     spoiled = dict(saved)
     for _ in range(data.draw(st.integers(1, 3))):
         name = data.draw(st.sampled_from(sorted(name for name, array in saved.items() if array.size)))
@@ -138,7 +149,10 @@ def test_random_numbers_are_refused_or_do_no_harm(saved, data):
         array.reshape(-1)[at] = np.frombuffer(raw, array.dtype)[0]
         spoiled[name] = array
     simulation = make_simulation(*LIVELY)
+    taken = False
     with contextlib.suppress(ValueError, EngineError):
         simulation.engine.restore(0, spoiled)
+        taken = True
         simulation.run(40)  # to the end of the window, and past its learning
     simulation.worlds[0].observations()
+    return taken

@@ -97,6 +97,7 @@ def test_a_world_goes_back_to_its_snapshot_and_on_with_the_same_digest(world):
     world.page.locator("#back").click()
     world.until(f"hedon.source.last === {begun} && hedon.frame.step === {begun} && !hedon.source.byHand")
     assert world.get("hedon.source.series.step.length") < later
+    assert world.get("[...hedon.source.lives.all()].length") >= 50
     assert world.get(f"[...hedon.source.lives.all()].every((life) => Math.max(life.birth, life.death) <= {begun})")
     rest(world, 700)
     assert world.get("hedon.source.digest()") == native(world, 700).digest()

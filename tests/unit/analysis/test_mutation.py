@@ -40,7 +40,9 @@ def test_what_parents_do_is_no_effect() -> None:
     rng = np.random.default_rng(2)
     data = births(rng, 0.0, 5000)
     data.outcome[:] *= np.exp(rng.normal(0, 2, 5000))[data.parent][:, None]
-    for each in mutation_effects(data, NAMES, np.random.default_rng(1), 300):
+    found = mutation_effects(data, NAMES, np.random.default_rng(1), 300)
+    assert len(found) == 2 * 2 * 3
+    for each in found:
         assert each.p > 0.001
 
 

@@ -1,5 +1,6 @@
 import dataclasses
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -26,8 +27,8 @@ def test_baseline_is_the_default() -> None:
 def test_every_preset_loads_with_every_fidelity(preset: str, fidelity: str) -> None:
     config = load_config(preset, fidelity)
     assert (config.name, config.preset, config.fidelity) == (preset, preset, fidelity)
-    assert describe_preset(preset)
-    assert describe_fidelity(fidelity)
+    for what in (describe_preset(preset), describe_fidelity(fidelity)):
+        assert re.fullmatch(r"[A-Z][^.]{20,}\.", what), "one sentence"
 
 
 @pytest.mark.parametrize(

@@ -66,6 +66,7 @@ def test_each_arm_shows_its_own_agents_on_the_same_axes(five: list[WorldRecord])
 def test_the_axes_reach_as_far_as_the_agents_of_the_widest_arm(five: list[WorldRecord]) -> None:
     agents = five[0].agents.with_columns(w_action=pl.lit(7.0, pl.Float32))
     _, figure = draw("weights-sizes", small=five[1:2], large=[dataclasses.replace(five[0], agents=agents)])
+    assert len(panels(figure)) == 2
     for axes in panels(figure):
         assert axes.get_ylim()[1] > 7.0
 

@@ -229,6 +229,7 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
 def test_courses_of_unequal_length_share_one_axis(worlds: list[WorldRecord]) -> None:
     short = [world.until(1024) for world in worlds]  # alone it would be drawn in steps, not in thousands
     _, drawn = made(acting.ACTING[0], {acting.FULL: worlds, acting.HALF: short})
+    assert drawn[0].figure.axes
     for axes in drawn[0].figure.axes:
         ends = [float(np.max(line.get_xdata())) for line in axes.lines]
         assert max(ends) <= axes.get_xlim()[1] < 100

@@ -94,14 +94,15 @@ def test_extinct_worlds_do_not_stand_for_short_ones(worlds: list[WorldRecord]) -
 
 
 def test_the_papers_own_table_of_extinction_decides(worlds: list[WorldRecord]) -> None:
-    for rule in CLAIMS:
-        if rule.over_worlds == "extinction":
-            gone, of = rule.paper_count or (0, 0)
-            assert of == 10
-            ten = [dataclasses.replace(w, last_step=rule.steps) for w in worlds[:10]]
-            mixed = [dataclasses.replace(w, extinct_step=1024) for w in ten[:gone]] + ten[gone:]
-            found = judge(rule, "c", mixed)
-            assert (found.verdict, found.against_paper) == ("holds", "no difference shown"), rule.text
+    rules = [rule for rule in CLAIMS if rule.over_worlds == "extinction"]
+    assert len(rules) > 3
+    for rule in rules:
+        gone, of = rule.paper_count or (0, 0)
+        assert of == 10
+        ten = [dataclasses.replace(w, last_step=rule.steps) for w in worlds[:10]]
+        mixed = [dataclasses.replace(w, extinct_step=1024) for w in ten[:gone]] + ten[gone:]
+        found = judge(rule, "c", mixed)
+        assert (found.verdict, found.against_paper) == ("holds", "no difference shown"), rule.text
 
 
 def test_too_few_too_short_or_extinct_worlds_decide_nothing(worlds: list[WorldRecord]) -> None:

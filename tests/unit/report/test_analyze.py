@@ -51,6 +51,7 @@ def test_numbers_are_those_of_the_statistics(analysis: Analysis) -> None:
 
 def test_the_same_records_give_the_same_answers(analysis: Analysis) -> None:
     again = analyze(analysis.runs, ["selection", "drift"])
+    assert {"selection", "drift"} <= set(again.tables)
     for name, result in again.tables.items():
         assert result.rows.equals(analysis.tables[name].rows)
 
@@ -117,7 +118,10 @@ def test_notes_are_plain_and_explain_the_words_of_the_energy_budget(analysis: An
 def test_a_run_without_rows_has_an_analysis(tmp_path: Path) -> None:
     empty = analyze([open_run(write_run(tmp_path / "run", intervals=0, worlds=1, neutral_count=0, snapshot=False))])
     assert "regime" not in empty.tables  # nothing was recorded to tell it from
-    assert write_analysis(empty, tmp_path / "out")
+    write_analysis(empty, tmp_path / "out")
+    kept = json.loads((tmp_path / "out" / "analysis.json").read_text(encoding="utf-8"))
+    assert set(kept["tables"]) == set(empty.tables) > {"lifetime"}
+    assert [(world["last_step"], world["extinct_step"]) for world in kept["worlds"]] == [(0, None)]
 
 
 def test_choosing_topics() -> None:
