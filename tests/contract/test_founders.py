@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+from mechanism_world import mechanism_config
 from worlds import QUICK
 
 from hedon.check.run import check_run
 from hedon.config import load_config
+from hedon.config.layout import with_genome
 from hedon.experiment.branch import branch
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
@@ -83,3 +85,27 @@ def test_genomes_of_another_shape_or_size_are_refused() -> None:
     for bad in (good[:-1], good[:, :-1], good + 100, np.full_like(good, np.nan)):
         with pytest.raises(ValueError, match="gen"):
             simulation.engine.set_genomes(0, np.ascontiguousarray(bad))
+
+
+def test_founders_of_several_species_are_given_and_checked(tmp_path: Path) -> None:
+    """A point whose gene only one species has, a gene that names its species, and those alive in a run."""
+    config = mechanism_config("species that differ in everything")
+    first: Path | None = None
+    for index, source in enumerate(("normal=1", "prey.action=0.5,hunter.action=-0.5", "RUN")):
+        folder = tmp_path / str(index)
+        founders = read_founders(source.replace("RUN", str(first)), config)
+        pinned = with_genome(config, founders=founders.digest)
+        run(RunPlan(pinned, (1,), 150, folder, 1, 0, 1e9, founders))
+        assert check_run(folder).findings == ()
+        first = folder
+    lived = open_run(tmp_path / "1").agents().filter(pl.col("death_step").is_null())
+    agents = open_run(tmp_path / "2").agents().filter(pl.col("generation") == 0)
+    for name in ("prey", "hunter"):
+        born = agents.filter(pl.col("species") == name)["w_action"]
+        assert set(born) <= set(lived.filter(pl.col("species") == name)["w_action"])
+    path = next((tmp_path / "1" / "agents").glob("*.parquet"))
+    edited = pl.read_parquet(path).with_columns(
+        w_action=pl.when((pl.col("species") == "hunter") & (pl.col("generation") == 0)).then(1.5).otherwise("w_action")
+    )
+    edited.cast({"w_action": pl.Float32}).write_parquet(path)
+    assert any("are not those of founders.csv" in finding.what for finding in check_run(tmp_path / "1").findings)

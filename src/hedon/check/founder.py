@@ -8,6 +8,7 @@ import polars as pl
 
 from hedon.check.finding import Finding
 from hedon.config.config import Config
+from hedon.config.layout import layouts
 from hedon.record.founder import FOUNDERS, FounderError
 from hedon.record.founder_table import load_founders
 from hedon.record.manifest import Manifest
@@ -33,13 +34,16 @@ def check_founders(
         return
     if founders is None or manifest is None or agents is None:
         return
-    count = config.population.initial_count
-    for world, seed in enumerate(manifest.seeds):
-        mine = agents.filter((pl.col("world") == world) & (pl.col("generation") == 0))
-        ids = mine["agent_id"].to_numpy()
-        mine, ids = mine.filter((ids >= 0) & (ids < count)), ids[(ids >= 0) & (ids < count)]
-        given = founders.genomes(seed, count, founders.genes)[ids]
-        wrong = (~np.isnan(given) & (given != mine.select(founders.genes).to_numpy())).any(axis=1)
-        if wrong.any():
-            what = f"world {world}: the genes of {wrong.sum():,} founders are not those of {FOUNDERS}"
-            yield Finding("agents", f"{what}, the first is agent {ids[wrong][0]}")
+    first, made = 0, layouts(config)
+    for name, species in config.agents.items():  # founders have ids in the order of their species
+        count, genes = species.population.initial_count, made[name].gene_names
+        own = pl.col("agent_id").is_between(first, first + count - 1) & (pl.col("generation") == 0)
+        for world, seed in enumerate(manifest.seeds):
+            mine = agents.filter(own & (pl.col("world") == world))
+            ids = mine["agent_id"].to_numpy()
+            given = founders.of_species(name).genomes(seed, count, genes)[ids - first]
+            wrong = (~np.isnan(given) & (given != mine.select(genes).to_numpy())).any(axis=1)
+            if wrong.any():
+                what = f"world {world}: the genes of {wrong.sum():,} founders are not those of {FOUNDERS}"
+                yield Finding("agents", f"{what}, the first is agent {ids[wrong][0]}")
+        first += count

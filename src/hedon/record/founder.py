@@ -93,12 +93,13 @@ class Founders:
         Args:
             seed: of the world.
             count: founders.
-            names: the genome's columns.
+            names: the genome's columns; what the table gives beside them is for another species.
         """
         found = np.full((count, len(names)), np.nan, np.float32)
         rows = self.draw(seed, count)
         for i, gene in enumerate(self.genes):
-            found[:, list(names).index(gene)] = self.values[rows, i]
+            if gene in names:
+                found[:, list(names).index(gene)] = self.values[rows, i]
         return found
 
     def of_species(self, name: str) -> "Founders":

@@ -5,12 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.gene import limit_of
+from hedon.config.layout import layouts
 from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, unknown_gene
 from hedon.record.founder_table import read_table
-from hedon.record.reader import open_run
+from hedon.record.reader import Run, open_run
 from hedon.text import brief
 
 _SHARE = re.compile(r":([0-9.eE+-]+)$")
@@ -60,7 +62,9 @@ def read_source(text: str, config: Config) -> Founders:
 def living(folder: Path, step: int | None, config: Config) -> Founders:
     """The genomes of those alive after a step of a run, or at its end, from its table of agents.
 
-    Neutral markers that the config has no room for are left out; those that the run lacks are drawn as it says.
+    Where the run has several species, each gives its genes to the species of the same name; a species of which nobody
+    lives, or that the run lacks, is drawn as the config says. Neutral markers that the config has no room for are left
+    out; those that the run lacks are drawn as it says.
 
     Raises:
         FounderError: Nobody lived then, the run has not come so far, or it has a gene that the config lacks.
@@ -69,10 +73,6 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
     if not folder.exists():
         raise FounderError(f"founders {brief(str(folder))!r}: there is no such file or folder: {_HELP}")
     run = open_run(folder)
-    for gene in run.reward_names:
-        if column_of(config, gene) != gene:
-            raise FounderError(f"founders {brief(str(folder))!r}: {unknown_gene(config, gene)}")
-    genes = [*run.reward_names, *run.neutral_names[: config.genome.neutral_count]]
     agents = run.agents()
     last = max([*run.manifest.steps_done, 0])
     if step is None:
@@ -85,10 +85,40 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
     if now.is_empty():
         raise FounderError(f"founders {brief(str(folder))}: nobody is alive at step {last if step is None else step:,}")
     label = folder.resolve().name if step is None else f"{folder.resolve().name}@{step}"
-    values = now.sort("world", "agent_id").select(genes).to_numpy()
+    now = now.sort("world", "agent_id")
+    genes, values = _by_species(now, run, config) if run.columns.several else _genomes(now, run, config)
     founders = make_founders(genes, values, [label] * len(values))
     founders.require(config, f"founders {folder}")
     return founders
+
+
+def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
+    """The genes of a run's agents, and their columns: all that it has, but for neutral markers without room."""
+    for gene in run.reward_names:
+        if column_of(config, gene) != gene:
+            raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, gene)}")
+    genes = [*run.reward_names, *run.neutral_names[: config.genome.neutral_count]]
+    return genes, now.select(genes).to_numpy()
+
+
+def _by_species(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
+    """The genes of each species that both the run and the config have; each row holds an agent of each of them."""
+    shared = [name for name in run.columns.species if name in config.species]
+    if not shared:
+        known = f"{', '.join(config.species)} here" if config.species else "here there is one, without a name"
+        there = ", ".join(run.columns.species)
+        raise FounderError(f"founders {brief(str(run.path))!r}: its species ({there}) have other names ({known})")
+    made, columns = layouts(config), {}
+    for name in shared:
+        mine = now.filter(pl.col("species") == name)
+        for gene in (*run.reward_names, *run.neutral_names):
+            known = mine[gene].drop_nulls()
+            if gene in made[name].gene_names and len(known):
+                columns[f"{name}.{gene}"] = known.to_numpy()
+            elif gene in run.reward_names and len(known):
+                raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, f'{name}.{gene}')}")
+    rows = max(map(len, columns.values()), default=0)
+    return list(columns), np.stack([np.resize(values, rows) for values in columns.values()], axis=1)
 
 
 def source_label(text: str) -> str:
