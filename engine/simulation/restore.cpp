@@ -103,13 +103,13 @@ bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& ch
 /// Checks that every species has room for its living and its newborns.
 bool check_species(Inspector& in, size_t living) {
   const WorldShape& shape = *in.world_.shape;
+  if (shape.hunting && !in.within<int32_t>("digestion", 0, 1'000'000)) return false;
   if (shape.species == 1) return true;
   std::vector<int32_t> count(static_cast<size_t>(shape.species));
   for (const int32_t s : saved_species(in, living)) {
     if (++count[static_cast<size_t>(s)] > shape.of[s].capacity())
       return in.refuse("species has more agents of one species than there is room for");
   }
-  if (shape.hunting && !in.within<int32_t>("digestion", 0, 1'000'000)) return false;
   return shape.newborns == 0 || in.within<int32_t>("newborn_species", 0, shape.species - 1);
 }
 

@@ -21,7 +21,7 @@ enum class Extent : uint8_t {
   ruled_slots,     ///< slots, if some species has a rule of the caller
   packed_slots,    ///< slots, if some act with weights in pairs
   species,
-  mixed_species,  ///< the same, if there are several
+  eaters,  ///< the same, if there are several or one that eats its own kind
   kinds,
   foods,
   ghosts,          ///< foods, if those just eaten are seen
@@ -53,9 +53,9 @@ enum class Extent : uint8_t {
   step_actions,    ///< actions of a rollout
   observations,    ///< cache lines of the observations of a rollout, and of the one after it
   wide_slots,      ///< slots, if some observations are wide
-  hunted_slots,    ///< slots, if some species eats another
-  hunts,           ///< species, if some species eats another
-  meals,           ///< what an agent can eat: food kinds, and species if some species eats another
+  hunted_slots,    ///< slots, if some species eats agents
+  deaths,          ///< species, if they die of more than age and energy
+  meals,           ///< what an agent can eat: food kinds, and species if some species eats agents
 };
 
 /// How long the contents of an array last.
@@ -104,8 +104,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.packed ? shape.capacity : 0;
     case Extent::species:
       return shape.species;
-    case Extent::mixed_species:
-      return shape.species > 1 ? shape.species : 0;
+    case Extent::eaters:
+      return shape.species > 1 || shape.hunting ? shape.species : 0;
     case Extent::kinds:
       return shape.kinds;
     case Extent::foods:
@@ -170,8 +170,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.lines > NARROW_LINES ? shape.capacity : 0;
     case Extent::hunted_slots:
       return shape.hunting ? shape.capacity : 0;
-    case Extent::hunts:
-      return shape.hunting ? shape.species : 0;
+    case Extent::deaths:
+      return shape.causes ? shape.species : 0;
     case Extent::meals:
       return shape.meals();
   }

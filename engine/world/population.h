@@ -149,9 +149,9 @@ HEDON_FN Cause cause_of_death(const World& world, int32_t slot) {
   return world.scratch.starved[slot] != 0 ? Cause::starved : Cause::age_energy;
 }
 
-/// Counts a death by its cause, in worlds where agents eat agents.
+/// Counts a death by its cause, in worlds where there is more than one.
 HEDON_FN void count_cause(const World& world, int32_t slot) {
-  if (!world.shape->hunting) return;
+  if (!world.shape->causes) return;
   HuntCounters& counters = world.state.hunt_counters[world.shape->species_of(slot)];
   const Cause cause = cause_of_death(world, slot);
   counters.deaths_starved += cause == Cause::starved;

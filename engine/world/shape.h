@@ -62,7 +62,8 @@ struct WorldShape {
   bool instinct;     ///< some species passes on the networks that it was born with
   bool mating;       ///< some species has two parents
   bool inner;        ///< some species has a nutrient or a toxin
-  bool hunting;      ///< some species eats another
+  bool hunting;      ///< some species eats agents, of another species or its own
+  bool causes;       ///< agents die of more than age and energy: some starve at once, or are eaten
   int32_t lines;     ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
   RayGrid scene;
@@ -128,6 +129,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
     grow(shape.pairs, species.network.pairs());
     grow(shape.lines, species.network.observation.wide() ? WIDE_LINES : NARROW_LINES);
     for (int32_t prey = 0; prey < own.diet.prey.count; ++prey) shape.hunting |= own.diet.prey[prey] > 0.0f;
+    shape.causes |= shape.hunting || own.energy.starvation == Starvation::death;
     if (has_rule(own)) {
       shape.ruled = true;
       grow(shape.memory, own.reward.memory);

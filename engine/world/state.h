@@ -60,7 +60,7 @@ struct Counters {
                energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped, energy_shared, energy_lost)
 };
 
-/// Sums since the world began, of one species, in worlds where agents eat agents.
+/// Sums since the world began, of one species, in worlds where agents starve at once or eat agents.
 struct HuntCounters {
   int64_t deaths_starved;
   int64_t deaths_eaten;
@@ -190,8 +190,8 @@ struct WorldState {
                (free, slots, one, derived), (free_count, species, one, derived), (life, slots, one, saved),
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
-               (digestion, hunted_slots, one, saved), (hunt_counters, hunts, one, saved),
-               (eaten_by, mixed_species, meals, saved), (ready_until, mating_slots, one, saved),
+               (digestion, hunted_slots, one, saved), (hunt_counters, deaths, one, saved),
+               (eaten_by, eaters, meals, saved), (ready_until, mating_slots, one, saved),
                (mate_id, mating_slots, one, saved), (inner, inner_slots, inner_states, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
                (command, external_slots, actions, saved), (memory, ruled_slots, memory, saved),

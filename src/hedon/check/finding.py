@@ -61,4 +61,4 @@ def name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
         for row in rows.select(keys).head(SHOWN).iter_rows()
     ]
     more = f" and {rows.height - SHOWN:,} more" if rows.height > SHOWN else ""
-    return "; ".join(names) + more + ":"
+    return "; ".join(names) + more

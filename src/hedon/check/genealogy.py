@@ -1,27 +1,31 @@
 """Checks the table `agents`: every agent once, with known parents and a possible life."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import polars as pl
 
 from hedon.check.finding import Finding, break_rules
 from hedon.record.manifest import Manifest
+from hedon.record.schema import CAUSES
 
 _KEYS = ("world", "agent_id")
 
 
-def check_agents(agents: pl.DataFrame, manifest: Manifest, *, complete: bool) -> Iterator[Finding]:
+def check_agents(
+    agents: pl.DataFrame, manifest: Manifest, pairs: Collection[str] | None, *, complete: bool
+) -> Iterator[Finding]:
     """What is wrong with the agents of a run.
 
     Args:
         agents: The dead and the living.
         manifest: Of the run. A branch's tables begin at the step of its first session.
+        pairs: Names of the species whose children have two parents; None where that is not known.
         complete: Whether all agents up to the last step must be there.
     """
     yield from break_rules(agents, "agents", _KEYS, _life_rules(manifest))
     unique = agents.unique(_KEYS, keep="first", maintain_order=True)
-    family = _with_parents(unique)
-    yield from break_rules(family, "agents", _KEYS, _family_rules(manifest, complete))
+    family = _with_parents(unique, manifest)
+    yield from break_rules(family, "agents", _KEYS, _family_rules(manifest, pairs, complete))
     yield from _cycles(unique)
     if complete:
         yield from _gaps(unique, manifest)
@@ -42,22 +46,34 @@ def world_rules(manifest: Manifest) -> dict[str, pl.Expr]:
     }
 
 
+def species_rules(manifest: Manifest) -> dict[str, pl.Expr]:
+    """Rules on the species of a row; none where rows do not name one."""
+    return (
+        {"the run has no such species": ~pl.col("species").is_in(manifest.species)} if manifest.columns.several else {}
+    )
+
+
 def _life_rules(manifest: Manifest) -> dict[str, pl.Expr]:
     rules = {
         **world_rules(manifest),
+        **species_rules(manifest),
         "more than one row has this id": pl.struct(_KEYS).is_duplicated(),
         "died before its birth or in the same step": pl.col("death_step") <= pl.col("birth_step"),
         "has negative energy": (pl.col("energy") < 0) | (pl.col("birth_energy") < 0),
         "has no parent but is not a founder": pl.col("parent_id").is_null()
         & ((pl.col("generation") != 0) | (pl.col("birth_step") != 0)),
     }
+    if manifest.columns.has_causes:
+        dead, cause = pl.col("death_step").is_not_null(), pl.col("cause")
+        rules["its cause of death is none that there is"] = ~cause.is_in(CAUSES)
+        rules["died without a cause, or has one but lives"] = dead != cause.is_not_null()
     if manifest.status != "running" and len(manifest.steps_done) == len(manifest.seeds):
         last = pl.col("world").replace_strict(dict(enumerate(manifest.steps_done)), default=None, return_dtype=pl.Int64)
         rules["was born or died after the last step of the run"] = pl.max_horizontal("birth_step", "death_step") > last
     return rules
 
 
-def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
+def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: bool) -> dict[str, pl.Expr]:
     """Rules on an agent and its parent. Agents that died before a branch began are only in the parent run."""
     child, known = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
     counted, begun = pl.col("counted"), first_step(manifest)
@@ -67,12 +83,17 @@ def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
         != pl.max_horizontal("parent_generation", "mate_generation") + 1,
         "was born before its parent or in the same step": pl.col("birth_step") <= pl.col("parent_birth"),
         "was born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
+        "its parents are of another species": (pl.col("parent_species") != pl.col("species"))
+        | (pl.col("mate_species") != pl.col("species")),
         "its two parents are one": pl.col("mate_id") == pl.col("parent_id"),
         "was born when its second parent did not live": (pl.col("birth_step") > pl.col("mate_death"))
         | (pl.col("birth_step") <= pl.col("mate_birth")),
     }
-    if manifest.mating:
-        rules["has a parent but no second one"] = child & pl.col("mate_id").is_null()
+    if pairs is not None:
+        # A branch may have changed the rule: who was born before it began had its parents by the old one.
+        two, here = pl.col("species").is_in(list(pairs)), pl.col("birth_step") > begun
+        rules["has a parent but no second one"] = here & two & child & pl.col("mate_id").is_null()
+        rules["has two parents, but its species has one"] = here & ~two & pl.col("mate_id").is_not_null()
     if complete:
         rules["its parent is missing"] = child & ~known & (pl.col("birth_step") > begun)
         fewer = pl.col("children") < counted
@@ -83,8 +104,10 @@ def _family_rules(manifest: Manifest, complete: bool) -> dict[str, pl.Expr]:
     return rules
 
 
-def _with_parents(agents: pl.DataFrame) -> pl.DataFrame:
+def _with_parents(agents: pl.DataFrame, manifest: Manifest) -> pl.DataFrame:
     """Each agent with what is known of its parents, and how many agents name it as one."""
+    if "species" not in agents.columns:
+        agents = agents.with_columns(species=pl.lit(manifest.species[0], pl.String))
     family = agents if "mate_id" in agents.columns else agents.with_columns(mate_id=pl.lit(None, pl.Int64))
     ids = pl.concat(
         family.drop_nulls(column).select("world", agent_id=column).cast({"agent_id": pl.Int64})
@@ -97,6 +120,7 @@ def _with_parents(agents: pl.DataFrame) -> pl.DataFrame:
             pl.col("generation").alias(f"{which}_generation"),
             pl.col("birth_step").alias(f"{which}_birth"),
             pl.col("death_step").alias(f"{which}_death"),
+            pl.col("species").alias(f"{which}_species"),
         )
         family = family.join(known, on=["world", f"{which}_id"], how="left", maintain_order="left")
     counts = ids.group_by("world", "agent_id").agg(counted=pl.len())

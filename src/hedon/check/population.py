@@ -7,13 +7,13 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.world.ledger import interval_residuals
+from hedon.analysis.world.ledger import flow_names, interval_residuals
 from hedon.check.finding import Finding, break_rules
-from hedon.check.genealogy import first_step, world_rules
+from hedon.check.genealogy import first_step, species_rules, world_rules
 from hedon.record.manifest import Manifest
 
-_KEYS = ("world", "step")
-_FLOWS = tuple(f"energy_{name}" for name in ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared"))
+_BY_CAUSE = {"deaths_starved": "starved", "deaths_eaten": "eaten"}
+"""Counts of deaths, with the cause that those who died of it have; in worlds where there is more than one."""
 _ROUNDING = 8 * 2.0**-53
 """A step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible value."""
 
@@ -29,7 +29,7 @@ def check_population(
         manifest: Of the run.
         ended: Whether the rows must reach to the last step.
     """
-    yield from break_rules(population, "population", _KEYS, world_rules(manifest))
+    yield from break_rules(population, "population", _keys(population), world_rules(manifest) | species_rules(manifest))
     for world, species in product(range(len(manifest.seeds)), manifest.species):
         here = pl.col("world") == world
         if manifest.columns.several:
@@ -42,6 +42,11 @@ def check_population(
             yield from _check_world(rows, mine, manifest)
 
 
+def _keys(rows: pl.DataFrame) -> tuple[str, ...]:
+    """What tells the rows of the table apart."""
+    return ("world", *(("species",) if "species" in rows.columns else ()), "step")
+
+
 def _check_order(rows: pl.DataFrame, world: int, manifest: Manifest, ended: bool) -> Iterator[Finding]:
     begun, before = first_step(manifest), pl.col("step").shift(1)
     start = pl.col("step") - pl.col("steps")
@@ -49,11 +54,11 @@ def _check_order(rows: pl.DataFrame, world: int, manifest: Manifest, ended: bool
         "the row is repeated or out of order": pl.col("step") <= before,
         "the interval has no length": pl.col("steps") <= 0,
     }
-    wrong = list(break_rules(rows, "population", _KEYS, rules))
+    wrong = list(break_rules(rows, "population", _keys(rows), rules))
     # A branch's first interval counts from its parent's last row.
     first = start > begun if manifest.parent else start != begun
     gap = {"there is a gap before the interval": pl.when(before.is_null()).then(first).otherwise(start != before)}
-    yield from wrong or break_rules(rows, "population", _KEYS, gap)
+    yield from wrong or break_rules(rows, "population", _keys(rows), gap)
     last = rows["step"][-1] if rows.height else begun
     if ended and last != manifest.steps_done[world]:
         end = f"ends at step {last:,}, but the manifest has {manifest.steps_done[world]:,} steps"
@@ -69,10 +74,10 @@ def _check_world(rows: pl.DataFrame, agents: pl.DataFrame | None, manifest: Mani
     if agents is not None:
         rows = rows.with_columns(**_count_agents(rows, agents))
         known = pl.col("step") - pl.col("steps") >= first_step(manifest)
-        for name in ("births", "deaths", "alive", "agent_steps"):
+        for name in _compared(rows):
             other = pl.col(name) != pl.col(f"{name}_of_agents")
             rules[f"{name} does not agree with the table agents"] = known & other
-    yield from break_rules(rows, "population", _KEYS, rules)
+    yield from break_rules(rows, "population", _keys(rows), rules)
     if agents is not None and manifest.parent is None:
         yield from _check_meals(rows, agents, manifest)
         gap = interval_residuals(rows, agents)
@@ -80,7 +85,7 @@ def _check_world(rows: pl.DataFrame, agents: pl.DataFrame | None, manifest: Mani
         gap = interval_residuals(rows, None)
     rows = rows.with_columns(gap=pl.Series(gap), rounding=pl.Series(_ledger_rounding(rows)))
     open_ledger = {"the energy ledger does not close": ~(pl.col("gap") <= pl.col("rounding")) & ~pl.col("gap").is_nan()}
-    yield from break_rules(rows, "population", _KEYS, open_ledger)
+    yield from break_rules(rows, "population", _keys(rows), open_ledger)
 
 
 def _count_agents(rows: pl.DataFrame, agents: pl.DataFrame) -> dict[str, pl.Series]:
@@ -97,14 +102,23 @@ def _count_agents(rows: pl.DataFrame, agents: pl.DataFrame) -> dict[str, pl.Seri
         """Steps lived by all agents up to a step, summed."""
         return _time_since(births, until) - _time_since(deaths, until)
 
+    def dead(cause: str) -> NDArray[np.int64]:
+        return between(np.sort(agents.filter(pl.col("cause") == cause)["death_step"].drop_nulls().to_numpy()))
+
     alive = np.searchsorted(births, end, "right") - np.searchsorted(deaths, end, "right")
-    counts = {
+    counts = {name: dead(cause) for name, cause in _BY_CAUSE.items() if name in rows.columns}
+    counts |= {
         "births": between(births),
         "deaths": between(deaths),
         "alive": alive,
         "agent_steps": lived(end) - lived(start),
     }
     return {f"{name}_of_agents": pl.Series(count) for name, count in counts.items()}
+
+
+def _compared(rows: pl.DataFrame) -> list[str]:
+    """The counts of an interval that follow from the table of agents."""
+    return ["births", "deaths", "alive", "agent_steps", *(name for name in _BY_CAUSE if name in rows.columns)]
 
 
 def _time_since(events: NDArray[np.int64], until: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -126,7 +140,8 @@ def _check_meals(rows: pl.DataFrame, agents: pl.DataFrame, manifest: Manifest) -
 
 def _ledger_rounding(rows: pl.DataFrame) -> NDArray[np.float64]:
     """Largest ledger error of each interval from rounding; the counters are sums since the beginning."""
-    flows = sum(np.cumsum(np.abs(rows[name].to_numpy())) for name in _FLOWS) + rows["energy_total"].to_numpy()
+    moving = [*flow_names(rows), "energy_shared"]
+    flows = sum(np.cumsum(np.abs(rows[name].to_numpy())) for name in moving) + rows["energy_total"].to_numpy()
     first = rows["step"][0] - rows["steps"][0]
     recorded = rows["step"].to_numpy() - first
     # Energy flows before the first row of a branch are not recorded; assume the same flow per step.

@@ -231,7 +231,10 @@ def _check_rows(folder: _Folder) -> None:
     if manifest.status == "running":  # agents that died after the living were last written are in both files
         agents = agents.unique(["world", "agent_id"], keep="first", maintain_order=True)
     complete = ended and folder.whole
-    broken = folder.add(check_agents(agents, manifest, complete=complete))
+    pairs = None
+    if folder.config is not None:
+        pairs = [name for name, each in folder.config.agents.items() if each.birth.mating == "pairs"]
+    broken = folder.add(check_agents(agents, manifest, pairs, complete=complete))
     compared = agents if complete and not broken else None
     folder.add(check_population(folder.tables["population"], compared, manifest, ended=ended))
 

@@ -24,6 +24,7 @@ from hedon.record.network import load_networks
 from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
+from hedon.record.schema import columns_of
 
 SHAPE = (
     "arena.",
@@ -37,7 +38,7 @@ SHAPE = (
     "learning.rollout_steps",
 )
 """Settings and sections that fix the shapes of a world's arrays, or how it began. The kinds of food and their
-capacities do so too."""
+capacities do so too, and whether anybody starves to death, where agents would else die of age and energy alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +151,10 @@ def _check_shape(config: Config, changed: Config) -> None:
     fixed = [
         path
         for path, _, _ in diff(config, changed)
-        if path.startswith(SHAPE) or path == "food" or (path.startswith("food.") and path.endswith(".capacity"))
+        if path.startswith(SHAPE)
+        or path == "food"
+        or (path.startswith("food.") and path.endswith(".capacity"))
+        or (path.endswith("energy.starvation") and columns_of(config).causes != columns_of(changed).causes)
     ]
     if fixed:
         raise RecordError(

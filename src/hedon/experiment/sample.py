@@ -35,6 +35,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     }
     if columns.several:
         rows["species"] = np.array(columns.species)[lives["species"]]
+    if columns.has_causes:
         rows["cause"] = np.array([*CAUSES, None])[lives["cause"]]  # -1 while it lives
     return rows
 
@@ -112,12 +113,12 @@ class PopulationSampler:
         if self.columns.obstacles:
             for name in ("obstacles_touched", "energy_damage"):
                 counters[name] = world.view(f"obstacle_counters.{name}")[self.species].item()
-        if not self.columns.several:
-            return Sampled(world.step, counters, tuple(world.view("food_stock.eaten").tolist()))
-        for name in ("deaths_starved", "deaths_eaten", "energy_hunted", "energy_prey"):
-            known = world.view(f"hunt_counters.{name}")
-            counters[name] = known[self.species].item() if len(known) else 0
-        return Sampled(world.step, counters, tuple(world.view("eaten_by")[self.species].tolist()))
+        hunting = ("deaths_eaten", "energy_hunted", "energy_prey") if self.columns.has_hunts else ()
+        for name in (*(("deaths_starved",) if self.columns.has_causes else ()), *hunting):
+            counters[name] = world.view(f"hunt_counters.{name}")[self.species].item()
+        by_species = world.view("eaten_by")
+        eaten = by_species[self.species] if len(by_species) else world.view("food_stock.eaten")
+        return Sampled(world.step, counters, tuple(eaten.tolist()))
 
 
 def frame_rows(world: World) -> list[Rows]:

@@ -94,7 +94,7 @@ class Manifest:
         seeds: one per world.
         species: names, in the order of the config.
         rewards: names of the genes that have an effect on the reward; empty for one per food kind, and action.
-        prey: names of the species that are eaten by others.
+        prey: names of the species that are eaten, by others or by their own kind.
         steps_asked: total steps that each world is to run [step].
         preset: name of the preset that the config is based on.
         fidelity: "corrected", "released" or "text".
@@ -122,6 +122,7 @@ class Manifest:
         obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
         mating: whether some species has two parents.
         inner: names of the inner states beside energy, of all species.
+        causes: whether agents die of more than age and energy; None in old manifests.
         rules: the rules in Python, with their texts.
         format_version: of the run folder.
     """
@@ -163,6 +164,7 @@ class Manifest:
     obstacles: bool = False
     mating: bool = False
     inner: tuple[str, ...] = ()
+    causes: bool | None = None
     obstacle_places: tuple[tuple[tuple[tuple[float, float], ...], ...], ...] = ()
     rules: tuple[RuleSource, ...] = ()
     format_version: int = FORMAT_VERSION

@@ -27,10 +27,12 @@ class Columns:
         neutral_count: number of neutral markers.
         species: names, in the order of the config.
         rewards: names of the genes that have an effect on the reward, of all species, in order.
-        prey: names of the species that are eaten by others.
+        prey: names of the species that are eaten, by others or by their own kind.
         obstacles: whether the worlds have obstacles.
         mating: whether some species has two parents.
         inner: names of the inner states beside energy, of all species.
+        causes: whether agents die of more than age and energy; None where a manifest does not say: columns of causes
+            and of hunts then are there if there are several species.
     """
 
     food_kinds: tuple[str, ...]
@@ -41,6 +43,7 @@ class Columns:
     obstacles: bool = False
     mating: bool = False
     inner: tuple[str, ...] = ()
+    causes: bool | None = None
 
     @property
     def reward_names(self) -> tuple[str, ...]:
@@ -67,6 +70,16 @@ class Columns:
         """Whether there are several species: then rows say which."""
         return len(self.species) > 1
 
+    @property
+    def has_causes(self) -> bool:
+        """Whether rows say of what agents die."""
+        return self.several if self.causes is None else self.causes
+
+    @property
+    def has_hunts(self) -> bool:
+        """Whether rows say how agents eat agents."""
+        return self.several if self.causes is None else bool(self.prey)
+
 
 def columns_of(config: Config) -> Columns:
     """The columns of a config's runs."""
@@ -76,6 +89,7 @@ def columns_of(config: Config) -> Columns:
     eaten = {name for species in config.agents.values() for name in diet(config, species)}
     prey = tuple(name for name in config.agents if name in eaten)
     inner = tuple(name for name in INNER_STATES[1:] if any(name in each.inner for each in made.values()))
+    starving = any(species.energy.starvation == "death" for species in config.agents.values())
     return Columns(
         food_kinds=tuple(config.food),
         neutral_count=neutral,
@@ -85,6 +99,7 @@ def columns_of(config: Config) -> Columns:
         obstacles=config.obstacle.count > 0,
         mating=any(species.birth.mating == "pairs" for species in config.agents.values()),
         inner=inner,
+        causes=bool(prey) or starving,
     )
 
 
@@ -92,8 +107,8 @@ SPECIES = Column("species", "string", "", "name of the species")
 CAUSES = ("age_energy", "starved", "eaten")
 """Why agents die, in the engine's order."""
 _CAUSE = Column("cause", "string", "", "why it died: " + ", ".join(CAUSES) + "; missing while it lives", nullable=True)
+_STARVING = (Column("deaths_starved", "i32", "1", "deaths by starvation in the interval"),)
 _HUNTING = (
-    Column("deaths_starved", "i32", "1", "deaths by starvation in the interval"),
     Column("deaths_eaten", "i32", "1", "agents of the species that were eaten in the interval"),
     Column("energy_hunted", "f64", "energy", "gained by eating agents in the interval"),
     Column("energy_prey", "f64", "energy", "held by those that were eaten in the interval; part of energy_lost"),
@@ -119,7 +134,7 @@ def agent_table(columns: Columns) -> Table:
         Column("generation", "i32", "1", "generations since the founders; 0 for founders"),
         Column("birth_step", "i64", "step", "steps completed when the agent was born; 0 for founders"),
         Column("death_step", "i64", "step", "steps completed when it died; missing while it lives", nullable=True),
-        *([_CAUSE] if columns.several else []),
+        *([_CAUSE] if columns.has_causes else []),
         Column("birth_energy", "f32", "energy", "energy at birth"),
         Column("energy", "f32", "energy", "energy at death, or at the last flush"),
         *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in columns.food_kinds),
@@ -174,7 +189,8 @@ def population_table(columns: Columns) -> Table:
             Column(f"eaten_{name}", "i32", "1", f"agents of the species {name} eaten in the interval")
             for name in columns.prey
         ),
-        *(_HUNTING if columns.several else []),
+        *(_STARVING if columns.has_causes else []),
+        *(_HUNTING if columns.has_hunts else []),
         *(_HARM if columns.obstacles else []),
         Column("learners", "i32", "1", "agents that learned at the end of a window in the interval"),
         Column("energy_eaten", "f64", "energy", "gained from food in the interval; poison counts negative"),

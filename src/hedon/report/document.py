@@ -53,15 +53,28 @@ run.frames()      # polars.LazyFrame
 Types: i32, i64, f32, f64 are integers and floats of that many bits; "null" says that a value may be
 missing. The tables are shown for one food kind `normal` and one neutral marker. With more kinds,
 `eaten_<kind>`, `food_<kind>`, `w_<kind>`, `w_<kind>_mean` and `w_<kind>_sd` repeat in the order of the
-config; with more markers so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`.
+config; with more markers so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`. Below each table stand the
+columns of worlds with further mechanisms; where species differ, a gene that a species lacks is missing.
 """
+
+_MECHANISMS = {
+    "several species": Columns(("normal",), 1, species=("prey", "predator"), causes=False),
+    "children with two parents": Columns(("normal",), 1, mating=True),
+    "death by starvation, or agents that eat agents": Columns(("normal",), 1, causes=True),
+    "agents that eat agents, here those of a species `prey`": Columns(("normal",), 1, prey=("prey",), causes=True),
+    "obstacles": Columns(("normal",), 1, obstacles=True),
+    "other inner states than energy": Columns(("normal",), 1, inner=("nutrient", "toxin")),
+}
+"""What gives the tables more columns, each with the columns that a run then has."""
 
 _LEDGER = """\
 The ledger closes in each interval, but for rounding:
 energy_total = energy_total before + energy_eaten + energy_forgiven - energy_basic - energy_action -
-energy_capped - energy_lost. What parents share stays within the world. `energy_eaten` is what food holds,
+energy_capped - energy_lost, where agents eat agents + energy_hunted, and with obstacles - energy_damage. Each species
+has a ledger of its own. What parents share stays within it. `energy_eaten` is what food holds,
 also where part of it is destroyed at the cap; `energy_basic` and `energy_action` are what was charged, also
-where part of it was forgiven.
+where part of it was forgiven. What an eaten agent held is in the `energy_lost` of its species; the share that its eater
+gains is `energy_hunted`, and the rest is gone.
 """
 
 _SUMMARY = """\
@@ -76,6 +89,7 @@ def records_page() -> str:
     parts = [_HEAD]
     for table in tables.values():
         parts.append(_table_section(table))
+        parts += [_further_columns(table)] if table.name != "frames" else []
         if table.name == "population":
             parts.append(_LEDGER)
     parts.append(f"## manifest.json\n\n{_attributes(Manifest)}")
@@ -105,6 +119,19 @@ def _table_section(table: Table) -> str:
     for column in table.columns:
         dtype = f"{column.dtype}, null" if column.nullable else column.dtype
         rows.append(f"| `{column.name}` | {dtype} | {column.unit} | {column.meaning} |")
+    return "\n".join(rows) + "\n"
+
+
+def _further_columns(table: Table) -> str:
+    """The columns of a table that only worlds with further mechanisms have."""
+    known = {column.name for column in table.columns}
+    rows = ["| only with | column | type | unit | meaning |", "|---|---|---|---|---|"]
+    for mechanism, columns in _MECHANISMS.items():
+        for column in run_tables(columns)[table.name].columns:
+            if column.name not in known:
+                known.add(column.name)
+                dtype = f"{column.dtype}, null" if column.nullable else column.dtype
+                rows.append(f"| {mechanism} | `{column.name}` | {dtype} | {column.unit} | {column.meaning} |")
     return "\n".join(rows) + "\n"
 
 

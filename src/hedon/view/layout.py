@@ -8,7 +8,7 @@ from typing import Any
 
 from hedon.config.arena import walls
 from hedon.config.config import Config
-from hedon.config.layout import Gene, SpeciesLayout, gene_columns, layouts, types
+from hedon.config.layout import Gene, SpeciesLayout, diet, gene_columns, layouts, types
 from hedon.config.species import SpeciesConfig
 
 
@@ -33,7 +33,7 @@ def describe(config: Config) -> dict[str, Any]:
         {"name": name, "radius": config.body.food_radius, "energy": food.energy, "color": food.color}
         for name, food in config.food.items()
     ]
-    hunting = any(name in config.species for each in config.agents.values() for name, _ in each.diet.eats)
+    hunting = any(name in config.species for each in config.agents.values() for name in diet(config, each))
     return {
         "species": [_species(config, name, each, made[name]) for name, each in config.agents.items()],
         "types": list(types(config)),

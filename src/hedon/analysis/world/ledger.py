@@ -1,4 +1,8 @@
-"""Is every unit of energy accounted for?"""
+"""Is every unit of energy accounted for?
+
+Each species of a world has a ledger of its own, which closes by itself: what it gains by eating agents, of another
+species or its own, enters as `hunted`, and what it loses to those that eat it is part of `lost`.
+"""
 
 from dataclasses import dataclass
 
@@ -6,17 +10,28 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-_INFLOW = ("energy_eaten", "energy_forgiven")
-_OUTFLOW = ("energy_basic", "energy_action", "energy_capped", "energy_lost")
+_SIGNS = {
+    "eaten": 1.0,
+    "hunted": 1.0,
+    "forgiven": 1.0,
+    "basic": -1.0,
+    "action": -1.0,
+    "damage": -1.0,
+    "capped": -1.0,
+    "lost": -1.0,
+}
+"""Every flow of energy into or out of a species, as in the columns `energy_…` of the table `population`. A world has
+the columns `hunted` and `damage` only where agents eat agents, and where there are obstacles."""
 
 
 @dataclass(frozen=True)
 class Ledger:
-    """Sums over a run of one world [energy]; energy that parents share with children stays within the world.
+    """Sums over a run of one species of a world [energy]; energy that parents share with children stays within it.
 
     Attributes:
         initial: held by the founders at birth; None where their rows are missing, as in a branch.
         eaten, forgiven, basic, action, capped, lost, shared: as the columns of the table `population`.
+        hunted, damage: likewise; None in worlds where nobody eats agents, or that have no obstacles.
         final: held by the living at the end.
         residual: largest difference over the intervals between the energy held and what the flows say it
             must be; only rounding where the ledger closes. None where there is nothing to compare.
@@ -32,57 +47,60 @@ class Ledger:
     shared: float
     final: float | None
     residual: float | None
+    hunted: float | None = None
+    damage: float | None = None
 
 
 def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
-    """The ledger of one world.
+    """The ledger of one species of one world.
 
-    held at the end = held before + eaten + forgiven − basic − action − capped − lost, in each interval.
+    held at the end = held before + eaten + hunted + forgiven − basic − action − damage − capped − lost, in each
+    interval.
 
     Args:
-        population: rows of one world, by step.
-        agents: rows of the same world.
+        population: rows of one species of one world, by step.
+        agents: rows of the same species and world.
     """
-    initial = _initial(population, agents)
-    sums = {name: float(population[f"energy_{name}"].sum()) for name in _names()}
     total = population["energy_total"].to_numpy()
     residuals = interval_residuals(population, agents)
     residuals = residuals[np.isfinite(residuals)]
     return Ledger(
-        initial=initial,
+        initial=_initial(population, agents),
         final=float(total[-1]) if len(total) else None,
         residual=float(residuals.max()) if len(residuals) else None,
-        **sums,
+        **{
+            name.removeprefix("energy_"): float(population[name].sum())
+            for name in (*flow_names(population), "energy_shared")
+        },
     )
 
 
 def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) -> NDArray[np.float64]:
-    """By how much each interval of one world leaves its ledger open, (rows,) [energy]; see `world_ledger`.
+    """By how much each interval of one species leaves its ledger open, (rows,) [energy]; see `world_ledger`.
 
     Args:
-        population: rows of one world, by step.
-        agents: rows of the same world; None where they are not known.
+        population: rows of one species of one world, by step.
+        agents: rows of the same species and world; None where they are not known.
 
     Returns:
         NaN for the first interval where the energy held before it is not known.
     """
     initial = None if agents is None else _initial(population, agents)
     total = population["energy_total"].to_numpy()
-    flow = sum(population[name].to_numpy() for name in _INFLOW) - sum(population[name].to_numpy() for name in _OUTFLOW)
-    if "energy_hunted" in population.columns:
-        flow = flow + population["energy_hunted"].to_numpy()
-    if "energy_damage" in population.columns:
-        flow = flow - population["energy_damage"].to_numpy()
+    flow = sum(_SIGNS[name.removeprefix("energy_")] * population[name].to_numpy() for name in flow_names(population))
     before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
     return np.abs(total - before - flow)
 
 
+def flow_names(population: pl.DataFrame) -> list[str]:
+    """The columns of all flows of energy into or out of a species that a table `population` has."""
+    return [f"energy_{name}" for name in _SIGNS if f"energy_{name}" in population.columns]
+
+
 def _initial(population: pl.DataFrame, agents: pl.DataFrame) -> float | None:
-    """What the founders held at birth; None where their rows are missing."""
+    """What the founders held at birth, 0 where nobody ever lived; None where their rows are missing."""
     founders = agents.filter(pl.col("parent_id").is_null())
-    from_founders = founders.height and (population.height == 0 or population["step"][0] == population["steps"][0])
-    return float(founders["birth_energy"].cast(pl.Float64).sum()) if from_founders else None
-
-
-def _names() -> list[str]:
-    return [name.removeprefix("energy_") for name in (*_INFLOW, *_OUTFLOW, "energy_shared")]
+    begins = population.height == 0 or population["step"][0] == population["steps"][0]
+    nobody = population.height > 0 and not population["agent_steps"].sum()
+    known = begins and (founders.height > 0 or nobody)
+    return float(founders["birth_energy"].cast(pl.Float64).sum()) if known else None
