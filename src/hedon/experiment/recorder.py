@@ -71,13 +71,13 @@ class Recorder:
             self.living()
 
     def interval(self) -> None:
-        """Writes one population row per world that advanced since its last row."""
-        for i, sampler in enumerate(self.samplers):
-            if sampler.world.step == sampler.since.step:
-                continue
-            self.rows[i] = sampler.row()
-            sampler.advance()
-            self.writer.append("population", self.rows[i])
+        """Writes one population row per world and species that advanced since its last row."""
+        grown = [i for i, sampler in enumerate(self.samplers) if sampler.world.step != sampler.since.step]
+        for i in grown:
+            self.rows[i] = self.samplers[i].row()
+            self.samplers[i].advance()
+        if grown:
+            self.writer.append("population", *(self.rows[i] for i in grown))
         if not self.shown:  # write the first rows immediately, so that a reader sees that the run has begun
             self.living()
             self.writer.flush()
@@ -95,10 +95,9 @@ class Recorder:
 
     def frame(self) -> None:
         """Writes every agent and food of every world that is not extinct, as they are now."""
-        for world in self.simulation.worlds:
-            if not world.extinct:
-                for rows in frame_rows(world):
-                    self.writer.append("frames", rows)
+        rows = [each for world in self.simulation.worlds if not world.extinct for each in frame_rows(world)]
+        if rows:
+            self.writer.append("frames", *rows)
 
     def checkpoint(self, step: int, seconds: float) -> None:
         """Saves a checkpoint to continue from. Deaths and frames of this step must be written before."""

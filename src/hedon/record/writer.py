@@ -76,12 +76,12 @@ class Writer:
         self._thread = threading.Thread(target=self._work, name="hedon-record", daemon=True)
         self._thread.start()
 
-    def append(self, table: str, rows: Rows) -> None:
-        """Appends rows to a table.
+    def append(self, table: str, *rows: Rows) -> None:
+        """Appends rows to a table. No part ends within what one call appends: give all rows of a step in one call.
 
         Args:
             table: "agents", "population" or "frames".
-            rows: one array of shape (n,) per column of the schema; a scalar means n equal values.
+            rows: mappings, each with one array of shape (n,) per column of the schema; a scalar means n equal values.
                 Missing values of nullable columns are −1 (integers) or NaN (floats).
 
         Raises:
@@ -89,7 +89,7 @@ class Writer:
         """
         if table not in self.tables:
             raise RecordError(f"no table {table!r}: there are {', '.join(self.tables)}")
-        self._put((table, rows_to_frame(self.tables[table], rows)))
+        self._put((table, self._frame(table, rows)))
 
     def replace_living(self, *rows: Rows) -> None:
         """Writes all rows so far, then replaces the rows of the living agents of all worlds.
@@ -102,9 +102,7 @@ class Writer:
         Raises:
             RecordError: as `append`.
         """
-        table = self.tables["agents"]
-        frames = [rows_to_frame(table, each) for each in rows]
-        self._put(("living", pl.concat([pl.DataFrame(schema=table.polars_schema), *frames])))
+        self._put(("living", self._frame("agents", rows)))
 
     def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
@@ -189,6 +187,11 @@ class Writer:
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {self.folder}: {error}") from error
         save_manifest(self.folder, manifest)
+
+    def _frame(self, table: str, rows: Sequence[Rows]) -> pl.DataFrame:
+        schema = self.tables[table]
+        empty = pl.DataFrame(schema=schema.polars_schema)
+        return pl.concat([empty, *(rows_to_frame(schema, each) for each in rows)])
 
     def _put(self, item: object) -> None:
         self._raise_fault()

@@ -1,0 +1,33 @@
+"""Runs whose steps go on from part to part, as older versions wrote them: wherever a part was full."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import polars as pl
+
+from hedon import load_config
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
+from hedon.record.folder import part_path, part_paths
+
+FRAMES = 32
+"""Steps between two frames."""
+
+
+def record_species(folder: Path, steps: int = 256, seeds: tuple[int, ...] = (1, 2)) -> Path:
+    """Records prey and predators, with a row of the population each 64 steps."""
+    config = load_config("predator", overrides=["learning.rollout_steps=64", "learning.minibatch_size=64"])
+    run(RunPlan(config, seeds, steps, folder, 1, FRAMES))
+    return folder
+
+
+def split_parts(folder: Path, table: str, rows: int) -> int:
+    """Writes a table again with so many rows in each part; returns how many steps go on in a next part."""
+    paths = part_paths(folder, table)
+    whole = pl.concat([pl.read_parquet(path) for path in paths])
+    for path in paths:
+        path.unlink()
+    parts = [whole[at : at + rows] for at in range(0, whole.height, rows)]
+    for i, part in enumerate(parts):
+        part.write_parquet(part_path(folder, table, i), compression="zstd")
+    return sum(a["step"][-1] == b["step"][0] for a, b in pairwise(parts))
