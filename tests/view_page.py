@@ -1,11 +1,15 @@
 """A recorded run, servers and a browser for the tests of the viewer."""
 
+import http.server
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
+
+from project_files import ROOT
 
 from hedon import load_config
 from hedon.experiment.plan import RunPlan
@@ -51,6 +55,21 @@ def live_server(source: str) -> Server:
     return Server({"page": lambda: page}, dict)
 
 
+class _Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Prints nothing."""
+
+
+def site_server(site: Path) -> http.server.ThreadingHTTPServer:
+    """A server that knows nothing of the page: it sends the files of a folder, and no headers for them."""
+    return http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=site))
+
+
+def demo_server() -> http.server.ThreadingHTTPServer:
+    """The demo site of the documentation."""
+    return site_server(ROOT / "docs" / "live")
+
+
 class Watched:
     """A page of the browser, with everything that it complained about or asked of others."""
 
@@ -85,3 +104,13 @@ class Watched:
         self.until(f"hedon.frame && hedon.frame.step === {step}")
         drawn = self.get("hedon.pictures")
         self.until(f"hedon.pictures > {drawn} + 2")
+
+
+def run_live(watched: Watched, steps: int) -> None:
+    """Lets a live world do its first steps, and learn."""
+    watched.get("hedon.play(false)")
+    watched.until("!hedon.source.busy")
+    while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
+        watched.get(f"hedon.source.advance({steps - done}, 5000)")
+        watched.until("!hedon.source.busy")
+    watched.until("hedon.source.digest() !== ''")

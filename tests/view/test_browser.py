@@ -1,18 +1,16 @@
 """The page in a real browser: what it shows is what the records and the engine say."""
 
-import http.server
 import io
 import json
 import re
 import shutil
 from contextlib import contextmanager
-from functools import partial
 
 import numpy as np
 import polars as pl
 import pytest
 from matplotlib.image import imread
-from view_page import live_server, record, run_server, serving
+from view_page import live_server, record, run_live, run_server, serving, site_server
 
 from hedon import ConfigError, Simulation, _engine, load_config
 from hedon.config.layout import layouts, observation_columns
@@ -110,16 +108,6 @@ def test_the_page_shows_the_digest_of_the_run(run_folder, watch):
         watched = watch(server.link)
         digest = load_manifest(run_folder).world_digests[0]
         watched.until(f"document.querySelector('#digest')?.textContent.includes('{digest}')")
-
-
-def run_live(watched, steps):
-    """Lets a live world do its first steps, and learn."""
-    watched.get("hedon.play(false)")
-    watched.until("!hedon.source.busy")
-    while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
-        watched.get(f"hedon.source.advance({steps - done}, 5000)")
-        watched.until("!hedon.source.busy")
-    watched.until("hedon.source.digest() !== ''")
 
 
 def check_digest(watched, preset, steps):
@@ -293,14 +281,7 @@ def test_names_of_a_hostile_run_stay_text(run_folder, tmp_path, watch):
 
 @contextmanager
 def plain_server(site):
-    """A server that knows nothing of the page: it sends the files of a folder, and no headers for them."""
-
-    class Quiet(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, format, *args):  # noqa: A002
-            pass
-
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=site))
-    with serving(server):
+    with serving(site_server(site)) as server:
         yield f"http://127.0.0.1:{server.server_port}/index.html"
 
 

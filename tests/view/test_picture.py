@@ -1,28 +1,17 @@
 """The pictures of the page in the documentation; `HEDON_PICTURES=1 pytest tests/view/test_picture.py` takes them."""
 
-import http.server
 import io
 import os
-from functools import partial
 
 import pytest
 from matplotlib.image import imread
 from project_files import ROOT
-from view_page import live_server, serving
+from view_page import demo_server, live_server, serving
 
 pytest_plugins = ("view_fixture",)
 
 IMAGES = ROOT / "docs" / "images"
 LARGEST = 450_000  # bytes of one picture
-
-
-class Quiet(http.server.SimpleHTTPRequestHandler):
-    def log_message(self, format, *args):  # noqa: A002
-        """Prints nothing."""
-
-
-def demo_server():
-    return http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=ROOT / "docs" / "live"))
 
 
 def live(watched, steps):

@@ -27,7 +27,7 @@ export class AgentPanel {
     const at = frame ? frame.id.indexOf(chosen) : -1;
     const parts: Node[] = [element("h2", { text: `Agent ${chosen}` })];
     if (at < 0) parts.push(element("p", { text: life ? whenGone(life, frame) : "There is no such agent in these records." }));
-    if (life) parts.push(this.lifeTable(source, life, frame, at), element("h3", { text: "genome" }), genome(source, life));
+    if (life) parts.push(this.lifeTable(life, frame, at), ...this.counts(source, life), element("h3", { text: "genome" }), genome(source, life));
     if (frame && at >= 0) {
       this.note(frame.step, frame.energy[at]!);
       parts.push(element("h3", { text: "energy while watched" }), this.course);
@@ -53,20 +53,20 @@ export class AgentPanel {
     );
   }
 
-  private lifeTable(source: Source, life: Life, frame: Frame | undefined, at: number): HTMLElement {
-    const now = frame?.step ?? source.last;
-    const end = life.death >= 0 && life.death <= now ? life.death : now;
-    const rows: [string, Node | string][] = [
-      ["age", `${show(end - life.birth)} steps (born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""})`],
-      ["energy", show(at >= 0 ? frame!.energy[at] : life.energy)],
-      ["generation", show(life.generation)],
-      ["reward so far", show(life.reward)],
-      ...rewardParts(source, life),
-      ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"],
-      ["children", this.children(source, life)],
-    ];
-    source.layout.meals.forEach((meal, k) => rows.push([`${meal} eaten`, show(life.eaten[k])]));
+  private lifeTable(life: Life, frame: Frame | undefined, at: number): HTMLElement {
+    const rows: [string, Node | string][] = [];
+    const born = `born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""}`;
+    if (frame && at >= 0) rows.push(["age", `${show(frame.step - life.birth)} steps (${born})`], ["energy", show(frame.energy[at])]);
+    else rows.push(["life", born]);
+    rows.push(["generation", show(life.generation)], ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"]);
     return table(rows);
+  }
+
+  /** What is counted over a life: its course within the life is not known, so the title says up to when. */
+  private counts(source: Source, life: Life): Node[] {
+    const rows: [string, Node | string][] = [["reward", show(life.reward)], ...rewardParts(source, life), ["children", this.children(source, life)]];
+    source.layout.meals.forEach((meal, k) => rows.push([`${meal} eaten`, show(life.eaten[k])]));
+    return [element("h3", { text: countedUntil(source, life) }), table(rows)];
   }
 
   private children(source: Source, life: Life): Node {
@@ -109,6 +109,12 @@ export class AgentPanel {
 function whenGone(life: Life, frame: Frame | undefined): string {
   if (frame && life.birth > frame.step) return "Not yet born at this step.";
   return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
+}
+
+/** Up to when reward, children and meals of a life are counted, whatever step is shown. */
+function countedUntil(source: Source, life: Life): string {
+  if (life.death >= 0) return "in its whole life";
+  return source.live ? `up to step ${show(source.last)}` : "up to the last record of it";
 }
 
 /** Each gene as a bar from the middle, where it is 0; neutral ones are gray. */

@@ -44,6 +44,8 @@ export function colorings(source: Source): Coloring[] {
     const most = life ? Math.max(...life.eaten) : 0;
     return life && most > 0 ? life.eaten.indexOf(most) : NaN;
   };
+  // Counts of a life have no course in the records, and a live world knows them at its newest step.
+  const counted = source.live ? "up to the newest step" : "of the whole life";
   const key = layout.species.map((each, i) => ({ name: each.name, color: css(distinctColor(i)) }));
   const species: Coloring = { name: "species", label: "species", scale: "distinct", key, value: (_, frame, i) => frame.species[i]! };
   // Records count the meals of a life and not their order.
@@ -52,11 +54,11 @@ export function colorings(source: Source): Coloring[] {
     { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! },
     { name: "age", label: "age [steps]", scale: "ramp", low: 0, value: (life, frame) => (life ? frame.step - life.birth : NaN) },
     { name: "generation", label: "generation", scale: "ramp", value: (life) => life?.generation ?? NaN },
-    { name: "children", label: "children", scale: "ramp", low: 0, value: (life) => life?.children ?? NaN },
-    { name: "reward", label: "reward so far", scale: "diverging", value: (life) => life?.reward ?? NaN },
+    { name: "children", label: `children ${counted}`, scale: "ramp", low: 0, value: (life) => life?.children ?? NaN },
+    { name: "reward", label: `reward ${counted}`, scale: "diverging", value: (life) => life?.reward ?? NaN },
     { name: "family", label: "family (founder)", scale: "distinct", value: (life) => (life ? lives.founder(life.id) : NaN) },
     ...(layout.species.length > 1 ? [species] : []),
-    { name: "eats", label: "eats most", scale: "food", value: mostEaten },
+    { name: "eats", label: `most frequent meal ${counted}`, scale: "food", value: mostEaten },
     ...(source.live ? [lastMeal] : []),
     ...layout.genes.map((gene, g): Coloring => ({
       name: gene.name,

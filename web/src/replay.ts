@@ -1,26 +1,28 @@
 // A run's records as a source of moments: loads only the parts of the frames that are shown, and follows a run.
+import { Film, numbers, type Columns } from "./film";
 import { Lives } from "./lives";
-import type { Answer, Column, Request } from "./records.worker";
+import type { Answer, Request } from "./records.worker";
 import { Series } from "./series";
 import type { Source } from "./source";
-import type { Frame, Layout, Part, Place, RunIndex } from "./types";
+import type { Frame, Layout, Place, RunIndex } from "./types";
 
 const FOLLOW_MS = 2000; // between two looks at a run that goes on
-const KEPT_PARTS = 6; // parts of the frames in memory
 
-type Columns = Record<string, Column>;
+type Row = Record<string, number>;
 
-const numbers = (columns: Columns, name: string): Float64Array => (columns[name] as Float64Array) ?? new Float64Array();
+const COUNTS = /^(alive|births|deaths|learners|agent_steps|eaten_|energy_)/;
+const OF_ONE = /_(sd|q25|median|q75)$/;
 
 /** One row of all species: counts are summed, means are weighted by the living, what is of the whole world stays. */
-function together(rows: Record<string, number>[]): Record<string, number> {
-  const out: Record<string, number> = { ...rows[0]! };
+function together(rows: Row[]): Row {
+  const out: Row = { ...rows[0]! };
   for (const name of Object.keys(out)) {
     const known = rows.filter((row) => !Number.isNaN(row[name]!));
-    const sum = (of: (row: Record<string, number>) => number) => known.reduce((total, row) => total + of(row), 0);
+    const sum = (of: (row: Row) => number) => known.reduce((total, row) => total + of(row), 0);
     if (name.endsWith("_mean")) out[name] = sum((row) => row[name]! * row.alive!) / sum((row) => row.alive!);
-    else if (/^(alive|births|deaths|learners|agent_steps|eaten_|energy_)/.test(name)) out[name] = sum((row) => row[name]!);
     else if (/_(max|min)$/.test(name)) out[name] = Math[name.endsWith("_max") ? "max" : "min"](...known.map((row) => row[name]!));
+    else if (OF_ONE.test(name)) out[name] = NaN; // these of all do not follow from those of each
+    else if (COUNTS.test(name)) out[name] = sum((row) => row[name]!);
   }
   return out;
 }
@@ -32,8 +34,9 @@ export class Replay implements Source {
   readonly layout: Layout;
   private readonly worker = new Worker(new URL("./records.worker.ts", import.meta.url), { type: "module" });
   private readonly waiting = new Map<number, (answer: Answer) => void>();
-  private readonly parts = new Map<string, Frame[] | "asked">(); // in the order of use
   private readonly read = new Map<string, number>(); // bytes of the tables' parts that were read
+  private readonly film: Film;
+  private interval = { step: -1, rows: new Map<string, Row>() }; // the last one of the population, by species
   private key = 0;
   private trouble = "";
 
@@ -42,10 +45,12 @@ export class Replay implements Source {
     private readonly world = 0,
   ) {
     this.layout = index.layout;
+    this.film = new Film(this.layout, world, (file) => this.ask(file));
     this.worker.onmessage = ({ data }: MessageEvent<Answer>) => {
       this.waiting.get(data.key)?.(data);
       this.waiting.delete(data.key);
     };
+    this.film.update(index.files.frames);
     void this.readTables();
     if (index.status === "running") setTimeout(() => void this.follow(), FOLLOW_MS);
   }
@@ -63,13 +68,11 @@ export class Replay implements Source {
   }
 
   get first(): number {
-    return this.index.files.frames[0]?.first ?? this.series.step[0] ?? 0;
+    return this.film.first ?? this.series.step[0] ?? 0;
   }
 
   get last(): number {
-    const frames = this.index.files.frames;
-    const shown = frames[frames.length - 1]?.last ?? -1;
-    return Math.max(shown, this.series.step[this.series.step.length - 1] ?? 0);
+    return Math.max(this.film.last ?? -1, this.series.step[this.series.step.length - 1] ?? 0);
   }
 
   get obstacles(): Place[][] {
@@ -92,34 +95,7 @@ export class Replay implements Source {
   }
 
   around(step: number): { before?: Frame; after?: Frame } {
-    const parts = this.index.files.frames;
-    const at = parts.findLastIndex((part) => part.first! <= step);
-    const here = this.frames(parts[Math.max(at, 0)]);
-    const next = at + 1 < parts.length ? parts[at + 1] : undefined;
-    const before = here?.findLast((frame) => frame.step <= step) ?? here?.[0];
-    let after = here?.find((frame) => frame.step > step);
-    if (!after && next) after = this.frames(next)?.find((frame) => frame.step > step);
-    return { before, after };
-  }
-
-  private frames(part: Part | undefined): Frame[] | undefined {
-    if (!part) return undefined;
-    const known = this.parts.get(part.file);
-    if (known === "asked") return undefined;
-    if (known) {
-      this.parts.delete(part.file); // to the end: the first ones are dropped first
-      this.parts.set(part.file, known);
-      return known;
-    }
-    this.parts.set(part.file, "asked");
-    void this.ask(part.file).then((columns) => {
-      this.parts.set(part.file, columns ? this.split(columns) : []);
-      for (const [file, frames] of this.parts) {
-        if (this.parts.size <= KEPT_PARTS) break;
-        if (frames !== "asked" && file !== part.file) this.parts.delete(file);
-      }
-    });
-    return undefined;
+    return this.film.around(step);
   }
 
   private async ask(file: string, columns?: string[]): Promise<Columns | undefined> {
@@ -130,37 +106,6 @@ export class Replay implements Source {
     });
     if (answer.error) this.trouble = `${file} cannot be read: ${answer.error}`;
     return answer.columns;
-  }
-
-  /** The frames of this world in a part: rows of one step follow one another. */
-  private split(columns: Columns): Frame[] {
-    const world = numbers(columns, "world");
-    const step = numbers(columns, "step");
-    const kind = columns.kind as string[];
-    const [id, x, y] = [numbers(columns, "id"), numbers(columns, "x"), numbers(columns, "y")];
-    const [angle, energy] = [numbers(columns, "angle"), numbers(columns, "energy")];
-    const species = new Map(this.layout.species.map((each, i) => [each.name, i]));
-    const foods = new Map(this.layout.foods.map((food, i) => [food.name, i]));
-    const rows = new Map<number, { agents: number[]; foods: number[] }>();
-    for (let row = 0; row < step.length; row++) {
-      if (world[row] !== this.world) continue;
-      let found = rows.get(step[row]!);
-      if (!found) rows.set(step[row]!, (found = { agents: [], foods: [] }));
-      (species.has(kind[row]!) ? found.agents : found.foods).push(row);
-    }
-    const pick = (from: Float64Array, at: number[]) => Float32Array.from(at, (row) => from[row]!);
-    return [...rows].map(([step, { agents, foods: eaten }]) => ({
-      step,
-      id: Int32Array.from(agents, (row) => id[row]!),
-      x: pick(x, agents),
-      y: pick(y, agents),
-      angle: pick(angle, agents),
-      energy: pick(energy, agents),
-      species: Uint8Array.from(agents, (row) => species.get(kind[row]!) ?? 0),
-      foodX: pick(x, eaten),
-      foodY: pick(y, eaten),
-      foodKind: Uint8Array.from(eaten, (row) => foods.get(kind[row]!) ?? 0),
-    }));
   }
 
   private async readTables(): Promise<void> {
@@ -179,15 +124,16 @@ export class Replay implements Source {
   private addPopulation(columns: Columns): void {
     const step = numbers(columns, "step");
     const world = numbers(columns, "world");
+    const species = columns.species as string[] | undefined;
     const names = Object.keys(columns).filter((name) => columns[name] instanceof Float64Array);
-    const rows = new Map<number, Record<string, number>[]>(); // of each species at a step
     for (let row = 0; row < step.length; row++) {
-      if (world[row] !== this.world) continue;
-      const known = rows.get(step[row]!) ?? [];
-      known.push(Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
-      rows.set(step[row]!, known);
+      if (world[row] !== this.world || step[row]! < this.interval.step) continue;
+      if (step[row]! > this.interval.step) this.interval = { step: step[row]!, rows: new Map() };
+      const { rows } = this.interval; // they may begin in the part before, as in old runs
+      rows.set(species?.[row] ?? "", Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
+      this.series.rewind(step[row]! - 1);
+      this.series.add(step[row]!, rows.size === 1 ? [...rows.values()][0]! : together([...rows.values()]));
     }
-    for (const [at, each] of rows) this.series.add(at, each.length === 1 ? each[0]! : together(each));
   }
 
   private addLives(columns: Columns): void {
@@ -224,6 +170,7 @@ export class Replay implements Source {
     try {
       const response = await fetch("data/run.json");
       if (response.ok) this.index = (await response.json()) as RunIndex;
+      this.film.update(this.index.files.frames);
       this.trouble = "";
       await this.readTables();
     } catch {

@@ -106,8 +106,7 @@ export interface LiveWorld {
 export interface Part {
   file: string;
   bytes: number;
-  first?: number;
-  last?: number;
+  worlds?: ([number, number] | null)[]; // of frames: first and last step of each world
 }
 
 export interface RunIndex {

@@ -10,8 +10,8 @@ from hedon.record.folder import LIVING, TABLE_FOLDERS, part_paths
 from hedon.record.reader import Run, open_run
 from hedon.view.layout import describe
 
-FrameSteps = dict[tuple[str, int], tuple[int, int]]
-"""First and last step of each part of the frames, by its name and its size."""
+Span = tuple[int, int] | None
+"""First and last step of a world in a part of the frames; None where it has no frame there."""
 
 
 class RunIndex:
@@ -19,7 +19,7 @@ class RunIndex:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._steps: FrameSteps = {}
+        self._spans: dict[tuple[str, int], list[Span]] = {}  # by name and size of a part
         open_run(folder)
 
     def describe(self) -> dict[str, Any]:
@@ -28,7 +28,8 @@ class RunIndex:
         Returns:
             `name`, `status`, `seeds`, `steps` (done, per world), `extinct` (step or None, per world), `frames` (steps
             between two), `digests`, `obstacles` (corners of each, per world), `layout`, and `files`: for each table its
-            parts, each with `file` (relative to the run), `bytes` and, for frames, `first` and `last` step.
+            parts, each with `file` (relative to the run), `bytes` and, for frames, `worlds`: first and last step of each
+            world there, or None.
 
         Raises:
             RecordError: It is no run, or it holds a symbolic link.
@@ -64,14 +65,15 @@ class RunIndex:
         for path in paths:
             part: dict[str, Any] = {"file": path.relative_to(run.path).as_posix(), "bytes": path.stat().st_size}
             if table == "frames":
-                part["first"], part["last"] = self._frame_steps(path, part["bytes"])
+                part["worlds"] = self._frame_spans(run, path, part["bytes"])
             parts.append(part)
         return parts
 
-    def _frame_steps(self, path: Path, size: int) -> tuple[int, int]:
+    def _frame_spans(self, run: Run, path: Path, size: int) -> list[Span]:
         key = (path.name, size)
-        if key not in self._steps:
-            column = pl.scan_parquet(path, glob=False).select(pl.col("step").min(), last=pl.col("step").max()).collect()
-            first, last = column.row(0)
-            self._steps[key] = (first, last) if first is not None else (0, -1)
-        return self._steps[key]
+        if key not in self._spans:
+            rows = pl.scan_parquet(path, glob=False).group_by("world")
+            found = rows.agg(first=pl.col("step").min(), last=pl.col("step").max()).collect()
+            spans = {world: (first, last) for world, first, last in found.iter_rows()}
+            self._spans[key] = [spans.get(world) for world in range(len(run.manifest.seeds))]
+        return self._spans[key]
