@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from command import hedon
 
 from hedon.check.run import check_run
 
@@ -30,9 +31,7 @@ SHORT = ("--seeds", "1-4", "--steps", "3072", *(part for setting in COSTLY for p
 
 
 def call(folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(
-        ["hedon", "assay", *arguments], capture_output=True, text=True, check=False, cwd=folder, timeout=300
-    )
+    return hedon("assay", *arguments, cwd=folder)
 
 
 @pytest.fixture(scope="module")

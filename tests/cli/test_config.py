@@ -1,26 +1,16 @@
-import os
 import subprocess
-import sysconfig
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from command import hedon
 
 from hedon.config import load_config
 
-HEDON = Path(sysconfig.get_path("scripts")) / "hedon"
 
-
-def hedon(*args: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "COLUMNS": "160"}
-    return subprocess.run(
-        [HEDON, *args],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        env=environment,
-        encoding="utf-8",
-        check=False,
-    )
+@pytest.fixture(autouse=True)
+def wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
 
 
 def test_presets_are_listed() -> None:
@@ -86,4 +76,5 @@ def test_typing_errors_name_the_nearest(args: tuple[str, ...], text: str) -> Non
 
 
 def test_version() -> None:
-    assert hedon("--version").stdout.startswith("hedon ")
+    answer = subprocess.run(["hedon", "--version"], capture_output=True, text=True, check=False)
+    assert (answer.returncode, answer.stdout, answer.stderr) == (0, f"hedon {version('hedon')}\n", "")

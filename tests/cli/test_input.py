@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
+from command import hedon
 
 FILES = {
     "digits": ('preset = "small"\n[energy]\ninitial = ' + "9" * 5000, "more than 1,000 digits"),
@@ -23,17 +24,13 @@ FILES = {
 }
 
 
-def call(*arguments: str, **options) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["hedon", *arguments], capture_output=True, text=True, check=False, timeout=60, **options)
-
-
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_that_is_no_config_is_one_message_at_once(tmp_path: Path, name: str) -> None:
     text, words = FILES[name]
     path = tmp_path / "my.toml"
     path.write_text(text, encoding="utf-8")
     begun = time.monotonic()
-    answer = call("config", "check", str(path))
+    answer = hedon("config", "check", str(path))
     assert answer.returncode == 2
     assert words in answer.stderr
     assert "Traceback" not in answer.stderr
@@ -44,7 +41,7 @@ def test_a_file_that_is_no_config_is_one_message_at_once(tmp_path: Path, name: s
 def test_a_byte_order_mark_and_carriage_returns_are_read(tmp_path: Path) -> None:
     path = tmp_path / "my.toml"
     path.write_bytes(b'\xef\xbb\xbfpreset = "small"\r\n[energy]\r\ninitial = 20.0\r\n')
-    assert call("config", "check", str(path)).returncode == 0
+    assert hedon("config", "check", str(path)).returncode == 0
 
 
 @pytest.mark.parametrize(
@@ -52,7 +49,7 @@ def test_a_byte_order_mark_and_carriage_returns_are_read(tmp_path: Path) -> None
     [("9" * 5000, "a seed of 5,000 digits"), ("-3", "-3 is negative"), ("1-" + "9" * 5000, "5,000 digits")],
 )
 def test_seeds_that_are_none(seeds: str, words: str) -> None:
-    answer = call("run", "small", f"--seeds={seeds}")
+    answer = hedon("run", "small", f"--seeds={seeds}")
     assert answer.returncode == 2
     assert words in answer.stderr
     assert len(answer.stderr.splitlines()) == 1
@@ -60,20 +57,20 @@ def test_seeds_that_are_none(seeds: str, words: str) -> None:
 
 @pytest.mark.parametrize("value", ["[" * 50_000, "9" * 5000, "9" * 900, '"' + "x" * 100_000])
 def test_values_of_settings_that_are_none(value: str) -> None:
-    answer = call("config", "check", "small", "--set", f"energy.initial={value}")
+    answer = hedon("config", "check", "small", "--set", f"energy.initial={value}")
     assert answer.returncode == 2
     assert "energy.initial = " in answer.stderr
     assert len(answer.stderr) < 500
     for override in (".".join(["a"] * 500) + "=1", "energy.initial=0x" + "f" * 5000):
-        answer = call("config", "check", "small", "--set", override)
+        answer = hedon("config", "check", "small", "--set", override)
         assert (answer.returncode, "Traceback" in answer.stderr) == (2, False)
 
 
 def test_an_output_of_ascii_alone_is_served() -> None:
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    answer = call("demography", "baseline", env=environment)
-    assert (answer.returncode, answer.stderr) == (0, "")
-    assert call("config", "show", "baseline", env=environment).returncode == 0
+    for command in (["demography", "baseline"], ["config", "show", "baseline"]):
+        answer = subprocess.run(["hedon", *command], capture_output=True, text=True, check=False, env=environment)
+        assert (answer.returncode, answer.stderr) == (0, "")
 
 
 def test_a_limit_on_addresses_is_named_before_libraries_abort() -> None:

@@ -2,10 +2,11 @@
 
 import json
 import re
-import subprocess
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
+from command import hedon as command
 
 import hedon
 from hedon.replication.catalogue import ITEMS
@@ -13,9 +14,8 @@ from hedon.replication.catalogue import ITEMS
 LAWS = ("hazard", "birth", "walk", "body", "parameters")
 
 
-def call(folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    command = ["hedon", "reproduce", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+def call(folder: Path, *arguments: str) -> "CompletedProcess[str]":
+    return command("reproduce", *arguments, cwd=folder)
 
 
 @pytest.fixture(scope="module")

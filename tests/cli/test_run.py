@@ -1,7 +1,6 @@
 """`hedon run` as a user calls it."""
 
 import json
-import os
 import signal
 import subprocess
 import time
@@ -9,6 +8,7 @@ import time
 import numpy as np
 import polars as pl
 import pytest
+from command import hedon as answer_of
 
 import hedon
 from hedon.cli.run import RunError, parse_seeds
@@ -104,7 +104,7 @@ def test_the_summary_has_its_keys(finished):
 def test_a_folder_that_holds_a_run_is_left_alone(finished):
     folder, _ = finished
     before = (folder / "manifest.json").read_bytes()
-    answer = call("run", "baseline", "--steps", 10, "--out", folder)
+    answer = answer_of("run", "baseline", "--steps", 10, "--out", folder)
     assert answer.returncode == 2
     assert "already holds a run" in answer.stderr
     assert answer.stdout == ""
@@ -129,7 +129,7 @@ def test_a_folder_that_holds_a_run_is_left_alone(finished):
     ],
 )
 def test_mistakes_get_one_clear_message(tmp_path, arguments, words):
-    answer = call(*arguments, cwd=tmp_path)
+    answer = answer_of(*arguments, cwd=tmp_path)
     assert answer.returncode == 2
     assert "Traceback" not in answer.stderr
     for word in words:
@@ -138,7 +138,7 @@ def test_mistakes_get_one_clear_message(tmp_path, arguments, words):
 
 
 def test_an_unknown_kernel_is_named(tmp_path):
-    answer = call("run", "baseline", "--out", tmp_path / "out", env=os.environ | {"HEDON_KERNEL": "sse9"})
+    answer = answer_of("run", "baseline", "--out", tmp_path / "out", HEDON_KERNEL="sse9")
     assert answer.returncode == 2
     assert "sse9" in answer.stderr
     assert "portable" in answer.stderr
@@ -174,7 +174,7 @@ def test_results_can_be_read_while_the_run_goes_on(tmp_path):
     try:
         wait_for(folder / "agents" / "living.parquet")
         assert hedon.open_run(folder).agents().height >= 50
-        assert call("report", folder).returncode == 0
+        assert answer_of("report", folder).returncode == 0
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(timeout=60)
@@ -182,7 +182,7 @@ def test_results_can_be_read_while_the_run_goes_on(tmp_path):
 
 def test_extinction_is_said_and_recorded(tmp_path):
     lethal = ("--set", "hazard.kappa=1", "--set", "energy.initial=0", "--set", "birth.kappa=0")
-    answer = call("run", "baseline", "--steps", 20_000, "--out", tmp_path / "out", *lethal)
+    answer = answer_of("run", "baseline", "--steps", 20_000, "--out", tmp_path / "out", *lethal)
     assert answer.returncode == 0, answer.stderr
     assert "died out at step" in answer.stdout
     world = json.loads((tmp_path / "out" / "summary.json").read_text())["worlds"][0]

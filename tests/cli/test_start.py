@@ -5,6 +5,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+from command import hedon
 
 from hedon.record.manifest import load_manifest
 
@@ -44,7 +45,7 @@ def test_the_installed_command_begins_there() -> None:
 
 @pytest.mark.parametrize("command", ["report", "resume", "branch", "check", "replay-fault"])
 def test_a_path_that_no_file_system_takes_is_a_message(command: str) -> None:
-    answer = subprocess.run(["hedon", command, "a" * 300], capture_output=True, text=True, check=False)
+    answer = hedon(command, "a" * 300)
     assert answer.returncode == 2
     assert answer.stderr.strip().endswith("File name too long")
     assert "Traceback" not in answer.stderr

@@ -1,13 +1,11 @@
 """A run that was stopped and resumed has the records of one that was left alone, bit for bit."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 
 import pytest
+from command import hedon
 from resumed_run import WINDOW, assert_same_run, small_run
 
 from hedon import _engine
@@ -174,16 +172,6 @@ def test_a_checkpoint_of_another_version_config_or_shape_says_what_differs(half)
         resume(half, steps=STEPS)
     (half / "config.toml").write_text(text)
     resume(half, steps=STEPS)
-
-
-def hedon(*arguments, **environment):
-    return subprocess.run(
-        [sys.executable, "-c", "from hedon.cli.main import main; main()", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | environment,
-    )
 
 
 def test_a_run_keeps_its_instruction_set(tmp_path, monkeypatch):
