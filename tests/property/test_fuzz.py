@@ -31,13 +31,25 @@ from hedon.record.folder import holds_run
 EXAMPLES = int(os.environ.get("HEDON_FUZZ", "0"))
 FUZZ = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 DUMPS = {preset: dump_toml(load_config(preset)) for preset in PRESETS}
-PATHS = [path for path, _, _ in leaves(load_config("poison"))]
+TABLES = (
+    *(f"{owner}reward.see.{name}" for owner in ("", "species.prey.", "species.predator.") for name in ("prey", "pray")),
+    *(f"{owner}reward.smell.{name}" for owner in ("", "species.prey.") for name in ("normal", "normel")),
+    *(
+        f"genome.{table}.{name}"
+        for table in ("learning", "family", "mutation")
+        for name in ("gamma", "threshold", "w_x")
+    ),
+    *(f"species.predator.genome.{name}" for name in ("learning.gamma", "learning.gama", "mutation.w_prey", "family.x")),
+    *("hazard.schedule.scale", "species.prey.hazard.schedule.scole", "food.normal.schedule.capacity", "species.shark"),
+)
+"""Tables that a config may have, and some that are spelled wrongly."""
+PATHS = [path for preset in ("poison", "predator", "pitfall") for path, _, _ in leaves(load_config(preset))]
 PLAIN = [
     (path, setting)
     for path, setting, _ in leaves(load_config("baseline"))
     if setting.type in (int, float) or setting.choices
 ]
-SECTIONS = sorted({path.rpartition(".")[0] for path in PATHS} - {""})
+SECTIONS = [*sorted({path.rpartition(".")[0] for path in PATHS} - {""}), *TABLES]
 
 text = st.one_of(
     st.sampled_from(
@@ -74,6 +86,7 @@ def mutate(source: str, edits: list[tuple[int, int, str]]) -> str:
 line = st.one_of(
     st.builds("{} = {}".format, name, value),
     st.builds("{} = {}".format, st.sampled_from(PATHS), value),
+    st.builds("{} = {{}}".format, st.sampled_from(TABLES)),
     st.builds("[{}]".format, st.one_of(st.sampled_from(SECTIONS), text)),
     st.builds("[[{}]]".format, st.sampled_from(SECTIONS)),
     st.builds('preset = "{}"'.format, st.sampled_from([*PRESETS, "none"])),
@@ -93,6 +106,7 @@ def allowed(path: str, setting: Setting) -> st.SearchStrategy[str]:
 
 document = st.one_of(
     st.lists(line, max_size=8).map("\n".join),
+    st.lists(line, max_size=4).map(lambda lines: "\n".join(['preset = "predator"', *lines])),
     st.lists(st.one_of([allowed(*each) for each in PLAIN]), min_size=1, max_size=3).map("\n".join),
     st.builds(
         mutate,
@@ -100,7 +114,11 @@ document = st.one_of(
         st.lists(st.tuples(st.integers(0, 10**5), st.integers(0, 40), st.one_of(value, text)), min_size=1, max_size=4),
     ),
 )
-override = st.one_of(st.builds("{}={}".format, st.one_of(st.sampled_from(PATHS), name), value), text)
+override = st.one_of(
+    st.builds("{}={}".format, st.one_of(st.sampled_from([*PATHS, *TABLES]), name), value),
+    st.builds("{}={{}}".format, st.sampled_from(TABLES)),
+    text,
+)
 
 
 def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path):
