@@ -57,7 +57,8 @@ def lines(tables: dict[str, Any]) -> list[str]:
         (
             {"arena": {"inner_walls": [[1, 2, 3]]}},
             "arena.inner_walls[0][3] = [1, 2, 3]: "
-            "must be a list of [number, number, number, number] with at most 256 items, with numbers from 0 to 100000 [u]",
+            "must be a list of [number, number, number, number] with at most 256 items, "
+            "with numbers from 0 to 100000 [u]",
         ),
     ],
 )
