@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from reference_draw import PURPOSES, fine_uniform, philox
+from reference.draw import PURPOSES, fine_uniform, philox
 from worlds import CHILDLESS, DEATHLESS, QUICK, RELEASED, make_simulation
 
 from hedon import EngineError, RunPlan, load_config, open_run, resume, run

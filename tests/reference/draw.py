@@ -1,15 +1,17 @@
 """Counted random numbers in plain Python integers: the engine's, once more."""
 
 import math
+from functools import lru_cache
 
 PURPOSES = (
     *("action", "life_and_death", "parent_order", "child_place", "child_heading", "mutation", "initial_genome"),
     *("initial_place", "network", "minibatch", "food_place", "frozen_mutation", "initial_heading", "initial_food"),
-    *("vacant_network", "vacant_genome"),
+    *("vacant_network", "vacant_genome", "hunt", "obstacle", "inherited_network", "recombination"),
 )
 """What draws are for, in the order of their numbers."""
 
 
+@lru_cache(maxsize=10_000)
 def philox(counter: tuple[int, int, int, int], key: tuple[int, int]) -> tuple[int, int, int, int]:
     """Philox4x32-10. Source: Salmon et al. (2011)."""
     mask = 0xFFFFFFFF
@@ -20,6 +22,16 @@ def philox(counter: tuple[int, int, int, int], key: tuple[int, int]) -> tuple[in
         c0, c1, c2, c3 = (b >> 32) ^ c1 ^ k0, b & mask, (a >> 32) ^ c3 ^ k1, a & mask
         k0, k1 = (k0 + 0x9E3779B9) & mask, (k1 + 0xBB67AE85) & mask
     return c0, c1, c2, c3
+
+
+class Draws:
+    """The draws of one world."""
+
+    def __init__(self, seed: int) -> None:
+        self.key = (seed & 0xFFFFFFFF, seed >> 32)
+
+    def __call__(self, purpose: str, of: int, step: int, index: int = 0) -> tuple[int, int, int, int]:
+        return philox((index, PURPOSES.index(purpose), of, step), self.key)
 
 
 def uniform(word: int) -> float:
@@ -38,3 +50,17 @@ def normals(word0: int, word1: int) -> tuple[float, float]:
 
 def cauchy(word: int) -> float:
     return math.tan(math.pi * ((word + 0.5) / 2**32 - 0.5))
+
+
+def student_t(df: float, word0: int, word1: int) -> float:
+    """Bailey (1994), the polar method."""
+    radius = math.sqrt(df * (((word0 + 0.5) / 2**32) ** (-2 / df) - 1))
+    return radius * math.cos(2 * math.pi * (word1 + 0.5) / 2**32)
+
+
+def open_uniform(word: int) -> float:
+    return (word + 0.5) / 2**32
+
+
+def one_of(word: int, count: int) -> int:
+    return word * count >> 32

@@ -1,0 +1,170 @@
+"""The state of a simulation and what its agents did, as the reference model takes them."""
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from reference.state import COUNTED, HARMED, HUNTED, Agent, Deed, Newborn, Stock, Vacancy, World
+
+from hedon.config.arena import walls
+from hedon.config.layout import SpeciesLayout, layouts
+from hedon.experiment.simulation import Simulation
+
+FIRST, SECOND = 1, 2
+"""Marks of a pair of bodies: the mouth of the first, or of the second, touches the other, which it may eat."""
+INNER = ("nutrient", "toxin")
+
+
+def read_world(simulation: Simulation) -> World:
+    """The state that the rules speak of, copied from the engine."""
+    world = simulation.worlds[0]
+    foods, kinds, head = world.foods(), len(world.config.food), simulation.engine.head(0)
+    supply = {name: world.view(f"food_stock.{name}").tolist() for name in ("number", "eaten", "center")}
+    stocks = [Stock(**{name: column[k] for name, column in supply.items()}) for k in range(kinds)]
+    for k in range(kinds):
+        here = foods["kind"] == k
+        stocks[k].foods = list(zip(foods["x"][here].tolist(), foods["y"][here].tolist(), strict=True))
+        assert world.view("food_stock.present")[k] == len(stocks[k].foods)
+    ghosts = [
+        (*(world.view(f"ghost.{name}")[i].item() for name in ("x", "y", "kind")),) for i in range(head["ghost_count"])
+    ]
+    made = tuple(layouts(world.config).values())
+    genes = [len(layout.genes) for layout in made]
+    species, kept = len(world.config.agents), world.view("eaten_by")
+    width = world.view("eaten").size // len(world.view("alive"))
+    meals = (kept if len(kept) else np.zeros((species, width), int)).reshape(species, width).tolist()
+    numbers = {name: head[name] for name in ("step", "next_agent_id", "births_in_window", "births_before")}
+    return World(
+        **numbers,
+        agents=_agents(world, made),
+        stocks=stocks,
+        sums=_sums(world),
+        meals=meals,
+        vacancies=_vacancies(world, genes),
+        newborns=_newborns(world, genes, numbers["births_in_window"]),
+        ghosts=ghosts,
+    )
+
+
+def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
+    rows, living = world.agents(), world.living
+    known = {each.name for each in fields(Agent)} & set(rows) - {"genome"}
+    columns = {name: rows[name].tolist() for name in known}
+    for name in ("digestion", "ready_until"):
+        if len(world.view(name)):
+            columns[name] = world.view(name)[living].tolist()
+    if len(world.view("old_slot")):
+        columns["old_slot"] = (world.view("old_slot")[living] != 0).tolist()
+    agents = []
+    memory = world.view("memory").reshape(len(world.view("alive")), -1)[living]
+    kept = [species.reward.memory for species in world.config.agents.values()]
+    genomes = rows["genome"].astype(float)
+    for i in range(len(living)):
+        agent = Agent(**{name: column[i] for name, column in columns.items()}, genome=genomes[i])
+        agent.genome = agent.genome[: len(made[agent.species].genes)]
+        for name in set(INNER) - set(made[agent.species].inner):
+            setattr(agent, name, 0.0)  # what others of the world have
+        agent.memory = memory[i, : kept[agent.species]].tolist()
+        agents.append(agent)
+    return agents
+
+
+def _sums(world: Any) -> list[dict[str, float]]:
+    """Counters and ledger of each species; those of mechanisms that the world does not have are 0."""
+    more = [(f"hunt_counters.{name}", name) for name in HUNTED] + [(f"obstacle_counters.{n}", n) for n in HARMED]
+    sums = []
+    for s in range(len(world.config.agents)):
+        counters = world.counters_of(s)
+        mine = {name: counters[name] for name in COUNTED}
+        for path, name in more:
+            column = world.view(path)
+            mine[name] = column[s].item() if len(column) else 0
+        sums.append(mine)
+    return sums
+
+
+def _vacancies(world: Any, genes: list[int]) -> list[list[Vacancy]]:
+    genome = world.view("genome").reshape(len(world.view("alive")), -1).astype(float)
+    old, first, found = world.view("old_slot"), 0, []
+    for s, (species, length) in enumerate(zip(world.config.agents.values(), genes, strict=True)):
+        free = world.view("free")[first : first + world.view("free_count")[s]].tolist()
+        found.append([Vacancy(genome[slot, :length], bool(len(old) and old[slot])) for slot in free])
+        first += species.population.capacity
+    return found
+
+
+def _newborns(world: Any, genes: list[int], births: int) -> list[Newborn]:
+    if world.config.birth.inheritance != "at_window_end":
+        return []
+    waiting = world.view("newborn_genome").reshape(len(world.view("newborn.parent")), -1).astype(float)
+    species = world.view("newborn_species")
+    newborns = []
+    for i in range(births):
+        s = int(species[i]) if len(species) else 0
+        parent = world.view("newborn.parent")[i].item()
+        newborns.append(Newborn(world.view("newborn.agent_id")[i].item(), s, parent, waiting[i, : genes[s]]))
+    return newborns
+
+
+def food_slots(simulation: Simulation) -> dict[int, tuple[int, int]]:
+    """Kind and index within the kind of the food in each slot of the physics' circles."""
+    slots = np.flatnonzero(simulation.worlds[0].view("physics.circles.present")).tolist()
+    kinds = simulation.worlds[0].foods()["kind"].tolist()
+    return {slot: (k, kinds[:n].count(k)) for n, (slot, k) in enumerate(zip(slots, kinds, strict=True))}
+
+
+def rollout_rows(simulation: Simulation, before: World, slots: list[int], name: str, width: int = 1) -> np.ndarray:
+    """What the step after `before` wrote into a rollout for those in `slots`, (agents, width) or (agents,)."""
+    world = simulation.worlds[0]
+    table = world.view(name).reshape(len(world.view("alive")), -1, width)
+    learns = [species.learning.policy == "ppo" for species in world.config.agents.values()]
+    t = before.step % world.config.learning.rollout_steps
+    rows = np.array([table[slot, t * learns[agent.species]] for slot, agent in zip(slots, before.agents, strict=True)])
+    return rows if width > 1 else rows.reshape(len(slots))
+
+
+def sight(simulation: Simulation, before: World) -> list[np.ndarray]:
+    """What the rays of each agent read now, (rays, types that it sees) each, in the order of their ids."""
+    world = simulation.worlds[0]
+    rays = [iter(world.rays(s).astype(float)) for s in range(len(world.config.agents))]
+    return [next(rays[agent.species]) for agent in before.agents]
+
+
+def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: dict, seen: list) -> list[Deed]:
+    """What those in `slots` did in the last step. Who touched what is noted in the physics' lists of pairs."""
+    view = simulation.worlds[0].view
+    bodies = view("physics.neighbors.head.bodies")[0]
+    at = view("physics.neighbors.slot").tolist()
+
+    def marked(what: str) -> list[tuple[int, int, int]]:
+        count = view(f"physics.neighbors.{what}.start")[bodies]
+        first, second, mark = (view(f"physics.neighbors.{what}.{n}")[:count] for n in ("first", "second", "mark"))
+        here = np.flatnonzero(mark)
+        return list(zip(first[here].tolist(), second[here].tolist(), mark[here].tolist(), strict=True))
+
+    mouthfuls: dict[int, list[tuple[int, int]]] = {slot: [] for slot in slots}
+    prey: dict[int, list[int]] = {slot: [] for slot in slots}
+    obstacles: dict[int, set[int]] = {slot: set() for slot in slots}
+    ids = {slot: agent.agent_id for slot, agent in zip(slots, before.agents, strict=True)}
+    for place, circle, _ in marked("circles"):
+        mouthfuls[at[place]].append(foods[circle])
+    for one, other, mark in marked("bodies"):
+        if mark & FIRST:
+            prey[at[one]].append(ids[at[other]])
+        if mark & SECOND:
+            prey[at[other]].append(ids[at[one]])
+    corners = simulation.config.obstacle.corners
+    first_side = len(walls(simulation.config.arena))
+    for place, wall, _ in marked("walls"):
+        obstacles[at[place]].add((wall - first_side) // corners)
+    actions = rollout_rows(simulation, before, slots, "action", 2).astype(float)
+    deeds = []
+    places = np.stack([view(f"physics.bodies.{name}")[slots] for name in ("x", "y", "angle")], axis=1).tolist()
+    now = view("life.agent_id")[slots].tolist()
+    for i, (slot, agent, place) in enumerate(zip(slots, before.agents, places, strict=True)):
+        if now[i] != agent.agent_id:  # it died, and a newborn lies there
+            place = [agent.x, agent.y, agent.angle]
+        left, right = actions[i]
+        x, y, angle = place
+        deeds.append(Deed((left, right), x, y, angle, mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i]))
+    return deeds

@@ -1,0 +1,149 @@
+"""Who has a child, with whom, where, and what it gets."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from reference.draw import normals, uniform
+from reference.heredity import mutated, recombined
+from reference.place import overlaps
+from reference.rule import memory_of
+from reference.setting import Rules, Species
+from reference.state import Agent, Newborn, Turn, World
+
+
+def is_free(rules: Rules, world: World, x: float, y: float, radius: float) -> bool:
+    """Whether a disc is inside, and touches no living agent and no food."""
+    agents = ((agent.x, agent.y, rules.of(agent).body.radius) for agent in world.agents)
+    foods = ((fx, fy, rules.food_radius) for stock in world.stocks for fx, fy in stock.foods)
+    return (
+        not overlaps(x, y, radius, agents) and not overlaps(x, y, radius, foods) and rules.arena.is_inside(x, y, radius)
+    )
+
+
+def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Turn], None]) -> None:
+    """Those whose draw made them parents have their turn in random order. `has_given` is told who gave energy."""
+    here = {agent.agent_id for agent in world.agents}
+    turn_of = {turn.agent.agent_id: turn for turn in turns if turn.agent.agent_id in here}
+    parents = [turn for turn in turn_of.values() if turn.breeds]
+    if rules.old_slots_only:
+        parents = [turn for turn in parents if turn.agent.old_slot]
+    for turn in sorted(parents, key=lambda each: rules.draw("parent_order", each.agent.agent_id, world.step)[0]):
+        parent, species = turn.agent, rules.of(turn.agent)
+        mate = None
+        if species.birth.mating == "pairs":
+            mate = find_mate(rules, world, turn_of, parent)
+            parent.ready_until = world.step + species.birth.mating_window
+            if mate is None:
+                continue
+        sums = world.sums[species.number]
+        place = child_place(rules, world, parent) if world.vacancies[species.number] else None
+        if not world.vacancies[species.number]:
+            sums["births_failed_full"] += 1
+        elif place is None:
+            sums["births_failed_space"] += 1
+        else:
+            bear(rules, world, [parent, mate] if mate else [parent], place)
+            for each in filter(None, (parent, mate)):
+                has_given(turn_of[each.agent_id])
+
+
+def find_mate(rules: Rules, world: World, turn_of: dict[int, Turn], parent: Agent) -> Agent | None:
+    """The nearest of its species that waits within range; of equally near ones the oldest."""
+    species = rules.of(parent)
+    reach = 2 * species.body.radius + species.birth.mating_range
+    waiting = [
+        turn.agent
+        for turn in turn_of.values()
+        if turn.agent is not parent
+        and turn.agent.species == parent.species
+        and turn.agent.ready_until >= world.step
+        and not turn.starved
+    ]
+    apart = {mate.agent_id: math.hypot(mate.x - parent.x, mate.y - parent.y) for mate in waiting}
+    near = [mate for mate in waiting if apart[mate.agent_id] <= reach]
+    return min(near, key=lambda mate: (apart[mate.agent_id], mate.agent_id), default=None)
+
+
+def child_place(rules: Rules, world: World, parent: Agent) -> tuple[float, float] | None:
+    species = rules.of(parent)
+    for i in range(species.birth.attempts):
+        aside, along = normals(*rules.draw("child_place", parent.agent_id, world.step, i)[:2])
+        x, y = parent.x + species.distance_sd * aside, parent.y + species.distance_sd * along
+        if is_free(rules, world, x, y, species.body.radius):
+            return x, y
+    return None
+
+
+def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, float]) -> None:
+    first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
+    sums = world.sums[species.number]
+    energy = nutrient = 0.0
+    for parent in parents:
+        share = species.energy.birth_share / len(parents)
+        energy += share * parent.energy
+        nutrient += share * parent.nutrient
+        sums["energy_shared"] += share * parent.energy
+        parent.energy *= 1 - share
+        parent.nutrient *= 1 - share
+        parent.children += 1
+        parent.ready_until = -1
+    vacancy = world.vacancies[species.number].pop()
+    child = Agent(
+        child_id,
+        species.number,
+        *place,
+        child_heading(rules, world, child_id),
+        energy,
+        child_genome(rules, world, parents, vacancy.genome),
+        nutrient,
+        parent_id=first.agent_id,
+        mate_id=parents[1].agent_id if len(parents) == 2 else -1,
+        generation=1 + max(parent.generation for parent in parents),
+        birth_step=world.step + 1,
+        eaten=[0] * len(first.eaten),
+        memory=memory_of(species),
+        birth_energy=energy,
+        old_slot=vacancy.old_slot,
+    )
+    world.agents.append(child)
+    world.next_agent_id += 1
+    world.births_in_window += 1
+    sums["births"] += 1
+
+
+def child_heading(rules: Rules, world: World, child_id: int) -> float:
+    of, step = (0, world.step) if rules.shared_heading else (child_id, 0)
+    return 2 * math.pi * uniform(rules.draw("child_heading", of, step)[0])
+
+
+def child_genome(rules: Rules, world: World, parents: list[Agent], before: np.ndarray) -> np.ndarray:
+    """The genome of the next child. Where newborns inherit late, it has that which its slot had `before`."""
+    first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
+    if rules.inherits_late:
+        among = [newborn.agent_id for newborn in world.newborns]
+        at = among.index(first.agent_id) if first.agent_id in among else -1
+        world.newborns.append(Newborn(child_id, species.number, at, first.genome))
+        return before
+    genome = first.genome
+    if len(parents) == 2:
+        genome = recombined(rules, genome, parents[1].genome, child_id)
+    return mutated(rules, species, genome, child_id, world.births_before, world.births_in_window)
+
+
+def open_window(rules: Rules, world: World) -> None:
+    """Newborns that waited inherit; births are counted from 0, and taken slots are old."""
+    for index, newborn in enumerate(world.newborns):
+        parent = newborn.genome if newborn.parent < 0 else world.newborns[newborn.parent].genome
+        species: Species = rules.species[newborn.species]
+        newborn.genome = mutated(rules, species, parent, newborn.agent_id, world.births_in_window, index)
+        for agent in world.agents:
+            if agent.agent_id == newborn.agent_id:
+                agent.genome = newborn.genome
+    world.newborns = []
+    world.births_before, world.births_in_window = world.births_in_window, 0
+    for agent in world.agents:
+        agent.old_slot = rules.old_slots_only
+    for vacancy in (vacancy for each in world.vacancies for vacancy in each):
+        vacancy.old_slot = False

@@ -1,0 +1,50 @@
+"""How likely an agent dies or has a child, and factors that follow time."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from reference.setting import Rules, Species
+from reference.state import Agent
+
+
+def factor_at(schedules: Mapping[str, Any], name: str, step: int) -> float:
+    """The factor of a schedule in a step, 1 where there is none."""
+    if name not in schedules or not schedules[name].points:
+        return 1.0
+    schedule = schedules[name]
+    points, period = [tuple(point) for point in schedule.points], schedule.period
+    if period:
+        (first, start), (last, end) = points[0], points[-1]
+        step %= period
+        points = [(last - period, end), *points, (first + period, start)]
+    else:
+        points = [(-1, points[0][1]), *points, (math.inf, points[-1][1])]
+    at = max(i for i, (time, _) in enumerate(points[:-1]) if time <= step)
+    (time, factor), (later, goal) = points[at], points[at + 1]
+    if schedule.form == "steps" or later == math.inf or goal == factor:
+        return factor
+    return factor + (step - time) / (later - time) * (goal - factor)
+
+
+def by_store(hazard: Any, store: float) -> float:
+    return hazard.kappa * (1 - 1 / (1 + hazard.alpha_energy * math.exp(-hazard.beta_energy * store)))
+
+
+def death_chance(species: Species, agent: Agent, step: int) -> float:
+    """Of dying at the end of this step; its age counts this step."""
+    hazard, age = species.hazard, step + 1 - agent.birth_step
+    chance = by_store(hazard, agent.energy) + hazard.alpha_age * math.exp(hazard.beta_age * age)
+    if "nutrient" in species.holds:
+        chance += species.nutrient.hazard_share * by_store(hazard, agent.nutrient)
+    return factor_at(hazard.schedule, "scale", step) * chance
+
+
+def birth_chance(species: Species, energy: float) -> float:
+    birth = species.birth
+    return birth.kappa / (1 + math.exp(birth.delay - birth.beta * energy))
+
+
+def harmful(rules: Rules, step: int) -> int:
+    """How many obstacles do harm: the first ones."""
+    return math.floor(factor_at(rules.obstacle.schedule, "harmful", step) * rules.obstacle.count + 0.5)

@@ -1,0 +1,62 @@
+"""Motors, energy and the other inner states."""
+
+import math
+
+from reference.chance import harmful
+from reference.setting import Rules, Species
+from reference.state import Turn, World
+
+
+def sigmoid(x: float) -> float:
+    return 1 / (1 + math.exp(-x)) if x > -700 else 0.0
+
+
+def motor_forces(species: Species, action: tuple[float, float], toxin: float) -> tuple[float, float]:
+    """What both motors apply; toxin takes a part."""
+    if species.learning.policy == "still":
+        return 0.0, 0.0
+    left = 1.0
+    if "toxin" in species.holds:
+        threshold = species.toxin.threshold
+        left = (1 - sigmoid(toxin - threshold)) / (1 - sigmoid(-threshold))
+    low, high = species.min_force, species.max_force
+    one, other = (left * (low + (high - low) * sigmoid(a)) for a in action)
+    return one, other
+
+
+def pay(rules: Rules, world: World, turn: Turn) -> None:
+    """Meals and costs, of energy and of the other inner states, and the ledger."""
+    agent, species, sums = turn.agent, rules.of(turn.agent), world.sums[turn.agent.species]
+    energy, force = species.energy, math.hypot(*turn.forces)
+    meal = turn.meal[: len(rules.kinds)]
+    gain = sum(each * n for each, n in zip(species.food_energy, meal, strict=True))
+    action = energy.action_cost * force
+    touched = sum(obstacle < harmful(rules, world.step) for obstacle in turn.deed.obstacles)
+    damage = rules.obstacle.damage * touched
+    wanted = agent.energy + gain - action - energy.basic_cost - damage
+    agent.energy = min(max(wanted, 0.0), energy.capacity)
+    agent.energy_gained += gain
+    agent.energy_spent += action + energy.basic_cost + damage
+    turn.starved = wanted < 0 and energy.starvation == "death"
+    changes = {
+        "agent_steps": 1,
+        "energy_eaten": gain,
+        "energy_action": action,
+        "energy_basic": energy.basic_cost,
+        "energy_forgiven": max(-wanted, 0.0),
+        "energy_capped": max(wanted - energy.capacity, 0.0),
+        "obstacles_touched": touched,
+        "energy_damage": damage,
+    }
+    for name, change in changes.items():
+        sums[name] += change
+    if "nutrient" in species.holds:
+        own = species.nutrient
+        store = agent.nutrient + sum(food.nutrient * n for food, n in zip(rules.foods, meal, strict=True))
+        agent.nutrient = min(max(store - own.action_cost * force - own.basic_cost, 0.0), own.capacity)
+    if "toxin" in species.holds:
+        load = agent.toxin + sum(food.toxin * n for food, n in zip(rules.foods, meal, strict=True))
+        agent.toxin = max(load - species.toxin.decay, 0.0)
+    agent.distance += math.hypot(turn.deed.x - turn.start.x, turn.deed.y - turn.start.y)
+    agent.force_left += turn.forces[0]
+    agent.force_right += turn.forces[1]

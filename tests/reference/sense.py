@@ -1,0 +1,46 @@
+"""What agents sense without rays: smell, their motion and what they hold."""
+
+import math
+
+import numpy as np
+
+from reference.setting import Rules, Species
+from reference.state import Agent, World
+
+
+def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
+    """(channels, noses): the sum over all sources but the agent itself, at most 1."""
+    species = rules.of(agent)
+    sensor = species.sensor
+    if not species.smells:
+        return np.zeros((0, sensor.noses))
+    sources = {name: [] for name in species.smells}
+    for kind, stock in zip(rules.kinds, world.stocks, strict=True):
+        sources.get(kind, []).extend(stock.foods)
+    for x, y, kind in world.ghosts:
+        sources.get(rules.kinds[kind], []).append((x, y))
+    for other in world.agents:
+        if other is not agent:
+            sources.get(rules.names[other.species], []).append((other.x, other.y))
+    angles = [0.0] if sensor.noses == 1 else [-math.radians(sensor.nose_angle), math.radians(sensor.nose_angle)]
+    smelled = np.zeros((len(sources), len(angles)))
+    for n, angle in enumerate(angles):
+        toward = agent.angle + angle
+        nose = agent.x - species.body.radius * math.sin(toward), agent.y + species.body.radius * math.cos(toward)
+        for c, places in enumerate(sources.values()):
+            distances = (math.dist(nose, place) for place in places)
+            smelled[c, n] = min(1.0, sum(math.exp(-sensor.smell_decay * distance) for distance in distances))
+    return smelled
+
+
+def body_sense(species: Species, agent: Agent, motion: tuple[float, float, float], smelled: np.ndarray) -> list[float]:
+    """The observation after rays and touch; `motion` is the velocity along x and y, and the angular velocity."""
+    vx, vy, spin = motion
+    held = {"energy": (agent.energy, 100.0), "nutrient": (agent.nutrient, 100.0), "toxin": (agent.toxin, 10.0)}
+    shown = [name for name in species.holds if name == "energy" or getattr(species, name).observed]
+    if species.sensor.scaling == "raw":
+        own = [vx, vy, agent.angle, spin, *(held[name][0] for name in shown)]
+    else:
+        heading = [math.sin(agent.angle), math.cos(agent.angle)]
+        own = [vx / 1.5, vy / 1.5, *heading, spin / 0.2, *(held[name][0] / held[name][1] for name in shown)]
+    return [*own, *smelled.ravel()]

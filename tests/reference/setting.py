@@ -1,0 +1,128 @@
+"""The settings of a world as the rules read them: per species, by name, in the numbers that the engine holds."""
+
+from dataclasses import fields, is_dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from hedon.config.config import Config
+from hedon.config.layout import layouts
+from reference.draw import Draws
+from reference.place import Arena
+
+MAX_EXPONENT = 2.0
+"""Genes that are exponents stay within ± this."""
+
+
+def held(value: Any) -> Any:
+    """Sections as namespaces, numbers as the engine holds them: floats of 32 bits."""
+    if is_dataclass(value):
+        return SimpleNamespace(**{each.name: held(getattr(value, each.name)) for each in fields(value)})
+    if isinstance(value, dict):
+        return {name: held(inner) for name, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [held(inner) for inner in value]
+    return float(np.float32(value)) if isinstance(value, float) else value
+
+
+class Species:
+    """The sections of one species, its genes by name, and what it eats, sees, touches and smells."""
+
+    def __init__(self, config: Config, name: str, number: int) -> None:
+        own, layout = config.agents[name], layouts(config)[name]
+        self.name, self.number = name, number
+        for section in fields(own):
+            setattr(self, section.name, held(getattr(own, section.name)))
+        eaten: dict[str, float] = {}
+        for each, factor in own.diet.eats:
+            eaten |= dict.fromkeys(config.food if each == "*" else [each], factor)
+        self.eats = {each: held(float(factor)) for each, factor in eaten.items() if factor}
+        self.food_energy = [held(self.eats.get(kind, 0.0) * held(config.food[kind].energy)) for kind in config.food]
+        self.min_force, self.max_force = (
+            held(own.motor.force_scale * limit) for limit in (own.motor.min_force, own.motor.max_force)
+        )
+        scale = config.arena.width if own.birth.distance_unit == "arena_width" else 1.0
+        self.distance_sd = held(own.birth.distance_sd * scale)
+        self.holds = ["energy"] + [
+            state
+            for state in ("nutrient", "toxin")
+            if any(getattr(food, state) > 0 for kind, food in config.food.items() if kind in self.eats)
+        ]
+        every = [*config.agents, *config.food, "wall", *(["obstacle"] if config.obstacle.count else [])]
+        solid = ("wall", "obstacle")
+        self.sees, self.touches = (
+            [each for each in every if each in solid or each in names or "*" in names]
+            for names in (own.sensor.sees, own.body.collides)
+        )
+        self.smells = [
+            each for each in (*config.agents, *config.food) if each in own.sensor.smells or "*" in own.sensor.smells
+        ]
+        self.genes = layout.gene_names
+        self.laws = [self._law(config, gene) for gene in self.genes]
+        self.mutations = [self._mutation(gene) for gene in self.genes]
+
+    def __getattr__(self, section: str) -> Any:  # the sections, for the type checker
+        raise AttributeError(section)
+
+    def _law(self, config: Config, gene: str) -> Any:
+        """From what law founders draw a gene."""
+        genome, reward, name = self.genome, self.reward, gene[2:]
+        weights = {
+            **{kind: food.gene for kind, food in config.food.items()},
+            **dict.fromkeys(config.agents, genome.prey),
+            "action": genome.action,
+            **{f"see_{each}": see.gene for each, see in reward.see.items()},
+            **{f"smell_{each}": smell.gene for each, smell in reward.smell.items()},
+        }
+        if gene.startswith("neutral_"):
+            return genome.neutral
+        if gene.startswith("set_point"):
+            return getattr(genome, gene)
+        if gene.startswith("g_"):
+            return (genome.family | genome.learning)[name]
+        return held(weights[name]) if name in weights else genome.second
+
+    def _mutation(self, gene: str) -> SimpleNamespace:
+        """How a gene mutates: as its own section says, or else as the genome does."""
+        genome = self.genome
+        common = SimpleNamespace(
+            law=genome.mutation_law,
+            scale=genome.mutation_scale,
+            df=genome.mutation_df,
+            probability=genome.mutation_probability,
+            limit=genome.weight_limit,
+        )
+        found = SimpleNamespace(**vars(genome.mutation.get(gene, common)))
+        power = gene.startswith("w_") if self.reward.family == "sinh" else gene.endswith("_scale")
+        if power or gene.startswith("g_"):
+            found.limit = min(found.limit, MAX_EXPONENT)
+        return found
+
+    def gene(self, genome: np.ndarray, name: str) -> float:
+        return float(genome[self.genes.index(name)])
+
+
+class Rules:
+    """What holds for a whole world, its species, and its draws."""
+
+    def __init__(self, config: Config, seed: int) -> None:
+        self.draw = Draws(seed)
+        self.arena = Arena(config, self.draw)
+        self.species = [Species(config, name, i) for i, name in enumerate(config.agents)]
+        self.names, self.kinds = list(config.agents), list(config.food)
+        self.foods = [held(food) for food in config.food.values()]
+        self.hunting = any(name in each.eats for each in self.species for name in self.names)
+        self.obstacle = held(config.obstacle)
+        self.food_radius = held(config.body.food_radius)
+        self.ghosts_seen = config.sensor.eaten_food == "seen"
+        self.all_mouths = config.sensor.mouths == "all"
+        self.each_gains = config.diet.prey_sharing == "each"
+        self.births_first = config.birth.order == "before_deaths"
+        self.inherits_late = config.birth.inheritance == "at_window_end"
+        self.old_slots_only = config.birth.parents == "old_slots"
+        self.shared_heading = config.birth.heading == "shared"
+        self.window = config.learning.rollout_steps
+
+    def of(self, agent: Any) -> Species:
+        return self.species[agent.species]

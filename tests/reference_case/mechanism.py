@@ -1,0 +1,314 @@
+"""A world for each mechanism beyond the first paper, and some in which mechanisms meet."""
+
+from pathlib import Path
+
+from reference_case.case import Case, each, kind
+
+RULES = Path(__file__).parents[1] / "rule_example.py"
+
+SPECIES = {
+    "hunters": Case(
+        "a species that eats another; digestion; sights in the reward; starvation",
+        (
+            'energy.starvation="death"',
+            *("reward.see.prey.coef=0.3", "reward.see.hunter.coef=0.2", 'reward.see.hunter.over_rays="max"'),
+            *each("prey", "population.capacity=26", "population.initial_count=22", "birth.kappa=0.15"),
+            *each("hunter", "population.capacity=14", "population.initial_count=12", "body.radius=14"),
+            *each("hunter", 'diet.eats=[["prey", 0.6], ["normal", 0.5]]', "diet.digestion_steps=6"),
+            *each("hunter", "sensor.mouth_spread=100", "energy.initial=5"),
+            *each("hunter", "sensor.ray_count=16", "sensor.touch_sectors=18", "motor.force_scale=1.9"),
+            *each("hunter", "reward.see.wall.coef=0.4", 'reward.see.wall.reads="prey"', "genome.prey.initial_mean=2"),
+            *each("hunter", "genome.prey.initial_sd=0.5", "reward.see.prey.gene.initial_mean=0.5"),
+        ),
+        {"deaths_eaten": 20, "starved": 5, "digesting": 5, "paid_see_prey": 300, "paid_prey": 20, "energy_hunted": 15},
+    ),
+    "food chain": Case(
+        "three species of a chain, of which the middle ones eat one another too; who is eaten eats nothing",
+        (
+            *("birth.kappa=0.1", "hazard.kappa=0.1"),
+            *each("grass", "population.capacity=30", "population.initial_count=20", "body.radius=8"),
+            *each("middle", "population.capacity=20", "population.initial_count=16", "sensor.mouth_spread=90"),
+            *each("middle", 'diet.eats=[["grass", 0.7], ["middle", 0.4]]', "diet.digestion_steps=2"),
+            *each("top", "population.capacity=12", "population.initial_count=8", "sensor.mouth_spread=120"),
+            *each("top", 'diet.eats=[["middle", 0.9], ["normal", 1.0]]', "energy.capacity=6"),
+        ),
+        {"deaths_eaten": 30, "spared": 1, "cannibal": 3, "energy_capped": 0.5},
+    ),
+    "cannibals": Case(
+        "one species that eats its own kind",
+        (
+            *each("shark", 'diet.eats=[["shark", 0.6]]', "diet.digestion_steps=3", "sensor.mouth_spread=90"),
+            *each("shark", "birth.kappa=0.2", "birth.distance_sd=30"),
+        ),
+        {"deaths_eaten": 10, "cannibal": 10, "births": 20},
+    ),
+    "shared prey": Case(
+        "all who claim an agent gain",
+        (
+            'diet.prey_sharing="each"',
+            *each("prey", "population.capacity=30", "population.initial_count=26", "birth.kappa=0.2"),
+            *each("hunter", "population.capacity=20", "population.initial_count=18", 'diet.eats=[["prey", 0.6]]'),
+            *each("hunter", "sensor.mouth_spread=120", "energy.basic_cost=0.1"),
+        ),
+        {"deaths_eaten": 20},
+    ),
+    "passing": Case(
+        "species that pass through one another and through food, of other sizes and densities",
+        (
+            *each("ghost", 'body.collides=["ghost"]', 'sensor.sees=["ghost"]', "diet.eats=[]", "body.radius=12"),
+            *each("ghost", "population.capacity=12", "population.initial_count=8", "hazard.kappa=0.1"),
+            *each("solid", 'body.collides=["solid", "normal"]', "body.radius=7", "body.density=0.2"),
+            *each("solid", "population.heading_range=1", "reward.action_coef=0.2", 'reward.action_norm="none"'),
+            "body.food_radius=3",
+        ),
+        {"passed": 20, "births": 10},
+    ),
+    "smell": Case(
+        "smell, by one nose and by two, as an observation and in the reward",
+        (
+            "sensor.smell_decay=0.05",
+            *each("one", 'sensor.smells=["*"]', "reward.smell.two.coef=0.5", "reward.smell.normal.coef=0.3"),
+            *each("one", "reward.smell.two.gene.initial_mean=1", "reward.smell.two.gene.initial_sd=0.5"),
+            *each("two", 'sensor.smells=["normal", "one"]', "sensor.noses=2", "sensor.nose_angle=70"),
+            *each("two", 'sensor.scaling="unit"', "reward.smell.normal.coef=0.3"),
+            *("population.capacity=20", "population.initial_count=12", 'sensor.eaten_food="seen"'),
+        ),
+        {"smelled": 100, "paid_smell_two": 500, "paid_smell_normal": 500, "ghosts": 3},
+    ),
+    "wide": Case(
+        "observations with more touch than one word has bits, and all inner states",
+        (
+            *("sensor.touch_sectors=20", "food.normal.nutrient=0.5", "food.normal.toxin=0.4"),
+            *each("one", "population.capacity=14", "population.initial_count=12"),
+            *each("two", "population.capacity=14", "population.initial_count=12", 'sensor.smells=["*"]'),
+        ),
+        {"eaten": 10},
+    ),
+}
+
+INNER = {
+    "stores": Case(
+        "a nutrient and a toxin: costs, hazard, weak motors, births; not observed by one species",
+        (
+            *("food.fruit.energy=0.2", "food.fruit.nutrient=1.5", "food.fruit.growth_rate=1", "food.fruit.capacity=15"),
+            *("food.fungus.energy=1.5", "food.fungus.toxin=4", "food.fungus.growth_rate=1", "food.fungus.capacity=15"),
+            *("nutrient.initial=1", "nutrient.capacity=2", "nutrient.basic_cost=0.02", "nutrient.action_cost=1e-4"),
+            *("nutrient.hazard_share=0.5", "toxin.decay=0.05", "toxin.threshold=3", "energy.birth_share=0.3"),
+            *each("open", "population.capacity=20", "population.initial_count=16", 'sensor.scaling="unit"'),
+            *each("blind", "population.capacity=20", "population.initial_count=16"),
+            *each("blind", "nutrient.observed=false", "toxin.observed=false", 'diet.eats=[["*", 1.0], ["fruit", 0.5]]'),
+            *each("pure", "population.capacity=8", "population.initial_count=6", 'diet.eats=[["normal", 2.0]]'),
+        ),
+        {"poisoned": 20, "sated": 1, "empty": 20},
+    ),
+    "homeostasis": Case(
+        "relief alone pays: energy, nutrient and toxin come closer to set points, which are genes",
+        (
+            *("food.normal.nutrient=1", "nutrient.initial=1", "nutrient.capacity=3", "nutrient.basic_cost=0.01"),
+            *("food.normal.toxin=1", "toxin.decay=0.1", "energy.capacity=6"),
+            *("reward.relief_coef=2", "reward.meal_coef=0", "reward.action_coef=0", "genome.set_point.initial_sd=0.3"),
+            *("genome.set_point_nutrient.initial_mean=0.8", "genome.set_point_toxin.initial_sd=0.2"),
+            *("genome.set_point.initial_mean=0.7", "genome.set_point_nutrient.initial_sd=0.3"),
+            *("genome.set_point_toxin.initial_mean=0.3", "genome.mutation.set_point.scale=0.1"),
+        ),
+        {"paid_relief": 1000, "eaten": 10},
+    ),
+    "relief by energy": Case(
+        "relief with energy alone, beside the other terms",
+        ("reward.relief_coef=1.5", "energy.capacity=8", 'diet.eats=[["normal", 0.7]]'),
+        {"paid_relief": 1000},
+    ),
+}
+
+OBSTACLES = {
+    "pitfalls": Case(
+        "obstacles that do harm, by schedule only some of them; a reward for seeing them, by the wrong rays",
+        (
+            *("obstacle.count=4", "obstacle.damage=0.3", "obstacle.min_side=15", "obstacle.max_side=35"),
+            *("obstacle.schedule.harmful.points=[[0, 0.5], [40, 1.0], [70, 0.25]]",),
+            *("reward.see.obstacle.coef=0.2", 'reward.see.obstacle.reads="normal"', 'energy.starvation="death"'),
+        ),
+        {"harmed": 20, "harmless": 10, "starved": 3, "paid_see_obstacle": 100},
+    ),
+    "blocks": Case(
+        "squares, and two species of which one goes by another body",
+        (
+            *("obstacle.count=3", "obstacle.corners=4", "obstacle.damage=0.05", "obstacle.friction=0.1"),
+            *("obstacle.restitution=0.2", "obstacle.schedule.harmful.points=[[5, 1], [20, 0]]"),
+            *('obstacle.schedule.harmful.form="linear"', "obstacle.schedule.harmful.period=30"),
+            *each("small", "body.radius=6", "population.capacity=20", "population.initial_count=14"),
+            *each("large", "body.radius=13", "population.capacity=14", "population.initial_count=10"),
+            *each("large", 'diet.eats=[["small", 0.5]]'),
+        ),
+        {"harmed": 20, "deaths_eaten": 5},
+    ),
+}
+
+HEREDITY = {
+    "pairs": Case(
+        "two parents, in one of two species",
+        (
+            *(
+                "birth.kappa=0.3",
+                "birth.beta=2",
+                "genome.neutral_count=5",
+                "genome.neutral.initial_sd=1",
+                "genome.neutral.initial_mean=0.5",
+            ),
+            *each("pairs", 'birth.mating="pairs"', "birth.mating_window=6", "birth.mating_range=50"),
+            *each("pairs", "population.capacity=26", "population.initial_count=22", "hazard.kappa=0.2"),
+            *("food.normal.nutrient=1", "nutrient.initial=2"),
+            *each("alone", "birth.delay=3", "population.capacity=14", "population.initial_count=8"),
+        ),
+        {"mated": 10, "alone": 3, "waiting": 50},
+    ),
+    "instinct": Case(
+        "children have the network that their parent was born with",
+        ('birth.network="initial"', "birth.network_noise=0.02", "learning.learning_rate=0.01"),
+        {"network_initial": 20, "network_of_learned": 5},
+    ),
+    "lamarck": Case(
+        "children have what their parent has learned; genes of a father, networks of a mother",
+        (
+            *('birth.network="learned"', "learning.learning_rate=0.01", 'birth.mating="pairs"', "birth.kappa=0.3"),
+            *("birth.mating_range=60", "genome.learning.action_sd.initial_sd=0.3", "birth.distance_sd=60"),
+        ),
+        {"network_learned": 20, "network_of_learned": 5, "mated": 20},
+    ),
+    "laws": Case(
+        "laws of mutation, of all genes and of one",
+        (
+            *("birth.kappa=0.2", "population.capacity=14", "population.initial_count=12", "genome.mutation_scale=0.8"),
+            *each("student", 'genome.mutation_law="student_t"', "genome.mutation_df=3", "genome.weight_limit=2"),
+            *each("student", 'genome.mutation.w_action.law="uniform"', 'genome.mutation.w_normal.law="normal"'),
+            *each("normal_law", 'genome.mutation_law="normal"', "genome.mutation_probability=0.4"),
+            *each("normal_law", 'genome.mutation.w_action.law="cauchy"', "genome.mutation.w_action.limit=1.5"),
+            *each("flat", 'genome.mutation_law="uniform"', 'genome.mutation.neutral_2.law="student_t"'),
+            *each("flat", "genome.mutation.neutral_2.df=1.5", "genome.mutation.neutral_2.scale=0.1"),
+            *each("flat", "genome.mutation.neutral_2.probability=0.7", "genome.action.initial_mean=1"),
+        ),
+        {"births": 25},
+    ),
+    "genes of learning": Case(
+        "genes that set learning, expressed at birth",
+        (
+            *(f"genome.learning.{name}.initial_sd=0.4" for name in ("learning_rate", "gamma", "entropy_coef")),
+            *("genome.learning.action_sd.initial_mean=-0.3", "genome.learning.action_sd.initial_sd=0.3"),
+        ),
+        {"births": 20, "acts_ppo_bfloat16": 100},
+    ),
+}
+
+FAMILIES = {
+    "families": Case(
+        "families of rewards: sinh, scaled, hungry and fed, two with genes of their thresholds",
+        (
+            *("population.capacity=12", "population.initial_count=10", "reward.action_coef=0.5"),
+            *each(
+                "curved", 'reward.family="sinh"', "reward.see.normal.coef=0.1", "reward.see.normal.gene.initial_sd=1"
+            ),
+            *each("power", 'reward.family="scaled"', "genome.second.initial_sd=0.5", "genome.second.initial_mean=0.2"),
+            *each("hungry", 'reward.family="hungry"', "reward.threshold=2", "reward.threshold_width=1"),
+            *each("hungry", "genome.family.threshold.initial_sd=0.3", "genome.family.threshold_width.initial_mean=0.2"),
+            *each("fed", 'reward.family="fed"', "reward.threshold=3", "genome.family.threshold_width.initial_sd=0.4"),
+            *each("fed", "reward.threshold_width=0.5", "genome.family.threshold.initial_mean=-0.2"),
+        ),
+        {"births": 20, "eaten": 10},
+    ),
+    "by age": Case(
+        "weights that change with age; gains by meals count double",
+        (
+            *('reward.family="by_age"', "reward.threshold=20", "reward.threshold_width=5", "reward.meal_coef=2"),
+            *("genome.second.initial_sd=1", "genome.action.initial_sd=1", "reward.action_coef=0.4"),
+        ),
+        {"births": 20, "eaten": 10},
+    ),
+    "rules": Case(
+        "functions in Python that pay, kill and let breed",
+        (
+            *(f'reward.rule="{RULES}:curious"', f'hazard.rule="{RULES}:swamp"', f'birth.rule="{RULES}:crowded"'),
+            *("reward.memory=2", "hazard.kappa=0.05", "population.capacity=34", "birth.kappa=0.1"),
+        ),
+        {"births": 5, "deaths": 5},
+    ),
+}
+
+POLICIES = {
+    "policies": Case(
+        "agents that act at random, not at all, as they are told, or by networks that never learn",
+        (
+            *("population.capacity=12", "population.initial_count=9", "birth.kappa=0.1"),
+            *each("random", 'learning.policy="random"'),
+            *each("still", 'learning.policy="still"'),
+            *each("told", 'learning.policy="external"', "reward.action_coef=0.3"),
+            *each("frozen", 'learning.policy="frozen"', 'birth.network="initial"', "birth.network_noise=0.1"),
+        ),
+        {"births": 20, "acts_frozen_bfloat16": 50, "network_initial": 5, "told": 200},
+    ),
+}
+
+FOOD = {
+    "places": Case(
+        "food around several centers, in a rectangle, around one center that drifts, and apart",
+        (
+            *("food.normal.candidates=3", "food.normal.placement.spacing=25"),
+            *kind("many", "mixture", "[[50, 50], [190, 150], [190, 50]]", "[12, 20]"),
+            *kind("box", "rectangle", "[[120, 100]]", "[60, 20]", "drift=[1.5, -0.7]", "spacing=9"),
+            *kind("one", "gaussian", "[[60, 140]]", "[20, 20]", "drift=[0.5, 0]"),
+            *kind("turns", "switching", "[[60, 140], [150, 60]]", "[30, 20]", "drift=[-0.5, 0.2]", "switch_after=2"),
+        ),
+        {"eaten": 30, "switched": 2},
+    ),
+    "seasons": Case(
+        "growth, capacity and hazard that follow time",
+        (
+            "food.normal.schedule.growth_rate.points=[[5, 1], [20, 2], [30, 0]]",
+            *("food.normal.schedule.growth_rate.form=linear", "food.normal.schedule.growth_rate.period=40"),
+            *("food.normal.schedule.capacity.points=[[10, 0.2], [50, 0.9]]", "food.normal.initial_count=25"),
+            *("hazard.schedule.scale.points=[[15, 0], [45, 3]]", "hazard.schedule.scale.period=50"),
+            *("hazard.alpha_energy=0.1", "hazard.beta_energy=0.5"),
+        ),
+        {"births": 10, "eaten": 10},
+    ),
+}
+
+COMBINED = {
+    "everything": Case(
+        "several mechanisms at once, in species that differ in them",
+        (
+            *("obstacle.count=3", "obstacle.damage=0.2", "obstacle.max_side=30", "obstacle.min_side=20"),
+            *("obstacle.schedule.harmful.points=[[0, 1], [50, 0.4]]", 'birth.order="after_deaths"'),
+            *("food.fruit.energy=0.3", "food.fruit.nutrient=1", "food.fruit.growth_rate=1", "food.fruit.capacity=12"),
+            *("food.fungus.energy=1", "food.fungus.toxin=3", "food.fungus.growth_rate=1", "food.fungus.capacity=12"),
+            *("nutrient.initial=1", "nutrient.basic_cost=0.02", "toxin.decay=0.1", "birth.kappa=0.15"),
+            *each("grazer", "reward.relief_coef=1", "reward.see.hunter.coef=0.3", 'birth.mating="pairs"'),
+            *each("grazer", "birth.mating_window=8", "birth.mating_range=40", "population.capacity=24"),
+            *each(
+                "grazer",
+                'hazard.schedule.scale.form="linear"',
+                "hazard.schedule.scale.points=[[10, 0.5], [60, 2]]",
+                'birth.network="learned"',
+            ),
+            *each("hunter", 'diet.eats=[["grazer", 0.7], ["hunter", 0.3], ["fruit", 0.5]]', "body.radius=13"),
+            *each("hunter", "diet.digestion_steps=3", 'sensor.smells=["grazer", "fruit"]', "sensor.noses=2"),
+            *each("hunter", "reward.smell.grazer.coef=0.4", 'reward.family="hungry"', "reward.threshold=3"),
+            *each("hunter", "population.capacity=14", "population.initial_count=9", 'energy.starvation="death"'),
+            *each("drifter", 'learning.policy="random"', 'body.collides=["grazer", "hunter"]', "diet.eats=[]"),
+            *each("drifter", "population.capacity=8", "population.initial_count=5", 'genome.mutation_law="normal"'),
+        ),
+        {"deaths_eaten": 6, "harmed": 10, "mated": 3, "paid_smell_grazer": 100, "paid_relief": 300, "starved": 1},
+    ),
+    "released hunters": Case(
+        "late inheritance in several species, all of whose mouths are fed",
+        (
+            *each("prey", "population.capacity=26", "population.initial_count=22", "birth.kappa=0.2"),
+            *each("hunter", "population.capacity=14", "population.initial_count=12", 'diet.eats=[["prey", 0.6]]'),
+            *each("hunter", "reward.see.prey.coef=0.2", 'genome.mutation_law="student_t"', "genome.neutral_count=0"),
+        ),
+        {"deaths_eaten": 10, "births": 20},
+        fidelity="released",
+        steps=104,
+    ),
+}
+
+MECHANISMS = SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | POLICIES | FOOD | COMBINED

@@ -1,0 +1,216 @@
+"""One step of a simulation against the rules in plain Python."""
+
+import math
+
+import numpy as np
+import ppo_reference
+import pytest
+from acting_weights import AFTER_W2, HIDDEN, as_read
+from observed_touch import assert_touches, touch_bits
+from observed_world import food_slots, read_deeds, read_world, rollout_rows, sight
+from reference.draw import normals
+from reference.heredity import first_log_sd, inherited_network
+from reference.model import Model
+from reference.reward import inputs
+from reference.sense import body_sense, smells
+from reference.setting import Rules
+from reference.state import Outcome, World
+from same_world import FORCE, PLACE, REWARD, WEIGHT, assert_close, assert_same_world
+
+from hedon.experiment.simulation import Simulation
+
+OUTPUT = 2e-5
+"""Sums of a hundred products, of which the energy's are as large as 40, in another order, and tanh to 1e-6."""
+SENSE = 3e-6
+"""Sums of a hundred smells, each of which rounds by 6e-8."""
+LEFT_OUT = 1e-4
+"""What all sources of a smell that are too far away would add together, at most."""
+
+
+class Judge:
+    """Compares a simulation with its model, step by step, and counts what happened."""
+
+    def __init__(self, simulation: Simulation, seed: int) -> None:
+        self.simulation, self.model = simulation, Model(simulation.config, seed)
+        species = self.model.rules.species
+        self.force = FORCE * math.sqrt(2) * max(each.max_force for each in species)
+        self.costs = 2e-12 + self.force * max(each.energy.action_cost + each.nutrient.action_cost for each in species)
+        self.happened: dict[str, float] = {}
+        self.born_with: dict[int, np.ndarray] = {}
+        """The network that each agent had when it was first seen."""
+
+    def count(self, **what: float) -> None:
+        for name, number in what.items():
+            self.happened[name] = self.happened.get(name, 0) + number
+
+    def begin(self) -> None:
+        """Asserts that the world begins as the rules say."""
+        self.assert_same(self.model.found(), 0.0)
+        found = [np.reshape(each, (-1, 2)) for each in self.model.rules.arena.obstacles]
+        assert_close(np.reshape(self.simulation.worlds[0].obstacles, (-1, 2)), np.reshape(found, (-1, 2)), PLACE)
+
+    def step(self) -> None:
+        """Makes one step and asserts that it followed the rules."""
+        simulation, world = self.simulation, self.simulation.worlds[0]
+        before, slots, foods = read_world(simulation), world.living.tolist(), food_slots(simulation)
+        seen, motion = sight(simulation, before), self.motion(slots)
+        if before.step % 5 == 0:
+            self.assert_observations(before, slots, motion)
+        observed = [iter(world.observations(s)) for s in range(len(self.model.rules.species))]
+        observations = [next(observed[agent.species]) for agent in before.agents]
+        params, command = world.view("params"), world.view("command").reshape(len(world.view("alive")), -1)
+        params = params[slots] if len(params) else np.zeros((len(slots), 0), np.float32)
+        told = command[slots].tolist() if command.size else [(0.0, 0.0)] * len(slots)
+        for agent, network in zip(before.agents, params, strict=True):
+            self.born_with.setdefault(agent.agent_id, network)
+        simulation.run(1)
+
+        deeds = read_deeds(simulation, before, slots, foods, seen)
+        for i, (agent, deed) in enumerate(zip(before.agents, deeds, strict=True)):
+            policy = self.model.rules.of(agent).learning.policy
+            if policy == "still":
+                continue
+            if policy not in ("ppo", "frozen"):
+                assert_close(deed.action, self.model.action(before, agent, told[i]), 1e-6)
+        if before.step % 5 == 0:
+            self.assert_networks_act(before, slots, observations, params)
+        self.count(**assert_touches(simulation, self.model.rules, before, slots, deeds))
+
+        expected = self.model.advance(before, deeds)
+        self.assert_same(expected.world, self.costs)
+        rewards = [expected.rewards[agent.agent_id] for agent in before.agents]
+        scale = REWARD * max(1.0, np.abs(rewards).max())
+        assert_close(rollout_rows(simulation, before, slots, "reward"), rewards, scale, 1e-6)
+        self.assert_deaths(expected)
+        if self.model.rules.births_first and not self.model.rules.inherits_late:
+            self.assert_newborn_networks(before, params)
+        self.note(before, expected)
+
+    def assert_same(self, expected: World, costs: float) -> None:
+        actual = read_world(self.simulation)
+        assert_same_world(actual, expected, costs, self.force, self.model.rules.inherits_late)
+
+    def note(self, before: World, expected: Outcome) -> None:
+        """Counts what happened, so that a case can say that what it is there for did."""
+        rules, turns = self.model.rules, expected.turns
+        met = [food for turn in turns for food in turn.deed.mouthfuls]
+        hungry = [turn for turn in turns if turn.start.digestion == 0 and turn.deed.prey and not turn.starved]
+        nearest = [turn.deed.prey[0] for turn in hungry]
+        born = [agent for agent in expected.world.agents if agent.birth_step == expected.world.step]
+        self.count(
+            rivals=len(met) - len(set(met)),
+            contested=len(nearest) - len(set(nearest)),
+            spared=sum(turn.caught for turn in hungry),
+            digesting=sum(bool(turn.deed.prey) for turn in turns if turn.start.digestion > 0),
+            cannibal=sum(turn.meal[len(rules.kinds) + turn.agent.species] for turn in turns if rules.hunting),
+            mated=sum(child.mate_id >= 0 for child in born),
+            alone=sum(child.mate_id < 0 for child in born),
+            waiting=sum(agent.ready_until >= expected.world.step for agent in expected.world.agents),
+            poisoned=sum(agent.toxin > 1 for agent in before.agents),
+            sated=sum(agent.nutrient == rules.of(agent).nutrient.capacity for agent in before.agents),
+            empty=sum("nutrient" in rules.of(agent).holds and agent.nutrient == 0 for agent in before.agents),
+            ghosts=len(expected.world.ghosts),
+            switched=sum(a.center != b.center for a, b in zip(before.stocks, expected.world.stocks, strict=True)),
+            told=sum(rules.of(turn.agent).learning.policy == "external" and any(turn.deed.action) for turn in turns),
+            passed=_overlaps(rules, before),
+        )
+        for turn in turns:
+            self.count(**{f"paid_{name}": value != 0 for name, value in inputs(rules, turn).items()})
+
+    def motion(self, slots: list[int]) -> np.ndarray:
+        view = self.simulation.worlds[0].view
+        names = ("velocity_x", "velocity_y", "angular_velocity")
+        return np.stack([view(f"physics.bodies.{name}")[slots] for name in names], axis=1).astype(float)
+
+    def assert_observations(self, before: World, slots: list[int], motion: np.ndarray) -> None:
+        """All of an observation but rays: touch is that of the state, the rest follows from the rules."""
+        world, rules = self.simulation.worlds[0], self.model.rules
+        touch = touch_bits(world, slots)
+        for s, species in enumerate(rules.species):
+            observed = iter(world.observations(s).astype(float))
+            rays, bits = (
+                species.sensor.ray_count * len(species.sees),
+                len(species.touches) * species.sensor.touch_sectors,
+            )
+            for i, agent in enumerate(before.agents):
+                if agent.species != s:
+                    continue
+                row = next(observed)
+                assert row[rays : rays + bits].tolist() == [touch[i] >> bit & 1 for bit in range(bits)]
+                smelled = smells(rules, before, agent)
+                own = body_sense(species, agent, motion[i], smelled)
+                assert_close(row[rays + bits :], own, SENSE + LEFT_OUT * bool(smelled.size), 1e-6)
+                self.count(smelled=bool(np.any(smelled > 0.1)))
+            assert next(observed, None) is None
+
+    def assert_networks_act(self, before: World, slots: list[int], observations: list, params: np.ndarray) -> None:
+        """Actions, their log-probabilities and the values follow from the observations and the networks."""
+        rows = (
+            rollout_rows(self.simulation, before, slots, name, width)
+            for name, width in (("action", 2), ("log_prob", 1), ("value", 1))
+        )
+        for agent, observation, weights, action, log_prob, value in zip(
+            before.agents, observations, params, *rows, strict=True
+        ):
+            learning = self.model.rules.of(agent).learning
+            if learning.policy not in ("ppo", "frozen"):
+                continue
+            weights = weights[: network_size(len(observation))]
+            weights = as_read(weights) if learning.acting_weights == "bfloat16" else weights
+            layers = ppo_reference.split(weights.astype(float), len(observation))
+            output = ppo_reference.forward(weights.astype(float), observation[None, :].astype(float))[2][0]
+            noise = np.array(normals(*self.model.rules.draw("action", agent.agent_id, before.step)[:2]))
+            assert_close(action, output[:2] + np.exp(layers["log_sd"]) * noise, OUTPUT, 1e-6)
+            expected = (-0.5 * noise**2 - layers["log_sd"] - 0.5 * np.log(2 * np.pi)).sum()
+            assert log_prob == pytest.approx(expected, abs=5e-6)
+            assert value == pytest.approx(output[2], abs=OUTPUT)
+            self.count(**{f"acts_{learning.policy}_{learning.acting_weights}": 1})
+
+    def assert_newborn_networks(self, before: World, params: np.ndarray) -> None:
+        """A newborn has its parent's network with noise, as its species says, or a new one; genes set its spread."""
+        world = self.simulation.worlds[0]
+        old = {agent.agent_id: i for i, agent in enumerate(before.agents)}
+        for slot, child in zip(world.living.tolist(), read_world(self.simulation).agents, strict=True):
+            species = self.model.rules.of(child)
+            if child.agent_id in old or species.learning.policy not in ("ppo", "frozen"):
+                continue
+            size = network_size(world.observations(child.species).shape[1])
+            network, parent = world.view("params")[slot][:size].astype(float), old[child.parent_id]
+            log_sd = slice(size - 13, size - 11)
+            if species.birth.network == "none":
+                assert_close(network[log_sd], first_log_sd(species, child.genome), WEIGHT)
+                assert np.abs(np.corrcoef(network[: size - 13], params[parent][: size - 13])[0, 1]) < 0.2
+                continue
+            now, first = params[parent][:size], self.born_with[child.parent_id][:size]
+            source = first if species.birth.network == "initial" else now
+            wanted = inherited_network(self.model.rules, species, source.astype(float), child.agent_id)
+            if "action_sd" in species.genome.learning:
+                wanted[log_sd] = first_log_sd(species, child.genome)
+            assert_close(network, wanted, WEIGHT)
+            learned = bool(np.abs(now - first).max() > 1e-3)
+            self.count(**{f"network_{species.birth.network}": 1, "network_of_learned": learned})
+
+    def assert_deaths(self, expected) -> None:
+        dead = self.simulation.engine.take_rows(0)
+        assert dead["agent_id"].tolist() == [agent.agent_id for agent in expected.dead]
+        names = ("age_energy", "starved", "eaten")
+        if "cause" in dead:
+            assert [names[cause] for cause in dead["cause"].tolist()] == expected.causes
+            self.count(starved=expected.causes.count("starved"))
+        assert_close(dead["energy"], [agent.energy for agent in expected.dead], self.costs)
+        assert np.all(dead["death_step"] == expected.world.step)
+
+
+def _overlaps(rules: Rules, world: World) -> int:
+    """Pairs of agents that lie in one another."""
+    count = 0
+    for i, one in enumerate(world.agents):
+        for other in world.agents[:i]:
+            reach = rules.of(one).body.radius + rules.of(other).body.radius
+            count += math.hypot(one.x - other.x, one.y - other.y) < 0.8 * reach
+    return count
+
+
+def network_size(inputs: int) -> int:
+    """Parameters of a network."""
+    return HIDDEN * (inputs + 1) + HIDDEN * HIDDEN + AFTER_W2

@@ -1,0 +1,22 @@
+"""Rules in Python for tests: a reward with a memory, a hazard and a chance of birth."""
+
+
+def curious(agent):
+    """Pays for what differs from what the agent is used to, and for coming closer to an energy of 2."""
+    surprise = abs(agent.nearness - agent.memory_1)
+    agent.memory_1 += 0.1 * (agent.nearness - agent.memory_1)
+    agent.memory_2 += agent.normal + 0.01 * agent.moved
+    relief = abs(agent.energy_before - 2.0) - abs(agent.energy - 2.0)
+    thrust = agent.force_left - agent.force_right
+    return agent.linear + agent.w_action * surprise + agent.w_normal * relief + 1e-3 * thrust * agent.action
+
+
+def swamp(agent):
+    """Kills on the left, and those who remember much."""
+    worse = 0.02 if agent.x < 100.0 and agent.y > 50.0 else 0.0
+    return min(agent.chance + worse + 0.001 * agent.memory_2 + 1e-6 * agent.age, 1.0)
+
+
+def crowded(agent):
+    """No child in a crowd, and none in every fifth step."""
+    return 3.0 * agent.chance if agent.alive < 20.0 and agent.step % 5.0 > 0.0 else 0.0
