@@ -5,7 +5,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from reference_case import CASES
+from reference_case.beyond_paper import CASES
 from reference_case.case import LIVELY
 from reference_step import Judge
 from worlds import set_scene

@@ -4,11 +4,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-
 from reference.draw import normals, uniform
 from reference.heredity import mutated, recombined
 from reference.place import overlaps
-from reference.rule import memory_of
+from reference.rule_book import memory_of
 from reference.setting import Rules, Species
 from reference.state import Agent, Newborn, Turn, World
 

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-
 from reference.draw import cauchy, normals, open_uniform, student_t, uniform
 from reference.setting import Rules, Species
 

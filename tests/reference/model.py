@@ -1,5 +1,7 @@
-"""A world by its rules: `found` makes it, `advance` takes it from one step to the next.
+"""The rules of a world once more, in plain and slow Python: `found` makes it, `advance` takes it to the next step.
 
+This folder is written from docs/model.md, not from the engine, but with the same counted random numbers, so that the
+engine's every decision can be predicted. Physics, rays and the learning of networks have judges of their own.
 `advance` takes a world at the start of a step, what its agents did and where physics moved them, and says what the
 world is after the step.
 """
@@ -7,8 +9,6 @@ world is after the step.
 from collections.abc import Callable, Sequence
 
 import numpy as np
-
-from hedon.config.config import Config
 from reference.birth import breed, is_free, open_window
 from reference.chance import factor_at
 from reference.draw import fine_uniform, normals, uniform
@@ -16,10 +16,12 @@ from reference.heredity import first_genome
 from reference.meal import eat, hunt
 from reference.metabolism import motor_forces, pay
 from reference.place import TRIES, candidate
-from reference.rule import RuleBook, memory_of
+from reference.rule_book import RuleBook, memory_of
 from reference.sense import smells
 from reference.setting import Rules, Species
 from reference.state import COUNTED, HARMED, HUNTED, Agent, Deed, Outcome, Stock, Turn, Vacancy, World
+
+from hedon.config.config import Config
 
 
 class Model:

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-
 from reference.metabolism import sigmoid
 from reference.setting import Rules, Species
 from reference.state import Agent, Turn

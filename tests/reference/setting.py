@@ -5,11 +5,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from reference.draw import Draws
+from reference.place import Arena
 
 from hedon.config.config import Config
 from hedon.config.layout import layouts
-from reference.draw import Draws
-from reference.place import Arena
 
 MAX_EXPONENT = 2.0
 """Genes that are exponents stay within ± this."""

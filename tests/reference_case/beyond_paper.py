@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from reference_case.case import Case, each, kind
+from reference_case.first_paper import FIRST_PAPER
 
 RULES = Path(__file__).parents[1] / "rule_example.py"
 
@@ -311,4 +312,4 @@ COMBINED = {
     ),
 }
 
-MECHANISMS = SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | POLICIES | FOOD | COMBINED
+CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | POLICIES | FOOD | COMBINED

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-
 from reference.chance import birth_chance, death_chance
 from reference.reward import inputs, reward
 from reference.setting import Rules, Species
