@@ -5,9 +5,10 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from observed_world import read_world
 from reference_case.beyond_paper import CASES
-from reference_case.case import LIVELY
-from reference_step import Judge
+from reference_case.case import LIVELY, each
+from reference_step import Judge, network_size
 from worlds import set_scene
 
 from hedon.config.config import Config
@@ -15,6 +16,7 @@ from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.load import load_config
 from hedon.config.species import RULES as WORLD_WIDE
 from hedon.experiment.simulation import Simulation
+from hedon.record.founder import make_founders
 
 SEED = 2**63 + 17
 USUAL = {"births": 5, "deaths": 5}
@@ -61,6 +63,61 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
         for _ in range(2):
             judge.step()
     assert judge.happened["rivals"] > 50
+
+
+@pytest.mark.parametrize("sharing", ["one"])
+def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
+    """Chains of claims, rivals for one agent, and pairs that claim each other."""
+    settings = (
+        f'diet.prey_sharing="{sharing}"',
+        *("population.capacity=100", "population.initial_count=1", "sensor.mouth_spread=40", "birth.kappa=0"),
+        *each("prey", "energy.basic_cost=0.5"),
+        *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
+        *each("top", 'diet.eats=[["hunter", 0.5], ["prey", 0.2]]', "energy.capacity=4"),
+    )
+    simulation = Simulation(load_config("baseline", None, (*LIVELY, *settings)), [SEED], threads=1)
+    rng, judge = np.random.default_rng(0), Judge(simulation, SEED)
+    rows, columns = np.mgrid[:9, :10]
+    for _ in range(10):
+        x, y = 25 + 19.9 * (columns + rows % 2 / 2).ravel(), 25 + 17.2 * rows.ravel()
+        places = np.column_stack([x, y, rng.uniform(0, 2 * np.pi, x.size)]) + rng.normal(0, 0.05, (x.size, 3))
+        set_scene(simulation, places, species=rng.integers(0, 3, x.size), energy=2.0)
+        judge.born_with.clear()
+        for _ in range(3):
+            judge.step()
+    for what in ("contested", "spared", "digesting", "cannibal"):
+        assert judge.happened[what] >= 10, judge.happened
+
+
+def test_founders_given_as_data_live_by_the_rules():
+    """Each gets a row of the table; what it leaves out is drawn as ever."""
+    settings = (
+        "genome.learning.action_sd.initial_sd=0.2",
+        *each("prey", "birth.kappa=0.2"),
+        *each("other", "diet.eats=[]"),
+    )
+    simulation = Simulation(load_config("baseline", None, (*LIVELY, *settings)), [SEED], threads=1)
+    genes, rows = ("prey.w_normal", "w_action", "g_action_sd"), [(1.5, 2, 0.5), (-1.5, np.nan, -0.5), (np.nan, 3, 0.25)]
+    simulation.set_founders(make_founders(genes, np.array(rows), ("one", "one", "two"), {"one": 0.5, "two": 0.5}))
+    judge, world = Judge(simulation, SEED), simulation.worlds[0]
+    expected, begun = judge.model.found(), read_world(simulation)
+    for agent, founder, slot in zip(begun.agents, expected.agents, world.living, strict=True):
+        species = judge.model.rules.of(agent)
+        spread = species.gene(agent.genome, "g_action_sd")
+        row = next(row for row in rows if row[2] == spread)
+        for name, value in zip(("w_normal", "w_action", "g_action_sd"), row, strict=True):
+            if name in species.genes and not np.isnan(value):
+                founder.genome[species.genes.index(name)] = value
+        size = network_size(world.observations(agent.species).shape[1])
+        np.testing.assert_allclose(world.view("params")[slot][size - 13 : size - 11], spread * np.log(10), rtol=1e-6)
+    judge.assert_same(expected, 0.0)
+    groups = [
+        species.gene(a.genome, "g_action_sd") == 0.25 for a in begun.agents for species in [judge.model.rules.of(a)]
+    ]
+    assert np.mean(groups) == 0.5
+    while world.step < 30:
+        judge.step()
+    assert world.counters["births"] >= 10
 
 
 JUDGED_ELSEWHERE = {

@@ -57,7 +57,8 @@ def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
         for each in eaters:
             gain(rules, world, by_id[each], by_id[prey])
         by_id[prey].caught = True
-        claims = {each: of for each, of in claims.items() if of != prey and each not in (eater, prey)}
+        # Who is eaten eats nothing: in a cycle, who has eaten cannot be eaten any more.
+        claims = {each: of for each, of in claims.items() if of not in (prey, eater) and each not in (prey, eater)}
 
 
 def distance(turn: Turn, other: Turn) -> float:

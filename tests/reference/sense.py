@@ -23,12 +23,13 @@ def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
             sources.get(rules.names[other.species], []).append((other.x, other.y))
     angles = [0.0] if sensor.noses == 1 else [-math.radians(sensor.nose_angle), math.radians(sensor.nose_angle)]
     smelled = np.zeros((len(sources), len(angles)))
+    reach = math.log(1e4 * rules.most_sources) / sensor.smell_decay
     for n, angle in enumerate(angles):
         toward = agent.angle + angle
         nose = agent.x - species.body.radius * math.sin(toward), agent.y + species.body.radius * math.cos(toward)
         for c, places in enumerate(sources.values()):
-            distances = (math.dist(nose, place) for place in places)
-            smelled[c, n] = min(1.0, sum(math.exp(-sensor.smell_decay * distance) for distance in distances))
+            near = [d for d in (math.dist(nose, place) for place in places) if d < reach]
+            smelled[c, n] = min(1.0, sum(math.exp(-sensor.smell_decay * d) for d in near))
     return smelled
 
 

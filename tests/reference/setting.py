@@ -116,6 +116,9 @@ class Rules:
         self.obstacle = held(config.obstacle)
         self.food_radius = held(config.body.food_radius)
         self.ghosts_seen = config.sensor.eaten_food == "seen"
+        agents = sum(species.population.capacity for species in self.species)
+        foods = sum(food.capacity for food in self.foods)
+        self.most_sources = agents + foods * (2 if self.ghosts_seen else 1)
         self.all_mouths = config.sensor.mouths == "all"
         self.each_gains = config.diet.prey_sharing == "each"
         self.births_first = config.birth.order == "before_deaths"

@@ -71,6 +71,7 @@ SPECIES = {
             *each("one", 'sensor.smells=["*"]', "reward.smell.two.coef=0.5", "reward.smell.normal.coef=0.3"),
             *each("one", "reward.smell.two.gene.initial_mean=1", "reward.smell.two.gene.initial_sd=0.5"),
             *each("two", 'sensor.smells=["normal", "one"]', "sensor.noses=2", "sensor.nose_angle=70"),
+            *each("one", "sensor.smell_decay=0.15"),
             *each("two", 'sensor.scaling="unit"', "reward.smell.normal.coef=0.3"),
             *("population.capacity=20", "population.initial_count=12", 'sensor.eaten_food="seen"'),
         ),
