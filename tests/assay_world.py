@@ -1,6 +1,8 @@
 """Worlds of which the fitness of each genome is known: tables of agents from birth and death processes."""
 
 from collections.abc import Callable
+from heapq import heappop, heappush
+from itertools import count
 
 import numpy as np
 import polars as pl
@@ -33,17 +35,19 @@ def birth_death_world(
     rates = birth(genes)
     rows: list[tuple[int, int, int, int, int | None, int]] = []  # id, parent, founder, birth, death, generation
     children: dict[int, int] = {}
-    waiting = [(-1, i, 0, 0) for i in range(len(rates))]
+    number = count()  # of who are born at one step, those that were said first
+    waiting = [(0, next(number), -1, i, 0) for i in range(len(rates))]
     while waiting:
-        waiting.sort(key=lambda each: each[2])
-        parent, line, born, generation = waiting.pop(0)
+        born, _, parent, line, generation = heappop(waiting)
         agent = len(rows)
         end = born + 1 + int(rng.exponential(1 / death))
         until = min(end, steps)
         rows.append((agent, parent, line, born, end if end <= steps else None, generation))
         times = born + 1 + rng.uniform(0, max(until - born - 1, 0), rng.poisson(rates[line] * (until - born)))
         children[agent] = len(times)
-        waiting += [(agent, line, int(time), generation + 1) for time in times if int(time) < steps]
+        for time in times:
+            if int(time) < steps:
+                heappush(waiting, (int(time), next(number), agent, line, generation + 1))
     agent_id, parent_id, line, born, died, generation = zip(*rows, strict=True)
     lines = np.array(line)
     lived = np.array([steps if end is None else end for end in died]) - np.array(born)

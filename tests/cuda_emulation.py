@@ -1,5 +1,6 @@
 """The kernels of CUDA on the processor: builds the library of the emulation, and names it to hedon."""
 
+import fcntl
 import hashlib
 import os
 import subprocess
@@ -43,12 +44,14 @@ def build(threads: int = THREADS, *, system_threads: bool = False) -> Path:
     for path in sorted([*(ROOT / "engine").rglob("*.h"), *(ROOT / "engine" / "cuda").glob("*.cpp")]):
         content.update(path.read_bytes())
     library = ROOT / "build" / f"cuda-emulated-{content.hexdigest()[:16]}.so"
-    if not library.exists():
-        library.parent.mkdir(exist_ok=True)
-        part = library.with_suffix(f".{os.getpid()}")
-        command = ["c++", *options, f"-I{ROOT / 'engine'}", *(str(ROOT / source) for source in SOURCES)]
-        subprocess.run([*command, "-o", str(part)], check=True)
-        part.rename(library)
+    library.parent.mkdir(exist_ok=True)
+    with library.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another worker of the tests may be at it
+        if not library.exists():
+            part = library.with_suffix(f".{os.getpid()}")
+            command = ["c++", *options, f"-I{ROOT / 'engine'}", *(str(ROOT / source) for source in SOURCES)]
+            subprocess.run([*command, "-o", str(part)], check=True)
+            part.rename(library)
     return library
 
 
