@@ -22,7 +22,7 @@ run: sync
 
 test: sync
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
-	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile
+	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
 # Side by side, since each keeps one processor busy.
 static: sync

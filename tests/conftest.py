@@ -1,0 +1,43 @@
+"""What all tests share: a config file to write, and the order in which two workers end together."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+LONGEST = (
+    "test_notebooks.py",
+    "test_reference_model.py",
+    "test_module.py",
+    "test_assay.py",
+    "test_resume.py",
+    "test_digest.py",
+    "test_run.py",
+    "test_docs.py",
+    "test_report.py",
+    "test_browser.py",
+    "test_sweep_run.py",
+    "test_cuda_window.py",
+    "test_site.py",
+    "test_check_run.py",
+    "test_store.py",
+    "test_kernel_symbols.py",
+)
+"""Files of more than some fifteen seconds of a processor, the longest first."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files come first, so that no worker is left with one while the other has nothing to do."""
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str], Path]:
+    """Writes a config file and gives its path."""
+
+    def write(text: str) -> Path:
+        path = tmp_path / "my.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
