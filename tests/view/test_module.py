@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -45,19 +46,21 @@ def in_node(program: str, module: str, text: str, folder: Path, *more: str) -> d
     return json.loads(done.stdout)
 
 
-def native_digest(preset: str, kernel: str, steps: int) -> str:
-    simulation = Simulation(load_config(preset), seeds=[1], kernel=kernel)
+@cache
+def native_digest(preset: str, kernel: str, steps: int, *overrides: str) -> str:
+    simulation = Simulation(load_config(preset, overrides=overrides), seeds=[1], kernel=kernel)
     simulation.run(steps)
     return simulation.worlds[0].digest()
 
 
 @needs_node
-@pytest.mark.parametrize("preset", ["poison", "predator"])
+@pytest.mark.parametrize(("preset", "window"), [("poison", 1024), ("predator", 256)])
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
-def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, tmp_path):
-    found = run_in_node(module, engine_text(load_config(preset), 1), tmp_path, STEPS)
-    assert found["digest"] == native_digest(preset, kernel, STEPS)
-    assert found["step"] == STEPS
+def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, window, tmp_path):
+    shorter, steps = f"learning.rollout_steps={window}", window + 6
+    found = run_in_node(module, engine_text(load_config(preset, overrides=[shorter]), 1), tmp_path, steps)
+    assert found["digest"] == native_digest(preset, kernel, steps, shorter)
+    assert found["step"] == steps
 
 
 @needs_node
