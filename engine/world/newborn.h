@@ -98,11 +98,12 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
   const Life& life = state.life[parent];
   Newborn& newborn = state.newborn[at] = {child_id, -1};
   if (state.newborn_species.count > 0) state.newborn_species[at] = world.shape->species_of(parent);
-  if (life.birth_step > world.window_start()) {
-    for (newborn.parent = at - 1; state.newborn[newborn.parent].agent_id != life.agent_id;) --newborn.parent;
-    return;
-  }
-  for (int32_t g = 0; g < world.shape->genes; ++g) newborn_genome(world, at)[g] = world.genome(parent)[g];
+  const bool young = life.birth_step > world.window_start();
+  // A young parent has its own genome only when the window ends. What lies past the end of a genome is 0 all the time.
+  for (int32_t g = 0; g < world.shape->genes; ++g)
+    newborn_genome(world, at)[g] = young ? 0.0f : world.genome(parent)[g];
+  if (!young) return;
+  for (newborn.parent = at - 1; state.newborn[newborn.parent].agent_id != life.agent_id;) --newborn.parent;
 }
 
 /// Gives the newborns of a window, in the order of their births, their genomes, and those that still live their
