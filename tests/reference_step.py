@@ -199,6 +199,15 @@ class Judge:
         assert np.all(dead["death_step"] == expected.world.step)
 
 
+def command(simulation: Simulation) -> None:
+    """Now and then tells the agents that are told what to do something else."""
+    step = simulation.worlds[0].step
+    for s, species in enumerate(simulation.config.agents.values()):
+        if species.learning.policy == "external" and step % 7 == 0:
+            actions = np.random.default_rng(step).normal(size=(1, species.population.capacity, 2))
+            simulation.engine.command(s, actions.astype(np.float32))
+
+
 def _overlaps(rules: Rules, world: World) -> int:
     """Pairs of agents that lie in one another."""
     count = 0

@@ -8,7 +8,7 @@ import pytest
 from observed_world import read_world
 from reference_case.beyond_paper import CASES
 from reference_case.case import LIVELY, each
-from reference_step import Judge, network_size
+from reference_step import Judge, command, network_size
 from worlds import set_scene
 
 from hedon.config.config import Config
@@ -21,15 +21,6 @@ from hedon.record.founder import make_founders
 SEED = 2**63 + 17
 USUAL = {"births": 5, "deaths": 5}
 """What happens in every case, at least."""
-
-
-def command(simulation: Simulation) -> None:
-    """Now and then tells the agents that are told what to do something else."""
-    step = simulation.worlds[0].step
-    for s, species in enumerate(simulation.config.agents.values()):
-        if species.learning.policy == "external" and step % 7 == 0:
-            actions = np.random.default_rng(step).normal(size=(1, species.population.capacity, 2))
-            simulation.engine.command(s, actions.astype(np.float32))
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -67,12 +58,13 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
 
 @pytest.mark.parametrize("sharing", ["one"])
 def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
-    """Chains of claims, rivals for one agent, and pairs that claim each other."""
+    """Chains of claims, rivals for one agent, pairs that claim each other, and those who starve meanwhile."""
     settings = (
         f'diet.prey_sharing="{sharing}"',
         *("population.capacity=100", "population.initial_count=1", "sensor.mouth_spread=40", "birth.kappa=0"),
-        *each("prey", "energy.basic_cost=0.5"),
+        *each("prey", "energy.basic_cost=0.7", 'energy.starvation="death"'),
         *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
+        *each("hunter", "energy.basic_cost=0.7", 'energy.starvation="death"'),
         *each("top", 'diet.eats=[["hunter", 0.5], ["prey", 0.2]]', "energy.capacity=4"),
     )
     simulation = Simulation(load_config("baseline", None, (*LIVELY, *settings)), [SEED], threads=1)
@@ -85,7 +77,7 @@ def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
         judge.born_with.clear()
         for _ in range(3):
             judge.step()
-    for what in ("contested", "spared", "digesting", "cannibal"):
+    for what in ("contested", "spared", "digesting", "cannibal", "starved"):
         assert judge.happened[what] >= 10, judge.happened
 
 

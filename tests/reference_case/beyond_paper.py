@@ -148,17 +148,13 @@ OBSTACLES = {
 
 HEREDITY = {
     "pairs": Case(
-        "two parents, in one of two species",
+        "two parents, in two of three species; who gives energy dies more easily",
         (
-            *(
-                "birth.kappa=0.3",
-                "birth.beta=2",
-                "genome.neutral_count=5",
-                "genome.neutral.initial_sd=1",
-                "genome.neutral.initial_mean=0.5",
-            ),
+            *("birth.kappa=0.3", "birth.beta=2", "hazard.alpha_energy=50", "hazard.beta_energy=3"),
+            *("genome.neutral_count=5", "genome.neutral.initial_sd=1", "genome.neutral.initial_mean=0.5"),
             *each("pairs", 'birth.mating="pairs"', "birth.mating_window=6", "birth.mating_range=50"),
-            *each("pairs", "population.capacity=26", "population.initial_count=22", "hazard.kappa=0.2"),
+            *each("pairs", "population.capacity=20", "population.initial_count=16", "hazard.kappa=0.2"),
+            *each("couples", 'birth.mating="pairs"', "population.capacity=16", "population.initial_count=12"),
             *("food.normal.nutrient=1", "nutrient.initial=2"),
             *each("alone", "birth.delay=3", "population.capacity=14", "population.initial_count=8"),
         ),

@@ -11,6 +11,11 @@ FIRST_PAPER = {
         ("birth.distance_sd=30", "birth.attempts=2", "food.normal.growth_rate=9", "energy.capacity=3.5"),
         {"energy_capped": 0.1, "births_failed_space": 5},
     ),
+    "costly births": Case(
+        "who gives energy to a child dies more easily in the same step",
+        ("energy.birth_share=0.8", "hazard.alpha_energy=50", "hazard.beta_energy=3", "birth.kappa=0.15"),
+        {"births": 20, "deaths": 20},
+    ),
     "relocation": Case(
         "food in one place after another",
         (

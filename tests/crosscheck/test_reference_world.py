@@ -1,0 +1,52 @@
+"""The engine against the rules in plain Python, in worlds of one mechanism and of several at random."""
+
+from itertools import islice
+
+import pytest
+from mechanism import Mixture, alone, mechanisms, worlds
+from mechanism_data import founders_of, networks_of
+from reference_step import Judge, command
+
+from hedon.error import HedonError
+from hedon.experiment.simulation import Simulation
+
+SEED, DRAW = 5, 1
+STEPS = 48
+"""One window of 32 steps, and half of the next."""
+TOGETHER = 6
+"""Mechanisms of a random world."""
+BATCH = 5
+REFUSED = 2
+"""Of a batch, how many worlds may be refused, for founders that do not fit or schedules that end too soon."""
+
+
+def judge_world(world: Mixture, folder) -> bool:
+    """Lives by the rules for a while; whether the world can be."""
+    try:
+        config = world.config(folder)
+        simulation = Simulation(config, [SEED], threads=1)
+    except HedonError:
+        return False
+    judge = Judge(simulation, SEED)
+    judge.begin()
+    founders, networks = founders_of(world, config), networks_of(world, config)
+    if founders is not None:
+        simulation.set_founders(founders)
+    if networks is not None:
+        simulation.set_networks(networks)
+    while simulation.worlds[0].step < STEPS and not simulation.worlds[0].extinct:
+        command(simulation)
+        judge.step()
+    return True
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", mechanisms())
+def test_every_mechanism_follows_the_rules(name, tmp_path):
+    assert judge_world(alone(mechanisms()[name]), tmp_path)
+
+
+@pytest.mark.parametrize("batch", [0, *(pytest.param(n, marks=pytest.mark.long) for n in range(1, 60))])
+def test_random_worlds_follow_the_rules(batch, tmp_path):
+    drawn = [world for world, _ in islice(worlds(DRAW, TOGETHER), BATCH * batch, BATCH * (batch + 1))]
+    assert sum(judge_world(world, tmp_path) for world in drawn) >= BATCH - REFUSED, drawn
