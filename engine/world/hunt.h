@@ -92,12 +92,17 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
   return -1;
 }
 
-/// Gives an eater its share of what its prey has left.
-HEDON_FN void gain_from(World& world, int32_t eater, int32_t prey) {
+/// What an eater gains by its prey: its share of what that has left.
+HEDON_FN double gain_by(const World& world, int32_t eater, int32_t prey) {
+  const float share = world.species(eater).config->diet.prey[world.shape->species_of(prey)];
+  return static_cast<double>(share) * world.state.life[prey].energy;
+}
+
+/// Gives an eater what it gains by its prey.
+HEDON_FN void feed_with(World& world, int32_t eater, int32_t prey, double gained) {
   const SpeciesConfig& config = *world.species(eater).config;
   const int32_t s = world.shape->species_of(prey);
   Life& life = world.state.life[eater];
-  const double gained = static_cast<double>(config.diet.prey[s]) * world.state.life[prey].energy;
   const double wanted = life.energy + gained, capacity = config.energy.capacity;
   world.scratch.energy_capped[eater] += wanted > capacity ? wanted - capacity : 0.0;
   world.state.hunt_counters[world.shape->species_of(eater)].energy_hunted += gained;
@@ -109,8 +114,41 @@ HEDON_FN void gain_from(World& world, int32_t eater, int32_t prey) {
   world.state.digestion[eater] = config.diet.digestion_steps;
 }
 
-/// Settles all claims of a step at once: who is eaten eats nothing, and its own prey stays alive. Of several eaters of
-/// one agent one gets it, by a draw, or each in full. Who starves in this step neither eats nor is eaten.
+/// Settles claims where one eater gets each prey: who is eaten eats nothing, so its own prey stays alive; and who eats
+/// is not eaten, also where others of a cycle claim it.
+HEDON_FN void settle_one_by_one(World& world, Claims& claims) {
+  const StepScratch& scratch = world.scratch;
+  while (claims.count > 0) {
+    const int32_t at = next_claim(world, claims);
+    const int32_t eater = scratch.claim_eater[at], prey = scratch.claim_prey[at];
+    scratch.eaten[prey] = 1;
+    feed_with(world, eater, prey, gain_by(world, eater, prey));
+    for (int32_t i = claims.count - 1; i >= 0; --i) {
+      const int32_t wanted = scratch.claim_prey[i];
+      if (wanted == prey || wanted == eater || scratch.claim_eater[i] == prey) claims.remove(i);
+    }
+  }
+}
+
+/// Settles claims where each holds: all are judged by what agents have before anyone eats, so no order matters. Who is
+/// eaten eats too, and dies with what it gained.
+HEDON_FN void settle_all_at_once(World& world) {
+  const StepScratch& scratch = world.scratch;
+  const auto each_claim = [&](auto&& visit) {
+    for (int32_t i = 0; i < world.head().living_count; ++i) {
+      const int32_t eater = world.state.living[i], at = scratch.claim_of[eater];
+      if (at >= 0) visit(eater, scratch.claim_prey[at], scratch.claim_gain[at]);
+    }
+  };
+  each_claim([&](int32_t eater, int32_t prey, double& gained) {
+    scratch.eaten[prey] = 1;
+    gained = gain_by(world, eater, prey);
+  });
+  each_claim([&](int32_t eater, int32_t prey, double gained) { feed_with(world, eater, prey, gained); });
+}
+
+/// Who eats whom in this step. Who starves in it neither eats nor is eaten. Of several eaters of one agent one gets it,
+/// by a draw, or each in full.
 HEDON_FN void hunt(World& world) {
   const StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
@@ -126,20 +164,8 @@ HEDON_FN void hunt(World& world) {
     int32_t& clock = state.digestion[state.living[i]];
     if (clock > 0) --clock;
   }
-  const bool each = world.config->rules.prey_sharing == PreySharing::each;
-  while (claims.count > 0) {
-    const int32_t at = next_claim(world, claims);
-    const int32_t eater = scratch.claim_eater[at], prey = scratch.claim_prey[at];
-    scratch.eaten[prey] = 1;
-    gain_from(world, eater, prey);
-    claims.remove(at);
-    for (int32_t i = claims.count - 1; i >= 0; --i) {
-      if (i >= claims.count) continue;
-      const bool rival = scratch.claim_prey[i] == prey;
-      if (rival && each && !claims.is_claimed(scratch.claim_eater[i])) gain_from(world, scratch.claim_eater[i], prey);
-      if (rival || scratch.claim_eater[i] == prey) claims.remove(i);
-    }
-  }
+  if (world.config->rules.prey_sharing == PreySharing::each) return settle_all_at_once(world);
+  settle_one_by_one(world, claims);
 }
 
 }  // namespace hedon

@@ -57,6 +57,7 @@ struct StepScratch {
   Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
   Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
   Array<float> claim_distance;             ///< squared
+  Array<double> claim_gain;                ///< energy, where all claims are settled at once
   Array<double> record, answer;            ///< of the agents that a rule is asked about, one after another
   Array<int32_t> asked;                    ///< their slots
   Array<int32_t> parent;
@@ -77,8 +78,9 @@ struct StepScratch {
                (eater, foods, one, scratch), (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
-               (record, ruled_slots, record, scratch), (answer, ruled_slots, one, scratch),
-               (asked, ruled_slots, one, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
+               (claim_gain, hunted_slots, one, scratch), (record, ruled_slots, record, scratch),
+               (answer, ruled_slots, one, scratch), (asked, ruled_slots, one, scratch), (parent, slots, one, scratch),
+               (parent_key, slots, one, scratch))
 };
 
 /// Answers for `count` agents: reads and may change their records, one after another, and writes a number for each.
