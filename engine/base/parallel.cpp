@@ -29,9 +29,13 @@ struct Pool::Shared {
 
 Pool::Pool(int size, bool flush) : size_(size), process_(current_process()), shared_(std::make_unique<Shared>()) {
   shared_->flush = flush;
-  for (int rank = 1; rank < size; ++rank)
+  for (int rank = 1; rank < size; ++rank) {
     shared_->threads.emplace_back([shared = shared_.get(), rank] { work(*shared, rank); });
+    if (!shared_->threads.back().begun()) return;
+  }
 }
+
+bool Pool::whole() const { return size_ == 1 || shared_->threads.back().begun(); }
 
 Pool::~Pool() {
   if (forked()) static_cast<void>(shared_.release());  // its threads are not there to be joined

@@ -20,6 +20,9 @@ class Pool {
 
   int size() const { return size_; }
 
+  /// Whether the system gave all threads; if not, nothing may run on the pool.
+  bool whole() const;
+
   /// True in a process that was forked from the one that made the pool: its threads do not exist there.
   bool forked() const;
 

@@ -24,7 +24,7 @@ int available_processors();
 /// Which process this is: a forked one has another number.
 int64_t current_process();
 
-/// A thread that calls `work` once.
+/// A thread that calls `work` once; or none, if the system gives no more.
 class Thread {
  public:
   explicit Thread(std::function<void()> work);
@@ -32,6 +32,9 @@ class Thread {
   ~Thread();
   Thread(const Thread&) = delete;
   Thread& operator=(const Thread&) = delete;
+
+  /// Whether there is a thread.
+  bool begun() const { return handle_ != nullptr; }
 
  private:
   struct Handle;

@@ -1,6 +1,7 @@
 /// The system that a process of an operating system has.
 #if !defined(__wasm__)
 
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -33,12 +34,22 @@ int available_processors() {
 int64_t current_process() { return getpid(); }
 
 struct Thread::Handle {
-  std::thread thread;
+  pthread_t thread;
+  std::function<void()> work;
 };
 
-Thread::Thread(std::function<void()> work) : handle_(std::make_unique<Handle>(Handle{std::thread(std::move(work))})) {}
+// Not std::thread, which throws where the system gives no thread: the engine is built without exceptions.
+Thread::Thread(std::function<void()> work) : handle_(std::make_unique<Handle>(Handle{{}, std::move(work)})) {
+  const auto call = [](void* handle) -> void* {
+    static_cast<Handle*>(handle)->work();
+    return nullptr;
+  };
+  if (pthread_create(&handle_->thread, nullptr, call, handle_.get()) != 0) handle_.reset();
+}
 
-Thread::~Thread() { handle_->thread.join(); }
+Thread::~Thread() {
+  if (begun()) pthread_join(handle_->thread, nullptr);
+}
 
 void sleep_while(const std::atomic<uint32_t>& word, uint32_t value) { word.wait(value, std::memory_order_acquire); }
 

@@ -11,6 +11,7 @@
 
 #include "binding/memory.h"
 #include "binding/parts.h"
+#include "binding/released.h"
 #include "kernel/kernel.h"
 
 namespace nb = nanobind;
@@ -119,11 +120,10 @@ void bind_kernel(nb::module_& module) {
       nb::arg("wall_type"), nb::arg("direction"), nb::arg("start"), nb::arg("length"), nb::arg("repeats") = 1,
       "Reading + 1 and type of each ray. circles (n, 3: x, y, radius) and segments (m, 4) relative to the center; "
       "computed `repeats` times, for timing.");
-  kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"), nb::call_guard<nb::gil_scoped_release>(),
+  kernel.def("calibrate", calibrate, nb::arg("kernel"), nb::arg("rounds"), nb::call_guard<Released>(),
              "Multiply-adds in registers on this thread [GF/s]: the limit for the other kernels. Releases the "
              "interpreter lock.");
-  kernel.def("read_rate", read_rate, nb::arg("kernel"), nb::arg("bytes"), nb::arg("rounds"),
-             nb::call_guard<nb::gil_scoped_release>(),
+  kernel.def("read_rate", read_rate, nb::arg("kernel"), nb::arg("bytes"), nb::arg("rounds"), nb::call_guard<Released>(),
              "An array of `bytes` read again and again on this thread [GB/s]. Releases the interpreter lock.");
 }
 

@@ -1,6 +1,8 @@
 /// The Python module `hedon._engine`. Each part of the engine adds its own functions, so that tests can call the parts.
 #include <nanobind/nanobind.h>
 
+#include <stdexcept>
+
 #include "binding/error.h"
 #include "binding/parts.h"
 
@@ -16,9 +18,19 @@ void translate(const std::exception_ptr& pointer, void*) {
   }
 }
 
+/// ImportError in an interpreter beside the main one: there, nanobind would wait for ever for a lock that it holds
+/// itself.
+void need_main_interpreter() {
+  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return;
+  throw std::runtime_error(
+      "hedon's engine cannot be used in a sub-interpreter of Python, where it would hang: use processes instead "
+      "(multiprocessing)");
+}
+
 }  // namespace
 
 NB_MODULE(_engine, module) {
+  need_main_interpreter();
   module.doc() = "The native engine of hedon: the simulation and nothing else.";
   nanobind::register_exception_translator(translate);
   hedon::bind_kernel(module);

@@ -19,6 +19,7 @@
 #include "base/team.h"
 #include "binding/config.h"
 #include "binding/parts.h"
+#include "binding/released.h"
 #include "physics/step.h"
 
 namespace nb = nanobind;
@@ -235,7 +236,7 @@ void bind_physics(nb::module_& module) {
            nb::arg("circle_radius"), nb::arg("bodies"), nb::arg("circles"), nb::arg("walls"), nb::arg("pair_limit") = 0,
            nb::arg("outer_walls") = 0, nb::arg("classes") = std::vector<std::tuple<int32_t, float, float>>{})
       .def("step", &Scene::step, nb::arg("steps") = 1, nb::arg("threads") = 1, nb::arg("record") = true,
-           nb::call_guard<nb::gil_scoped_release>(), "Steps; raises RuntimeError with the name of a fault.")
+           nb::call_guard<Released>(), "Steps; raises RuntimeError with the name of a fault.")
       .def("set_order", &Scene::set_order, nb::arg("slots"), "Slots of the bodies that live, in canonical order.")
       .def("array", &Scene::array, nb::arg("name"),
            nb::sig("def array(self, name: str) -> numpy.typing.NDArray[typing.Any]"),

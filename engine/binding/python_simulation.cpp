@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <system_error>
 
 #include "base/float_mode.h"
 #include "binding/config.h"
 #include "binding/device.h"
 #include "binding/error.h"
+#include "binding/released.h"
 #include "simulation/config_check.h"
 
 namespace nb = nanobind;
@@ -91,13 +91,11 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
   need(check_company(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
   need_memory(known, segments.size(), seeds.size(), used);
   const DeviceProgram* const program = device.empty() ? nullptr : need_device(device, known);
-  try {
-    simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
-                                               need_kernel(kernel), slot_order, flush_denormals, program);
-  } catch (const std::system_error& error) {
-    throw EngineError("the system gives no " + std::to_string(used) + " threads (" + error.what() +
-                      "): use fewer, or check the limits `ulimit -u` and `ulimit -v`");
-  }
+  simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
+                                             need_kernel(kernel), slot_order, flush_denormals, program);
+  if (!simulation_->pool().whole())
+    throw EngineError("the system gives no " + std::to_string(used) +
+                      " threads: use fewer, or check the limits `ulimit -u` and `ulimit -v`");
   raise_faults();
   need_working();
 }
@@ -148,7 +146,7 @@ void PythonSimulation::run(int64_t steps) {
     const int64_t count = std::min(simulation.device_count() > 0 ? simulation.shape().steps : piece_, steps);
     const Clock::time_point begun = Clock::now();
     {
-      const nb::gil_scoped_release release;
+      const Released released;
       simulation.run(count);
     }
     steps -= count;
@@ -166,7 +164,8 @@ void PythonSimulation::show(int32_t species, const Shown& out) {
   Simulation& simulation = get();
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};
-  const nb::gil_scoped_release release;
+  const Released released;
+  if (out.observation == nullptr) return simulation.pay(species, out);
   simulation.show(species, out);
 }
 

@@ -41,7 +41,7 @@ class PythonSimulation {
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
-  /// The same as in `Simulation`, with the interpreter lock released.
+  /// `Simulation::show`, or `pay` if there is no array of observations, with the interpreter lock released.
   void show(int32_t species, const Shown& out);
 
   /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises

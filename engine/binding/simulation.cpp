@@ -72,21 +72,30 @@ void restore(PythonSimulation& self, int index, const nb::dict& arrays) {
   if (!complaint.empty()) throw nb::value_error(complaint.c_str());
 }
 
+/// The deaths that wait, the oldest first.
+std::vector<int64_t> waiting_rows(const World& world) {
+  const WorldHead& head = world.head();
+  const int64_t waiting = std::clamp(head.event_count, 0, world.shape->events);
+  std::vector<int64_t> rows;
+  for (int64_t i = 0; i < waiting; ++i) rows.push_back(head.events_lost == 0 ? i : (head.events_lost + i) % waiting);
+  return rows;
+}
+
 nb::dict take_rows(PythonSimulation& self, int index) {
   World& from = self.world(index);
-  const int32_t waiting = std::clamp(from.head().event_count, 0, from.shape->events);
-  std::vector<int64_t> rows(static_cast<size_t>(waiting));
-  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int64_t>(i);
-  nb::dict out =
-      columns(from.state.event.data, from.state.event_eaten.data, from.state.event_genome.data, rows, *from.shape);
-  out["species"] = copy_array(
-      std::vector<int32_t>(from.state.event_species.data, from.state.event_species.data + rows.size()), {rows.size()});
-  out["cause"] = copy_array(
-      std::vector<int32_t>(from.state.event_cause.data, from.state.event_cause.data + rows.size()), {rows.size()});
-  if (from.shape->mating)
-    out["mate_id"] = copy_array(
-        std::vector<int32_t>(from.state.event_mate.data, from.state.event_mate.data + rows.size()), {rows.size()});
+  const WorldState& state = from.state;
+  const std::vector<int64_t> rows = waiting_rows(from);
+  nb::dict out = columns(state.event.data, state.event_eaten.data, state.event_genome.data, rows, *from.shape);
+  const auto column = [&](const Array<int32_t>& of) {
+    std::vector<int32_t> values;
+    for (const int64_t row : rows) values.push_back(of[row]);
+    return copy_array(std::move(values), {rows.size()});
+  };
+  out["species"] = column(state.event_species);
+  out["cause"] = column(state.event_cause);
+  if (from.shape->mating) out["mate_id"] = column(state.event_mate);
   from.head().event_count = 0;
+  from.head().events_lost = 0;
   return out;
 }
 
@@ -236,6 +245,23 @@ void show(PythonSimulation& self, int32_t species, TableOut observation, RowsOut
   self.show(species, {observation.data(), reward.data(), agent_id.data()});
 }
 
+void pay(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id) {
+  need_rows(self, species, reward);
+  need_rows(self, species, agent_id);
+  self.show(species, {nullptr, reward.data(), agent_id.data()});
+}
+
+/// What the agents of a species have eaten since the worlds began: (worlds, meals).
+nb::object meals_of(PythonSimulation& self, int32_t species) {
+  const Simulation& simulation = self.get();
+  const WorldShape& shape = simulation.shape();
+  if (species < 0 || species >= shape.species) throw nb::index_error("no species has this index");
+  const size_t worlds = static_cast<size_t>(simulation.world_count()), meals = static_cast<size_t>(shape.meals());
+  std::vector<int64_t> counts(worlds * meals);
+  simulation.count_meals(species, counts.data());
+  return copy_array(std::move(counts), {worlds, meals});
+}
+
 /// `FloatMode` as a context manager.
 class PythonFloatMode {
  public:
@@ -284,7 +310,8 @@ void bind_simulation(nb::module_& module) {
            "Advances every world that is not over; releases the interpreter lock. Ctrl-C raises KeyboardInterrupt.")
       .def("take_rows", &take_rows, nb::arg("world"),
            nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
-           "Columns of the agents that died since the last call.")
+           "Columns of the agents that died since the last call, the oldest first: the newest `event` rows of them. "
+           "`head` says before how many older ones are lost (`events_lost`).")
       .def("living_rows", &living_rows, nb::arg("world"),
            nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
            "Columns of the living, in the order of their ids.")
@@ -315,6 +342,14 @@ void bind_simulation(nb::module_& module) {
            "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
            "arrays of "
            "(worlds, slots, …).")
+      .def("pay", &pay, nb::arg("species"), nb::arg("reward"), nb::arg("agent_id"),
+           nb::sig("def pay(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: "
+                   "numpy.typing.NDArray[numpy.int32]) -> None"),
+           "The same without what they sense.")
+      .def("meals", &meals_of, nb::arg("species"),
+           nb::sig("def meals(self, species: int) -> numpy.typing.NDArray[numpy.int64]"),
+           "What the agents of a species have eaten since the worlds began, foods by kind and then agents by species: "
+           "(worlds, meals).")
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("species"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")

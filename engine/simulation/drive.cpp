@@ -11,15 +11,20 @@ namespace {
 /// Slots that a thread takes at once.
 constexpr int32_t SLOTS_AT_ONCE = 16;
 
-/// Writes what is known of the agent in `slot` into the row of the caller's arrays.
+/// Writes what the agent in `slot` earned, and who is there now, into the row of the caller's arrays.
+void pay_agent(const World& world, int32_t slot, const Shown& out, int64_t row) {
+  int32_t& id = out.agent_id[row];
+  out.reward[row] = id >= 0 ? world.state.reward[slot * int64_t{world.shape->rollout}] : 0.0f;
+  id = world.state.alive[slot] != 0 ? world.state.life[slot].agent_id : -1;
+}
+
+/// Writes all that is known of the agent in `slot` into the row of the caller's arrays.
 void show_agent(World& world, int32_t slot, int rank, const Shown& out, int64_t row) {
   const ObservationShape& shape = world.species(slot).network.observation;
   float* const observation = out.observation + row * shape.size();
-  int32_t& id = out.agent_id[row];
-  const bool acted = id >= 0, alive = world.state.alive[slot] != 0;
-  out.reward[row] = acted ? world.state.reward[slot * int64_t{world.shape->rollout}] : 0.0f;
-  id = alive ? world.state.life[slot].agent_id : -1;
-  if (!alive) {
+  const bool acted = out.agent_id[row] >= 0;
+  pay_agent(world, slot, out, row);
+  if (out.agent_id[row] < 0) {
     if (acted) memset(observation, 0, static_cast<size_t>(shape.size()) * sizeof(float));
     return;
   }
@@ -53,6 +58,25 @@ void Simulation::command(int32_t species, const float* actions) {
     memcpy(&world.state.command[int64_t{own.first_slot} * ACTIONS], actions,
            static_cast<size_t>(numbers) * sizeof(float));
     actions += numbers;
+  }
+}
+
+void Simulation::pay(int32_t species, const Shown& out) {
+  const Species& own = shape_.of[species];
+  for (int i = 0; i < world_count(); ++i) {
+    const World& world = complete(i);
+    const int64_t before = int64_t{i} * own.capacity() - own.first_slot;
+    for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot) pay_agent(world, slot, out, before + slot);
+  }
+}
+
+void Simulation::count_meals(int32_t species, int64_t* out) const {
+  for (const World& world : worlds_) {
+    for (int32_t meal = 0; meal < shape_.meals(); ++meal) {
+      const bool mixed = world.state.eaten_by.count > 0;
+      *out++ = mixed ? world.state.eaten_by[int64_t{species} * shape_.meals() + meal]
+                     : (meal < shape_.kinds ? world.state.food_stock[meal].eaten : 0);
+    }
   }
 }
 

@@ -126,7 +126,7 @@ class SavedArrays {
     } else {
       T::for_each_field([&](const char* field, auto member) {
         using Number = std::remove_cvref_t<decltype(first->*member)>;
-        if (std::is_same_v<T, WorldHead> && strcmp(field, "event_count") == 0) return;  // what a reader has taken
+        if (std::is_same_v<T, WorldHead> && strncmp(field, "event", 5) == 0) return;  // what a reader has taken
         visit_(name + "." + field, SavedRows<Number>{&(first->*member), sizeof(T), index, count, 0});
       });
     }

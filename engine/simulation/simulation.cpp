@@ -74,10 +74,10 @@ Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, in
     begin(world);
     if (!world.over()) init_population(world);
   }
-  pool_ = std::make_unique<Pool>(threads, flush_);
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
-  if (program == nullptr) return;
+  pool_ = std::make_unique<Pool>(threads, flush_);  // last, since threads that begin take memory too
+  if (program == nullptr || !pool_->whole()) return;
   const int worlds = world_count(), devices = std::min(program->count(), worlds);
   for (int d = 0; d < devices; ++d)
     devices_.push_back(

@@ -282,7 +282,10 @@ HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
 }
 
 /// Forgets the deaths that wait in the views `event.…`; call it when they are read.
-HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() { world().head().event_count = 0; }
+HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() {
+  world().head().event_count = 0;
+  world().head().events_lost = 0;
+}
 
 /// What the agent in `slot` senses now and how its network answers, zeros if its species has none; changes nothing of
 /// the world's state.

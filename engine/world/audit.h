@@ -95,8 +95,10 @@ HEDON_FN void audit_capacity(const World& world) {
   }
   const int32_t ghosts = world.head().ghost_count;
   if (ghosts < 0 || ghosts > world.state.ghost.count) world.fail(Status::counts_inconsistent, -1, ghosts);
-  const int32_t events = world.head().event_count;
-  if (events < 0 || events > world.shape->events) world.fail(Status::event_overflow, -1, events);
+  const WorldHead& head = world.head();
+  const int32_t events = head.event_count;
+  if (events < 0 || events > world.shape->events || head.events_lost < 0)
+    world.fail(Status::counts_inconsistent, -1, events);
 }
 
 /// For each species: energy of its agents = initial + eaten + hunted + forgiven − basic − action − damage − capped −

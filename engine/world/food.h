@@ -67,13 +67,29 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 position) {
   mark_stale(state.physics);
 }
 
+/// Tries candidate number `i` as the place of a food of kind `k`; whether it is one now.
+HEDON_FN bool try_food(World& world, int32_t k, const RandomStream& random, uint32_t i) {
+  const Vec2 position = draw_food_position(world, k, random, i);
+  if (!has_spacing(world, k, position) || !can_place(world, position, world.config->food_radius)) return false;
+  place_food(world, k, position);
+  return true;
+}
+
 /// Tries up to `candidates` places, until the number of foods present of kind `k` is the floor of its internal number.
 HEDON_FN void place_missing_food(World& world, int32_t k, const RandomStream& random, int32_t candidates) {
-  FoodStock& stock = world.state.food_stock[k];
-  for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i) {
-    const Vec2 position = draw_food_position(world, k, random, static_cast<uint32_t>(i));
-    if (has_spacing(world, k, position) && can_place(world, position, world.config->food_radius))
-      place_food(world, k, position);
+  const FoodStock& stock = world.state.food_stock[k];
+  for (int32_t i = 0; i < candidates && stock.present < static_cast<int32_t>(stock.number); ++i)
+    try_food(world, k, random, static_cast<uint32_t>(i));
+}
+
+/// Places `count` foods of kind `k`, each with up to `tries` candidates; fewer if one finds no place.
+HEDON_FN void place_first_food(World& world, int32_t k, const RandomStream& random, int32_t count, int32_t tries) {
+  uint32_t i = 0;
+  for (int32_t f = 0; f < count; ++f) {
+    const uint32_t last = i + static_cast<uint32_t>(tries);
+    while (!try_food(world, k, random, i++)) {
+      if (i == last) return;
+    }
   }
 }
 

@@ -159,15 +159,16 @@ HEDON_FN void count_cause(const World& world, int32_t slot) {
   if (cause == Cause::eaten) counters.energy_prey += world.state.life[slot].energy;
 }
 
+/// The row for the next death. Nobody may ever read them: when all rows are taken, the oldest is replaced, and counted.
+HEDON_FN int64_t take_event(WorldHead& head, int32_t events) {
+  return head.event_count < events ? head.event_count++ : head.events_lost++ % events;
+}
+
 /// Removes the agent in `slot` and keeps its life for the records. The caller updates the living order.
 HEDON_FN void kill(World& world, int32_t slot) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
   Life& life = state.life[slot];
-  if (head.event_count >= world.shape->events) {
-    world.fail(Status::event_overflow, life.agent_id, head.event_count);
-    return;
-  }
   life.death_step = head.step + 1;
   state.alive[slot] = 0;
   mark_stale(state.physics);
@@ -176,7 +177,7 @@ HEDON_FN void kill(World& world, int32_t slot) {
   world.counters(slot).energy_lost += life.energy;
   count_cause(world, slot);
 
-  const int64_t event = head.event_count++;
+  const int64_t event = take_event(head, world.shape->events);
   state.event[event] = life;
   state.event_species[event] = world.shape->species_of(slot);
   if (world.shape->mating) state.event_mate[event] = state.mate_id[slot];
@@ -227,7 +228,8 @@ HEDON_FN void init_population(World& world) {
     const FoodConfig& food = world.config->food[k];
     FoodStock& stock = world.state.food_stock[k];
     stock.number = food.initial_count;
-    place_missing_food(world, k, RandomStream{world.seed, Purpose::initial_food, static_cast<uint32_t>(k), 0}, TRIES);
+    const RandomStream random{world.seed, Purpose::initial_food, static_cast<uint32_t>(k), 0};
+    place_first_food(world, k, random, food.initial_count, TRIES);
     if (stock.present < food.initial_count) return world.fail(Status::initial_placement, -1, k);
   }
 }

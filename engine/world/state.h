@@ -101,10 +101,11 @@ struct WorldHead {
   int32_t births_in_window;
   int32_t births_before;  ///< of the window before
   int32_t ghost_count;
-  int32_t event_count;  ///< deaths not yet taken by the reader
+  int32_t event_count;  ///< deaths that wait for the reader
+  int64_t events_lost;  ///< older ones, which newer ones have replaced, since the reader last took any
 
   HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, births_in_window, births_before, ghost_count,
-               event_count)
+               event_count, events_lost)
 };
 
 /// A birth of this window whose genome is drawn at the window's end.
@@ -177,7 +178,7 @@ struct WorldState {
   Array<float> value;
   Array<float> reward;
 
-  // Deaths that the reader has not yet taken.
+  // Deaths that the reader has not yet taken: the newest of them, in a ring if some were lost.
   Array<Life> event;
   Array<int32_t> event_species;
   Array<int32_t> event_cause;

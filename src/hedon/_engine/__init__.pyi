@@ -50,7 +50,9 @@ class Simulation:
         """
 
     def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
-        """Columns of the agents that died since the last call."""
+        """
+        Columns of the agents that died since the last call, the oldest first: the newest `event` rows of them. `head` says before how many older ones are lost (`events_lost`).
+        """
 
     def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """Columns of the living, in the order of their ids."""
@@ -79,6 +81,14 @@ class Simulation:
     def show(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
         """
         Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …).
+        """
+
+    def pay(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
+        """The same without what they sense."""
+
+    def meals(self, species: int) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        What the agents of a species have eaten since the worlds began, foods by kind and then agents by species: (worlds, meals).
         """
 
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
