@@ -146,9 +146,8 @@ def test_actions_of_another_shape_cannot_be_put_in_place():
     group = worlds.groups["agent"]
     with pytest.raises(ValueError, match="broadcast"):
         group.actions[...] = np.zeros((7, 3))
-    group.actions = np.zeros((1, 3), np.float32)
     with pytest.raises(ArgumentError, match=r"actions: must be the array .*write into it"):
-        worlds.step()
+        group.actions = np.zeros((1, 3), np.float32)
 
 
 @pytest.mark.parametrize("seed", [-1, 2**64, 1.5, "one"])

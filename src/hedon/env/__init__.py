@@ -5,7 +5,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from hedon.env.batch import Batch, Group, batch
+from hedon.env.batch import Batch, batch
+from hedon.env.group import Group
 
 if TYPE_CHECKING:
     from hedon.env.parallel import World, parallel_env

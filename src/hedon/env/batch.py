@@ -1,95 +1,21 @@
 """Many worlds as arrays: a caller writes actions into one array and reads observations and rewards from others.
 
-No step makes or copies an array: the engine reads and writes those that the groups of agents hold.
+The engine reads and writes the arrays that the groups of agents hold: a step makes and copies none of them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.config.problem import nearest
 from hedon.config.species import ONLY, SpeciesConfig
+from hedon.env.group import Group
 from hedon.error import ArgumentError
-from hedon.experiment.argument import MAX_STEPS, integer
-from hedon.experiment.simulation import Simulation
+from hedon.experiment.argument import MAX_STEPS, integer, seed_list
+from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
-
-ACTIONS = ("left", "right")
-"""The two motors, in the order of the columns of `actions`."""
-NOBODY = -1
-"""In arrays of ids, where no agent lives."""
-
-
-class Group:
-    """The agents of one species in all worlds: a row for each slot, in which agents live one after another.
-
-    Each array is allocated once. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
-
-    Attributes:
-        columns: Names of the entries of an observation.
-        actions: (worlds, slots, 2) float32, before the sigmoid: write here. 0 is the middle of the motors' range,
-            and what a newborn does until told otherwise; rows without an agent change nothing.
-        observations: (worlds, slots, entries) float32, as a network of the engine reads them; zeros where nobody
-            lives.
-        rewards: (worlds, slots) float32, what the agent that was in the slot before the step was paid by its own
-            genome; 0 where there was none.
-        ids: (worlds, slots) int32, the agent in each slot; -1 where nobody lives. No id is used again in a world.
-        ids_before: the same before the last step.
-    """
-
-    def __init__(self, index: int, columns: tuple[str, ...], worlds: int, slots: int) -> None:
-        self.columns = columns
-        self.actions: NDArray[np.float32] = np.zeros((worlds, slots, len(ACTIONS)), np.float32)
-        self.observations: NDArray[np.float32] = np.zeros((worlds, slots, len(columns)), np.float32)
-        self.rewards: NDArray[np.float32] = np.zeros((worlds, slots), np.float32)
-        self.ids: NDArray[np.int32] = np.full((worlds, slots), NOBODY, np.int32)
-        self.ids_before = self.ids.copy()
-        self._index = index
-
-    @property
-    def alive(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether an agent lives there now."""
-        return self.ids != NOBODY
-
-    @property
-    def died(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether the agent that was there before the last step died in it."""
-        return (self.ids_before != NOBODY) & (self.ids_before != self.ids)
-
-    @property
-    def born(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether the agent that lives there now was born in the last step."""
-        return (self.ids != NOBODY) & (self.ids_before != self.ids)
-
-    def _tell(self, engine: Any) -> None:
-        shape = (*self.ids.shape, len(ACTIONS))
-        given: Any = self.actions
-        good = isinstance(given, np.ndarray) and given.shape == shape and given.dtype == np.float32
-        if not good or not given.flags.c_contiguous:
-            raise ArgumentError(
-                f"actions: must be the array of {shape} float32 that was there: write into it, actions[...] = …"
-            )
-        if not np.isfinite(self.actions).all():
-            world, slot, motor = np.argwhere(~np.isfinite(self.actions))[0]
-            place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]})"
-            raise ArgumentError(f"{place} = {self.actions[world, slot, motor]}: must be a finite number")
-        engine.command(self._index, self.actions)
-
-    def _look(self, engine: Any) -> None:
-        np.copyto(self.ids_before, self.ids)
-        engine.show(self._index, self.observations, self.rewards, self.ids)
-        if not np.array_equal(self.ids, self.ids_before):
-            self.actions[self.born] = 0.0
-
-    def _forget(self) -> None:
-        for array in (self.actions, self.observations, self.rewards):
-            array.fill(0)
-        self.ids.fill(NOBODY)
 
 
 class Batch:
@@ -116,10 +42,13 @@ class Batch:
         self.config = with_callers(config, names)
         self._threads, self._kernel = threads, kernel
         self.simulation = Simulation(self.config, seeds, threads, kernel)
+        every = list(config.agents)
+        meals = (*config.food, *every)[: self.simulation.engine.meals(0).shape[1]]
         self.groups = {
             name: Group(
-                list(config.agents).index(name),
+                every.index(name),
                 observation_columns(config, name),
+                meals,
                 len(self.simulation.seeds),
                 config.agents[name].population.capacity,
             )
@@ -131,9 +60,9 @@ class Batch:
         """Begins again, with the same seeds or with as many others. The groups keep their arrays.
 
         Raises:
-            ArgumentError: There are more or fewer seeds than worlds, or one is out of bounds.
+            ArgumentError: It is no list of seeds, there are more or fewer than worlds, or one is out of bounds.
         """
-        wanted = self.simulation.seeds if seeds is None else seeds
+        wanted = self.simulation.seeds if seeds is None else seed_list(seeds, MAX_WORLD_SEED)
         if len(wanted) != len(self.simulation.seeds):
             raise ArgumentError(f"seeds: there must be {len(self.simulation.seeds)}, one per world, not {len(wanted)}")
         self.simulation = Simulation(self.config, wanted, self._threads, self._kernel)
@@ -145,26 +74,34 @@ class Batch:
         """Advances every world, with the actions that the groups hold; then the arrays are of the new step.
 
         Args:
-            repeat: Steps with the same actions. Rewards, and who was born or died, are those of the last of them.
+            repeat: Steps with the same actions: as so many calls of `step` in which nobody writes an action. Rewards
+                and meals are sums over all of them, and all who were born or died in them are told: see `Group`.
 
         Raises:
             ArgumentError: An action is not a finite number, or `repeat` is not a positive whole number.
             EngineError: A world reports an error.
         """
         steps = integer("repeat", repeat, 1, MAX_STEPS)
-        for group in self.groups.values():
-            group._tell(self.simulation.engine)
-        if steps > 1:
-            self.simulation.run(steps - 1)
+        engine, groups = self.simulation.engine, self.groups.values()
+        for group in groups:
+            group._tell(engine)
+        if steps == 1:
+            self.simulation.run(1)
             self._look()
-        self.simulation.run(1)
-        self._look()
+            return
+        for group in groups:
+            group._begin()
+        for i in range(steps):
+            self.simulation.run(1)
+            for group in groups:
+                group._count(engine, last=i == steps - 1)
 
     def __getstate__(self) -> Any:
         raise TypeError("worlds that are driven cannot be copied or pickled: make a new one from its config")
 
     def _look(self) -> None:
         for group in self.groups.values():
+            group._begin()
             group._look(self.simulation.engine)
 
 
@@ -205,6 +142,8 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
     if species is None:
         external = [name for name, each in config.agents.items() if each.learning.policy == "external"]
         return tuple(external or known)
+    if not isinstance(species, str | Iterable):
+        raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
     wanted = [species] if isinstance(species, str) else list(species)
     for name in wanted:
         if name not in known:

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
 from hedon.config.config import Config
-from hedon.env.batch import ACTIONS, NOBODY, Batch, Group, batch
+from hedon.env.batch import Batch, batch
+from hedon.env.group import ACTIONS, NOBODY, Group
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_STEPS, integer
 from hedon.text import brief
@@ -86,14 +87,14 @@ class World(ParallelEnv[str, Any, Any]):
             terminations, truncations, infos.
 
         Raises:
-            ArgumentError: An action is for nobody alive, or is not two finite numbers; or there was no `reset`.
+            ArgumentError: An action is for nobody alive, or is not two finite numbers, and then none is told; or there
+                was no `reset`.
         """
         if not self._begun:
             raise ArgumentError("step: there are no agents yet: call reset first")
         if not self.agents:
             return {}, {}, {}, {}, {}
-        for name, action in actions.items():
-            self._set(name, action)
+        self._tell(actions)
         before = dict(self._row)
         self._batch.step()
         rewards = {name: float(group.rewards[0, row]) for name, (group, row) in before.items()}
@@ -116,18 +117,30 @@ class World(ParallelEnv[str, Any, Any]):
             self._spaces.pop(name, None)
         return result
 
-    def _set(self, name: str, action: Any) -> None:
+    def _tell(self, actions: Any) -> None:
+        """Writes the actions into the arrays: all of them, or none where one is wrong."""
+        if not isinstance(actions, Mapping):
+            raise ArgumentError(
+                f"actions = {brief(repr(actions))}: must be a dict of two numbers for each agent, {{}} for none"
+            )
+        given = {name: self._action(name, action) for name, action in actions.items()}
+        for name, action in given.items():
+            group, row = self._row[name]
+            group.actions[0, row] = action
+
+    def _action(self, name: Any, action: Any) -> NDArray[np.float32]:
         if name not in self._row:
             raise ArgumentError(f"actions: no agent {brief(str(name))!r} is alive")
         try:
             with np.errstate(over="ignore"):
-                given = np.asarray(action, np.float32)
+                array = np.ma.asanyarray(action) if np.ma.isMaskedArray(action) else np.asarray(action)
+                given = np.asarray(array, np.float32) if array.dtype.kind in "fiu" else np.empty(0, np.float32)
         except (TypeError, ValueError):
-            given = np.empty(0, np.float32)
-        if given.shape != (len(ACTIONS),) or not np.isfinite(given).all():
-            raise ArgumentError(f"actions[{name!r}] = {brief(str(action))}: must be two finite numbers, left and right")
-        group, row = self._row[name]
-        group.actions[0, row] = given
+            array = given = np.empty(0, np.float32)
+        if given.shape != (len(ACTIONS),) or not np.isfinite(given).all() or np.ma.is_masked(array):
+            said = brief(" ".join(str(action).split()))
+            raise ArgumentError(f"actions[{name!r}] = {said}: must be two finite numbers, left and right")
+        return given
 
     def _list_agents(self) -> None:
         living = [
@@ -144,9 +157,9 @@ class World(ParallelEnv[str, Any, Any]):
 
     def _spaces_of(self, agent: str) -> tuple[Box, Box]:
         if agent not in self._spaces:
-            species, _, identity = agent.rpartition("_")
-            if species not in self._batch.groups or not identity.isdigit():
-                raise ArgumentError(f"agent {brief(agent)!r}: there is no such agent")
+            species, _, identity = str(agent).rpartition("_")
+            if species not in self._batch.groups or not (identity.isascii() and identity.isdigit()):
+                raise ArgumentError(f"agent {brief(str(agent))!r}: there is no such agent")
             entries = len(self._batch.groups[species].columns)
             # So that two worlds with one seed draw the same actions, also for those who are born in them.
             seed = [self._batch.simulation.seeds[0], int(identity)]

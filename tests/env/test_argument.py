@@ -1,0 +1,134 @@
+"""Arguments of driven worlds: what is wrong is named in one sentence, and nothing is changed by it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from worlds import QUICK
+
+from hedon import ArgumentError, load_config
+from hedon.env import batch
+
+CONFIG = load_config("baseline", overrides=[*QUICK, "population.capacity=6", "population.initial_count=4"])
+SHAPE = (1, 6, 2)
+
+
+def put(name: str, value: Any) -> Callable[[Any], None]:
+    return lambda worlds: setattr(worlds.groups["agent"], name, value)
+
+
+def freeze(name: str) -> Callable[[Any], None]:
+    return lambda worlds: getattr(worlds.groups["agent"], name).setflags(write=False)
+
+
+ARRAY = r"actions: must be the array of \(1, 6, 2\) float32 that was there: write into it, actions\[\.\.\.\] = …"
+WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
+    "one seed": (lambda w: w.reset(5), r"seeds = 5: must be a list of whole numbers"),
+    "seeds as a text": (lambda w: w.reset("1"), r"seeds = '1': must be a list"),
+    "half a seed": (lambda w: w.reset([0.5]), r"seeds = 0\.5: must be a whole number"),
+    "a seed too many": (lambda w: w.reset([1, 2]), "there must be 1, one per world, not 2"),
+    "no repeat": (lambda w: w.step(None), "repeat = None: must be a whole number from 1"),
+    "half a repeat": (lambda w: w.step(1.5), r"repeat = 1\.5: must be"),
+    "repeat as a truth": (lambda w: w.step(True), "repeat = True: must be"),
+    "species as a number": (
+        lambda w: batch(CONFIG, [1], species=5),
+        "species: must be a name, or a list of them, not 5",
+    ),
+    "species of numbers": (lambda w: batch(CONFIG, [1], species=[5]), "species '5': there is no such species"),
+    "seeds as a number": (lambda w: batch(CONFIG, 3), "seeds = 3: must be a list"),
+    "threads": (lambda w: batch(CONFIG, [1], threads="two"), "threads = 'two': must be a whole number"),
+    "masked": (put("actions", np.ma.masked_array(np.zeros(SHAPE, np.float32), True)), ARRAY),
+    "shape": (put("actions", np.zeros((1, 6), np.float32)), ARRAY),
+    "type": (put("actions", np.zeros(SHAPE)), ARRAY),
+    "byte order": (put("actions", np.zeros(SHAPE, ">f4")), ARRAY),
+    "stride": (put("actions", np.zeros((1, 6, 4), np.float32)[:, :, ::2]), ARRAY),
+    "a list": (put("actions", [[[0.0, 0.0]] * 6]), ARRAY),
+    "nothing": (put("actions", None), ARRAY),
+    "another table": (put("observations", np.zeros(1)), r"observations: must be the array of \(1, 6, 95\) float32"),
+    "other ids": (put("ids", np.zeros((1, 6), np.int64)), r"ids: must be the array of \(1, 6\) int32"),
+    "frozen": (freeze("observations"), "observations: must be as it was made, writeable and contiguous"),
+    "not a number": (
+        lambda w: w.groups["agent"].actions.__setitem__((0, 3, 1), np.nan),
+        r"actions\[0, 3, 1\] \(right\) = nan: must be a finite number",
+    ),
+}
+
+
+@pytest.mark.parametrize(("wrong", "says"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_named_and_changes_nothing(wrong, says):
+    worlds = batch(CONFIG, seeds=[1], threads=1)
+    held = worlds.groups["agent"].actions
+
+    def go_on():
+        wrong(worlds)
+        worlds.step()
+
+    with pytest.raises(ArgumentError, match=says) as caught:
+        go_on()
+    assert "\n" not in str(caught.value)
+    assert worlds.groups["agent"].actions is held
+    assert worlds.simulation.worlds[0].step == 0
+
+
+def test_actions_can_be_written_in_every_way():
+    worlds = batch(CONFIG, seeds=[1], threads=1)
+    group = worlds.groups["agent"]
+    group.actions += 0.5
+    group.actions[...] = np.ones(SHAPE)
+    group.actions.fill(2)
+    group.actions = group.actions
+    worlds.step()
+    assert (group.actions[group.alive & ~group.born] == 2).all()
+
+
+MASKED = np.ma.masked_array([0.0, 1.0], [False, True])
+ACTIONS = {
+    "none": (None, "actions = None: must be a dict of two numbers for each agent"),
+    "a list": ([[0.0, 0.0]], "must be a dict"),
+    "a text": ({"agent_0": "12"}, "two finite numbers"),
+    "texts": ({"agent_0": ["1", "2"]}, "two finite numbers"),
+    "truths": ({"agent_0": [True, False]}, "two finite numbers"),
+    "complex": ({"agent_0": np.array([1 + 2j, 0])}, "two finite numbers"),
+    "masked": ({"agent_0": MASKED}, "two finite numbers"),
+    "nothing": ({"agent_0": None}, "two finite numbers"),
+    "ragged": ({"agent_0": [[1.0], [1.0, 2.0]]}, "two finite numbers"),
+    "a column": ({"agent_0": np.zeros((2, 1))}, "two finite numbers"),
+    "too large": ({"agent_0": [1e300, 0.0]}, "two finite numbers"),
+    "a number as name": ({0: [0.0, 0.0]}, "no agent '0' is alive"),
+    "the second": ({"agent_0": [9.0, 9.0], "agent_1": [np.nan, 0.0]}, r"actions\['agent_1'\] = \[nan, 0\.0\]"),
+}
+
+
+@pytest.mark.parametrize(("actions", "says"), ACTIONS.values(), ids=ACTIONS)
+def test_wrong_actions_of_pettingzoo_are_named_and_none_is_told(actions, says):
+    pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
+    from hedon.env import parallel_env
+
+    world, other = parallel_env(CONFIG), parallel_env(CONFIG)
+    for each in (world, other):
+        each.reset(seed=1)
+    with pytest.raises(ArgumentError, match=says) as caught:
+        world.step(actions)
+    assert "\n" not in str(caught.value)
+    for each in (world, other):
+        each.step({"agent_2": np.array([1, 2]), "agent_3": (0.5, -0.5)})
+    assert world.simulation.worlds[0].digest() == other.simulation.worlds[0].digest()
+
+
+def test_other_arguments_of_pettingzoo_are_named():
+    pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
+    from hedon.env import parallel_env
+
+    nothing: Any = None
+    world = parallel_env(CONFIG)
+    wrong = {
+        "seeds = 'x'": lambda: world.reset(seed=nothing or "x"),
+        "seeds = None": lambda: parallel_env(CONFIG, seed=nothing),
+        "max_steps = -1": lambda: parallel_env(CONFIG, max_steps=-1),
+        "agent '5': there is no such agent": lambda: world.action_space(nothing or 5),
+        "agent 'agent_²'": lambda: world.action_space("agent_²"),
+    }
+    for says, call in wrong.items():
+        with pytest.raises(ArgumentError, match=says):
+            call()
