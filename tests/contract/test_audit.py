@@ -129,9 +129,10 @@ def test_lists_beyond_their_room_are_named(world):
         world.run(1)
 
 
-def test_more_deaths_than_the_buffer_holds_are_named(world):
-    poke(world, "head.event_count", 0, 10**6)
-    with pytest.raises(EngineError, match="event_overflow"):
+@pytest.mark.parametrize(("path", "count"), [("head.event_count", 10**6), ("head.events_lost", -1)])
+def test_more_deaths_than_the_buffer_holds_are_named(world, path, count):
+    poke(world, path, 0, count)
+    with pytest.raises(EngineError, match="counts_inconsistent"):
         world.run(1)
     assert len(world.engine.take_rows(0)["agent_id"]) <= 16 * 200
 

@@ -9,7 +9,7 @@ from hedon.experiment.simulation import Simulation
 
 RADIUS, HALF_MOUTH = 10.0, 26.0
 MARGIN = 3.0
-"""A mouth's end is no nearer to a contact than this: bodies hardly move before they are asked. A mouth holds one body. [degree]"""
+"""A mouth's end is no nearer to a contact than this, since bodies move a bit first; a mouth holds one body [degree]."""
 SHARES = np.array([[0.6, 0.25, 0.9], [0.5, 0.1, 0.3], [0.8, 0.4, 0.7]])
 """What each of three species gains by each."""
 HUNT = 16

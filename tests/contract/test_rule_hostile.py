@@ -1,11 +1,12 @@
 """Rules in Python that are wrong in some way: each is refused in one line, or stops its world."""
 
 import os
+from dataclasses import replace
 
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
-from hedon import EngineError
+from hedon import EngineError, Simulation, load_config
 from hedon.experiment.rule import RuleError
 
 numba = pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
@@ -72,10 +73,13 @@ def test_a_file_that_is_none_is_refused(tmp_path):
             make_simulation(*QUIET, f'reward.rule="{path}:rule"')
 
 
-def test_a_relative_file_that_moved_says_where_it_was_looked_for(tmp_path, monkeypatch):
+def test_a_relative_file_that_is_not_there_says_where_it_was_looked_for(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(RuleError, match=rf"cannot read my\.py in {tmp_path}: No such file"):
+    with pytest.raises(RuleError, match=rf"cannot read {tmp_path}/my\.py: No such file"):
         make_simulation(*QUIET, 'reward.rule="my.py:rule"')
+    config = load_config("baseline", overrides=QUIET)
+    with pytest.raises(RuleError, match=rf"cannot read my\.py in {tmp_path}: No such file"):
+        Simulation(replace(config, reward=replace(config.reward, rule="my.py:rule")), [1])
 
 
 STOPS = {

@@ -256,17 +256,22 @@ def test_only_those_who_lived_through_the_window_learn():
     assert world.counters["learners"] == 50
 
 
-def test_event_overflow_is_named():
-    brief = (
-        "population.capacity=4",
-        "population.initial_count=4",
-        "birth.kappa=1",
-        "hazard.kappa=1",
-        "energy.initial=0",
-    )
-    simulation = make_simulation(*brief, "food.normal.initial_count=0", "food.normal.growth_rate=0")
-    with pytest.raises(EngineError, match=r"event_overflow.*World 0, step \d+.*Read them more often"):
-        simulation.run(20_000)
+def test_more_first_foods_than_tries_find_their_places():
+    """Each food has its own tries."""
+    many = 25_000
+    large = ("arena.width=4000", "arena.height=3000", f"food.normal.capacity={many}")
+    simulation = make_simulation(*large, f"food.normal.initial_count={many}")
+    foods = simulation.worlds[0].foods()
+    assert len(foods["x"]) == many
+    places = np.column_stack([foods["x"], foods["y"]])
+    assert len(np.unique(places, axis=0)) == many
+
+
+def test_a_food_without_a_place_is_named():
+    """A rectangle that has room for one food alone."""
+    narrow = ('food.normal.placement.form="rectangle"', "food.normal.placement.centers=[[100.0, 100.0]]")
+    with pytest.raises(EngineError, match="initial_placement"):
+        make_simulation(*narrow, "food.normal.placement.sd=[0.5, 0.5]", "food.normal.initial_count=2")
 
 
 def test_no_place_for_the_founders_is_named():

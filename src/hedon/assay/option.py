@@ -80,7 +80,7 @@ def assay_plan(
     plan = RunPlan(config, seeds, steps, Path("unnamed"), threads, 0, checkpoint, founders)
     name = f"{kind}-{config.name}-{config.fidelity}-{seed_span(plan.seeds)}-{digest(plan.config)[:8]}"
     folder = (out or Path("assays") / name) / part
-    return RunPlan(plan.config, seeds, steps, folder, threads, 0, checkpoint, founders)
+    return RunPlan(plan.config, seeds, steps, folder, threads, 0, checkpoint, founders, rules=plan.rules)
 
 
 def competitors(sources: Sequence[str], shares: Sequence[float], config: Config) -> tuple[Founders, tuple[str, str]]:

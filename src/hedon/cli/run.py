@@ -78,6 +78,7 @@ def run(
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from
     from hedon.experiment.plan import RunPlan, default_folder
+    from hedon.experiment.rule import rules_beside
     from hedon.experiment.run import run as run_plan
     from hedon.record.founder_source import read_founders
 
@@ -88,7 +89,8 @@ def run(
     require_no_run(folder)
     begin_with = None if founders is None else read_founders(founders, config)
     act_by = None if networks is None else networks_from(networks, config)
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, kernel)
+    kept = rules_beside(source)
+    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, kernel, kept)
     conduct(plan, lambda display: run_plan(plan, display))
 
 

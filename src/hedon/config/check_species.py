@@ -20,6 +20,7 @@ from hedon.config.layout import (
     smelled,
 )
 from hedon.config.problem import Problem, format_value, nearest, single
+from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.schedule import MAX_FACTOR
 from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, RULES, SpeciesConfig
 
@@ -31,8 +32,6 @@ MAX_GENES = 64
 """Most genes that the engine has room for."""
 MAX_FORCE = 1e6
 """Largest force of a motor, in the engine as for all its numbers: squares of it are finite [mass·u/s²]."""
-RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
-"""A rule: its file, its function and, once a run has it, the digest of the file."""
 THRESHOLDS = ("fed", "hungry", "by_age")
 """Families of rewards that have a threshold."""
 MAX_COVERAGE = 0.45

@@ -14,6 +14,7 @@ from hedon.config.field import leaves
 from hedon.config.layer import Table, has, reach_species, settle_food, settle_mutation, settle_species, stack
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.rule_path import with_absolute_rules
 from hedon.config.species import PER_SPECIES, RULES
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import from_tables
@@ -53,6 +54,9 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
         fidelity: One of `FIDELITIES`; replaces the one in the file.
         overrides: Texts `path=value`, as for `--set`; the last one counts.
 
+    The file of a rule in Python is looked up from the folder of the TOML file, or from the current folder if an
+    override names it; the config has its absolute path.
+
     Raises:
         ConfigError: There is no such preset or file, or something in it is wrong; the error lists all problems.
         ArgumentError: An argument has a wrong type.
@@ -60,10 +64,10 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     texts = _texts(overrides)
     path = _path_of(source)
     origin = str(path or source)
-    own = {"preset": source} if path is None else read_toml(path)
+    own = {"preset": source} if path is None else with_absolute_rules(read_toml(path), path.parent)
     over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
-    tables = [item for item in over if not isinstance(item, Problem)]
+    tables = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
     require_plain(tables, "--set")
     problems += [
         _not_settable(name) for table in tables for name in ("preset", "fidelity", "complete") if name in table

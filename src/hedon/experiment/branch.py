@@ -91,7 +91,9 @@ def plan_branch(
     place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
     founders, networks = load_founders(folder, config), load_networks(folder, config)
-    plan = RunPlan(changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders, networks)
+    plan = RunPlan(
+        changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders, networks, rules=old.rules
+    )
     return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
 
 
@@ -99,7 +101,7 @@ def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
     """Begins a branch that `plan_branch` planned; see `branch`."""
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
-        simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel)
+        simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel, plan.run.rules)
         start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}")
         manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
         return begin(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)

@@ -48,7 +48,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
         raise RecordError(f"{folder} recorded no fault: its status is {manifest.status}")
     config = load_config(folder / CONFIG)
     checkpoint, _ = find_checkpoint(folder)
-    simulation = Simulation(config, manifest.seeds, threads, same_kernel(manifest.kernel))
+    simulation = Simulation(config, manifest.seeds, threads, same_kernel(manifest.kernel), manifest.rules)
     step = start = 0
     if checkpoint is not None:
         name = f"the checkpoint of {folder}"

@@ -20,9 +20,11 @@ from hedon.experiment.argument import (
     seed_list,
 )
 from hedon.experiment.rule import pinned
+from hedon.experiment.rule import rules as find_rules
 from hedon.experiment.sample import Rows
 from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.record.founder import Founders
+from hedon.record.manifest import RuleSource
 from hedon.record.network import Networks
 
 
@@ -43,6 +45,8 @@ class RunPlan:
         networks: What agents that never learn begin with; None for new networks. The config gets their digest.
         kernel: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
             set.
+        rules: The texts of all rules in Python. Given are those that the config is pinned to, such as a manifest's;
+            all others are read from their files.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -62,6 +66,7 @@ class RunPlan:
     founders: Founders | None
     networks: Networks | None
     kernel: str
+    rules: tuple[RuleSource, ...]
 
     def __init__(
         self,
@@ -75,9 +80,12 @@ class RunPlan:
         founders: Founders | None = None,
         networks: Networks | None = None,
         kernel: str = "",
+        rules: Sequence[RuleSource] = (),
     ) -> None:
+        config = _without_caller(validated(config))
+        found = find_rules(config, rules)
         checked = {
-            "config": _with_networks(_with_founders(pinned(_without_caller(validated(config))), founders), networks),
+            "config": _with_networks(_with_founders(pinned(config, found), founders), networks),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),
@@ -87,6 +95,7 @@ class RunPlan:
             "founders": founders,
             "networks": networks,
             "kernel": kernel,
+            "rules": tuple(rule.source for rule in found),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)

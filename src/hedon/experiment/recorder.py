@@ -61,10 +61,14 @@ class Recorder:
         self.flush_due = 0.0
         self.shown = False
 
-    def deaths(self) -> None:
-        """Writes the agents that died since the last call. The engine has little room for them, so call it often."""
+    def deaths(self, *, partial: bool = False) -> None:
+        """Writes the agents that died since the last call. The engine has little room for them, so call it often.
+
+        Raises:
+            EngineError: It was called too seldom, and `partial` is false: some are lost.
+        """
         for world in self.simulation.worlds:
-            lives = world.deaths()
+            lives = world.deaths(partial=partial)
             if len(lives["agent_id"]):
                 self.writer.append("agents", agent_rows(world, lives))
         if time.perf_counter() >= self.flush_due:
@@ -106,7 +110,7 @@ class Recorder:
 
     def fault(self, seconds: float) -> None:
         """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""
-        self.deaths()
+        self.deaths(partial=True)
         step = max(world.step for world in self.simulation.worlds)
         self.writer.save_fault(*self._saved(step, seconds))
 

@@ -15,6 +15,7 @@ from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
+from hedon.experiment.rule import changed_files
 from hedon.experiment.run import drive, give_beginning, run
 from hedon.experiment.session import next_manifest
 from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
@@ -86,10 +87,19 @@ def hold(
         total = manifest.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
         founders, networks = load_founders(folder, config), load_networks(folder, config)
         plan = RunPlan(
-            config, manifest.seeds, total, folder, threads, manifest.frames, checkpoint_seconds, founders, networks
+            config,
+            manifest.seeds,
+            total,
+            folder,
+            threads,
+            manifest.frames,
+            checkpoint_seconds,
+            founders,
+            networks,
+            rules=manifest.rules,
         )
         notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
-        notes += [*_device_notes(manifest), *_source_notes(manifest)]
+        notes += [*_device_notes(manifest), *_source_notes(manifest), *_rule_notes(manifest)]
         found = Resumption(plan, manifest, checkpoint, tuple(notes))
         _check_steps(found)
         yield found
@@ -167,7 +177,8 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
     plan, checkpoint = found.plan, found.checkpoint
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
-        simulation = Simulation(plan.config, plan.seeds, plan.threads, same_kernel(found.manifest.kernel))
+        kernel = same_kernel(found.manifest.kernel)
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, kernel, plan.rules)
         start = Start()
         if checkpoint is None:
             give_beginning(simulation, plan)
@@ -213,4 +224,13 @@ def _source_notes(manifest: Manifest) -> list[str]:
     return [
         f"hedon's source has changed since (revision {before[:12]}, now {now[:12]}): "
         "only the same source is certain to give the same results"
+    ]
+
+
+def _rule_notes(manifest: Manifest) -> list[str]:
+    """Notes on the rules whose files have changed since, which changes nothing."""
+    return [
+        f"{path} has changed since: continuing with the text that the manifest keeps "
+        "(`hedon branch --set` goes on with another)"
+        for path in changed_files(manifest.rules)
     ]

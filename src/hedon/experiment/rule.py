@@ -1,12 +1,13 @@
 """Rules in Python at native speed: a function of a file, compiled by Numba, that the engine calls once per step.
 
-A config names a rule as FILE.py:NAME. A run pins it, FILE.py:NAME@DIGEST, so that its config, its checkpoints and its
-manifest say which text it was; a rule whose file is gone or has changed since is refused.
+A config names a rule as FILE.py:NAME. A run pins it, FILE.py:NAME@DIGEST, so that its config and its checkpoints say
+which text it was. Its manifest keeps the text, and whatever goes on with the run takes it from there: the file may be
+gone.
 """
 
 import hashlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,13 +21,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.config.check_species import RULE_PATTERN
 from hedon.config.config import Config
-from hedon.config.layout import rule_columns
+from hedon.config.layout import layouts, rule_columns
 from hedon.config.problem import nearest
+from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.species import PER_SPECIES, RULE_USES
 from hedon.error import ArgumentError, HedonError
-from hedon.record.manifest import RuleSource
+from hedon.record.folder import CONFIG, MANIFEST
+from hedon.record.manifest import RuleSource, load_manifest
 from hedon.text import brief
 
 MAX_BYTES = 1_000_000
@@ -45,13 +47,17 @@ class Rule:
         species: Name of the species.
         use: "reward", "hazard" or "birth".
         source: Where it comes from, and its text.
-        columns: Fields of the record that it gets of each agent.
+        columns: Fields of the record that the engine fills for each agent.
+        genes: Those that are genes which the rule may read.
+        neutral: Those that are neutral markers, which it may not: what it reads would no longer be neutral.
     """
 
     species: str
     use: str
     source: RuleSource
     columns: tuple[str, ...]
+    genes: tuple[str, ...]
+    neutral: tuple[str, ...]
 
     @cached_property
     def function(self) -> Callable[[Any], float]:
@@ -119,38 +125,71 @@ class Rule:
                 return numba.cfunc(types)(answer)
         except KeyError as error:  # a field of the record that is not there
             name = str(error.args[0])
-            near = nearest(name, self.columns)
+            self._refuse_neutral(f"'{name}'", error)
+            near = nearest(name, self._seen)
             hint = f"; did you mean {near}?" if near else ""
-            raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self.columns)}") from error
+            raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error
         except Exception as error:  # Numba raises what its parts raise, not only its own errors
             said = " ".join(str(error).split())
+            self._refuse_neutral(said, error)
             raise self._error(f"Numba cannot compile it: {brief(said)}") from error
 
+    def _refuse_neutral(self, said: str, error: Exception) -> None:
+        """RuleError: a field that was said to be missing is a neutral marker."""
+        for name in self.neutral:
+            if f"'{name}'" in said:
+                raise self._error(
+                    f"it reads {name}, a neutral marker: that shows drift because nothing reads it, so no rule may; "
+                    f"genes that it may read are {', '.join(self.genes) or 'none'}"
+                ) from error
+
     def _error(self, problem: str) -> RuleError:
-        return RuleError(f"rule {self.source.place}: {problem}")
+        return RuleError(f"rule {self.source.path or self.source.file}:{self.source.name}: {problem}")
+
+    @property
+    def _seen(self) -> tuple[str, ...]:
+        return tuple(name for name in self.columns if name not in self.neutral)
 
     @property
     def _dtype(self) -> np.dtype[Any]:
-        return np.dtype([(name, np.float64) for name in self.columns])
+        """A record as the engine fills it, of which the rule sees only a part."""
+        number = np.dtype(np.float64)
+        return np.dtype(
+            {
+                "names": self._seen,
+                "formats": [number] * len(self._seen),
+                "offsets": [number.itemsize * self.columns.index(name) for name in self._seen],
+                "itemsize": number.itemsize * len(self.columns),
+            }
+        )
 
 
-def rules(config: Config) -> tuple[Rule, ...]:
-    """The rules of a config, with their texts as they are now.
+def rules(config: Config, kept: Sequence[RuleSource] = ()) -> tuple[Rule, ...]:
+    """The rules of a config.
+
+    Args:
+        config: That may have some.
+        kept: Texts of rules that it is pinned to, as a manifest has them. All others are read from their files.
 
     Raises:
         RuleError: A file is not there or cannot be read, or is not the one that the config was pinned to.
     """
     return tuple(
-        Rule(name, use, _read(getattr(species, use).rule), rule_columns(config, name, use))
+        _rule(config, name, use, _source(getattr(species, use).rule, kept))
         for name, species in config.agents.items()
         for use in RULE_USES
         if getattr(species, use).rule
     )
 
 
-def pinned(config: Config) -> Config:
-    """The config with the digests of its rules in their names."""
-    found = rules(config)
+def _rule(config: Config, name: str, use: str, source: RuleSource) -> Rule:
+    neutral = tuple(gene.name for gene in layouts(config)[name].genes if gene.role == "neutral")
+    genes = tuple(gene.name for gene in layouts(config)[name].genes if gene.role != "neutral")
+    return Rule(name, use, source, rule_columns(config, name, use), genes, neutral)
+
+
+def pinned(config: Config, found: Sequence[Rule]) -> Config:
+    """The config with the names and digests of its rules' files, without the folders that they are in."""
     if not found:
         return config
     agents = dict(config.agents)
@@ -164,6 +203,24 @@ def pinned(config: Config) -> Config:
     return replace(config, **{section: getattr(own, section) for section in PER_SPECIES})
 
 
+def rules_beside(source: str | Path) -> tuple[RuleSource, ...]:
+    """The texts that the run keeps whose config a file is; none if it is no run's."""
+    manifest = Path(source).parent / MANIFEST
+    return load_manifest(manifest.parent).rules if Path(source).name == CONFIG and manifest.is_file() else ()
+
+
+def changed_files(kept: Sequence[RuleSource]) -> tuple[str, ...]:
+    """The files of rules that have another text by now. One that cannot be read is not among them."""
+
+    def is_changed(source: RuleSource) -> bool:
+        try:
+            return bool(source.path) and _digest(_text(Path(source.path))) != source.digest
+        except (OSError, ValueError):
+            return False
+
+    return tuple(dict.fromkeys(source.path for source in kept if is_changed(source)))
+
+
 @contextmanager
 def _bounds_checked(settings: Any) -> Iterator[None]:
     """Lets Numba compile functions that check their indices, also those that a rule calls."""
@@ -174,25 +231,39 @@ def _bounds_checked(settings: Any) -> Iterator[None]:
         settings.BOUNDSCHECK = before
 
 
-def _read(place: str) -> RuleSource:
+def _source(place: str, kept: Sequence[RuleSource]) -> RuleSource:
     match = re.fullmatch(RULE_PATTERN, place)
     if match is None:
         raise ArgumentError(f"rule {brief(place)!r}: must be FILE.py:NAME")
     file, name, wanted = match.groups()
+    for source in kept:
+        if (source.name, source.digest) != (name, wanted):
+            continue
+        if _digest(source.text) != wanted:
+            raise RuleError(f"rule {place}: the text that the manifest keeps is another one: its digest does not agree")
+        return replace(source, file=file)
+    return _read(place, file, name, wanted)
+
+
+def _read(place: str, file: str, name: str, wanted: str | None) -> RuleSource:
     try:
         text = _text(Path(file))
     except (OSError, ValueError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or brief(str(error))
         where = "" if Path(file).is_absolute() else f" in {Path.cwd()}"
-        kept = "; the manifest of a run that has it keeps its text (rules)" if wanted else ""
-        raise RuleError(f"rule {place}: cannot read {file}{where}: {reason}{kept}") from error
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+        hint = "; the manifest of a run that has it keeps its text: give its rules" if wanted else ""
+        raise RuleError(f"rule {place}: cannot read {file}{where}: {reason}{hint}") from error
+    digest = _digest(text)
     if wanted not in (None, digest):
         raise RuleError(
-            f"rule {place}: {file} has changed since, its digest is now {digest}: put back the text that the run's "
+            f"rule {place}: {file} has changed since, its digest is now {digest}: give the text that the run's "
             "manifest keeps (rules), or name the new rule as FILE.py:NAME in a new run or a branch"
         )
-    return RuleSource(file, name, digest, text)
+    return RuleSource(Path(file).name, name, digest, text, str(Path(file).absolute()))
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def _text(path: Path) -> str:

@@ -45,7 +45,7 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
-        simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.kernel)
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.kernel, plan.rules)
         give_beginning(simulation, plan)
         return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 

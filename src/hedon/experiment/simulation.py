@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import INNER_STATES, layouts
-from hedon.error import ArgumentError
+from hedon.error import ArgumentError, EngineError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.device import device_library
 from hedon.experiment.native import engine_input
-from hedon.experiment.rule import rules
+from hedon.experiment.rule import rules as find_rules
 from hedon.record.founder import Founders
+from hedon.record.manifest import RuleSource
 from hedon.record.network import NetworkError, Networks, frozen_species
 
 KERNEL_VARIABLE = "HEDON_KERNEL"
@@ -41,6 +42,8 @@ class Simulation:
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
         kernel: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
             empty for what the environment variable HEDON_KERNEL names, or else the best instruction set.
+        rules: Texts of the rules that the config is pinned to, such as `RunPlan.rules`; all others are read from their
+            files.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -53,7 +56,14 @@ class Simulation:
     in a process that was forked from the one that made it: the simulation's threads do not exist there.
     """
 
-    def __init__(self, config: Config, seeds: Sequence[int], threads: int = 0, kernel: str = "") -> None:
+    def __init__(
+        self,
+        config: Config,
+        seeds: Sequence[int],
+        threads: int = 0,
+        kernel: str = "",
+        rules: Sequence[RuleSource] = (),
+    ) -> None:
         given = engine_input(config)
         self.config = given.config
         self.seeds = seed_list(seeds, MAX_WORLD_SEED)
@@ -66,7 +76,7 @@ class Simulation:
         self.engine = _engine.Simulation(
             given.settings, given.walls, given.outer_walls, list(self.seeds), threads, host, device=device
         )
-        self.rules = rules(self.config)
+        self.rules = find_rules(self.config, rules)
         for rule in self.rules:
             species = list(self.config.agents).index(rule.species)
             self.engine.set_rule(species, rule.use, rule.compiled.address)
@@ -162,8 +172,14 @@ class World:
 
     @property
     def waiting_deaths(self) -> float:
-        """Deaths that have not been read, as a share of the engine's room for them."""
-        return self._engine.head(self.index)["event_count"] / len(self.view("event.birth_step"))
+        """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
+        head = self._engine.head(self.index)
+        return (head["event_count"] + head["events_lost"]) / len(self.view("event.birth_step"))
+
+    @property
+    def lost_deaths(self) -> int:
+        """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
+        return self._engine.head(self.index)["events_lost"]
 
     @property
     def counters(self) -> dict[str, Any]:
@@ -210,11 +226,25 @@ class World:
                 rows[name] = inner[living, i]
         return rows
 
-    def deaths(self) -> dict[str, NDArray[Any]]:
+    def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
         """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`.
 
-        The engine has room for 16 deaths per slot: in a long simulation, call this between runs.
+        The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
+        runs. Who needs none need not call it.
+
+        Args:
+            partial: Take those that are left, where older ones are lost; `lost_deaths` says before how many.
+
+        Raises:
+            EngineError: Some are lost, and `partial` is false. Nothing is taken then.
         """
+        lost = self.lost_deaths
+        if lost and not partial:
+            room = len(self.view("event.birth_step"))
+            raise EngineError(
+                f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
+                "call World.deaths more often, or take those that are left with World.deaths(partial=True)"
+            )
         return self._engine.take_rows(self.index)
 
     def foods(self) -> dict[str, NDArray[Any]]:

@@ -52,16 +52,18 @@ class RuleSource:
     """The text of a rule in Python.
 
     Attributes:
-        file: path as the config gives it.
+        file: name of the file, as the config of the run gives it.
         name: of the function.
         digest: the first 16 hexadecimal digits of the SHA-256 of the text.
         text: of the whole file.
+        path: where the file was; empty in old manifests.
     """
 
     file: str
     name: str
     digest: str
     text: str
+    path: str = ""
 
     @property
     def place(self) -> str:

@@ -1,6 +1,7 @@
 """The plan of a sweep: its conditions and batches, as it is written where the sweep lives."""
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -10,6 +11,8 @@ import numpy as np
 from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
 from hedon.config.load import parse_config
+from hedon.config.rule_path import RULE_PATTERN, rule_places
+from hedon.record.manifest import RuleSource
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
 from hedon.sweep.read import SweepFile
@@ -124,6 +127,8 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
         return plan
     for index, condition in enumerate(file.conditions):
         store.write(_config_name(index), dump_toml(condition.config).encode())
+    for rule in {rule for condition in file.conditions for rule in condition.rules}:
+        store.write(_rule_name(rule.digest), rule.text.encode())
     store.write(PLAN, plan.text().encode())
     return plan
 
@@ -157,6 +162,23 @@ def load_condition(store: Store, index: int) -> Config:
     if content is None:
         raise SweepError(f"{store.location} has no {name}: make the sweep again in another place")
     return parse_config(content.decode(), f"{store.location}/{name}")
+
+
+def load_rules(store: Store, config: Config) -> tuple[RuleSource, ...]:
+    """The texts of the rules that a condition is pinned to. SweepError: one is missing."""
+    return tuple(_load_rule(store, place) for place in rule_places(config))
+
+
+def _load_rule(store: Store, place: str) -> RuleSource:
+    match = re.fullmatch(RULE_PATTERN, place)
+    content = store.read(_rule_name(match[3] or "")) if match else None
+    if match is None or content is None:
+        raise SweepError(f"{store.location} has no text of the rule {place}: make the sweep again in another place")
+    return RuleSource(match[1], match[2], match[3], content.decode())
+
+
+def _rule_name(digest: str) -> str:
+    return f"rules/{digest}.py"
 
 
 def _config_name(index: int) -> str:

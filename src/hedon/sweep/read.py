@@ -8,10 +8,13 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.load import DEFAULT_PRESET, FIDELITIES, load_config
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.rule_path import absolute_rule
 from hedon.config.toml import read_toml
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS
 from hedon.experiment.plan import RunPlan
+from hedon.experiment.rule import rules_beside
+from hedon.record.manifest import RuleSource
 from hedon.sweep.design import DRAWS, Design, Settings, all_settings
 from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
 
@@ -26,10 +29,11 @@ WORLDS = 4
 
 @dataclass(frozen=True)
 class Condition:
-    """One setting of a sweep: the values of its factors, and the config that follows."""
+    """One setting of a sweep: the values of its factors, the config that follows, and the texts of its rules."""
 
     settings: Settings
     config: Config
+    rules: tuple[RuleSource, ...]
 
 
 @dataclass(frozen=True)
@@ -92,13 +96,11 @@ def read_sweep(path: Path | str) -> SweepFile:
     if len(settings) > MOST_CONDITIONS:
         many = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
         raise ConfigError(origin, [many])
-    conditions = [
-        Condition(each, _config(path, base, tables.get("fidelity"), fixed, each, seeds, steps)) for each in settings
-    ]
+    conditions = [_condition(path, base, tables.get("fidelity"), fixed, each, seeds, steps) for each in settings]
     return SweepFile(path.stem, steps, seeds, worlds, keep, factors, design, tuple(conditions))
 
 
-def _config(
+def _condition(
     path: Path,
     base: str,
     fidelity: str | None,
@@ -106,22 +108,29 @@ def _config(
     settings: Settings,
     seeds: tuple[int, ...],
     steps: int,
-) -> Config:
-    """The config of a condition. ConfigError: it cannot be; the message says where."""
+) -> Condition:
+    """A condition. ConfigError: it cannot be; the message says where."""
     own = [(name, value) for name, value in settings.items() if name not in (PRESET, FIDELITY)]
     source = settings.get(PRESET, base)
     if source.endswith(".toml") and not Path(source).is_absolute():
         source = str(path.parent / source)
-    texts = [f"{name}={format_value(value)}" for name, value in [*fixed, *own]]
+    values = [(name, _from_folder(path, name, value)) for name, value in [*fixed, *own]]
+    texts = [f"{name}={format_value(value)}" for name, value in values]
     varied = ", ".join(f"{name} = {format_value(value)}" for name, value in settings.items())
     place = f"{path}, with {varied}" if varied else str(path)
     try:
         config = load_config(source, settings.get(FIDELITY, fidelity), texts)
-        return RunPlan(config, seeds, steps, "run").config
+        plan = RunPlan(config, seeds, steps, "run", rules=rules_beside(source))
     except ConfigError as error:
         raise ConfigError(place, error.problems) from None
     except HedonError as error:
         raise ConfigError(place, [Problem("", str(error))]) from None
+    return Condition(settings, plan.config, plan.rules)
+
+
+def _from_folder(path: Path, name: str, value: Any) -> Any:
+    """A value of the file; where a rule in Python is, it says relative to its own folder."""
+    return absolute_rule(value, path.parent) if name.endswith(".rule") else value
 
 
 def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[str, Any]:

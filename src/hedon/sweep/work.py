@@ -26,7 +26,7 @@ from hedon.replication.run.work import answer
 from hedon.report.summary import summarize
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
-from hedon.sweep.plan import Batch, SweepPlan, load_condition
+from hedon.sweep.plan import Batch, SweepPlan, load_condition, load_rules
 from hedon.sweep.row import world_rows
 from hedon.sweep.store import Store, open_store
 
@@ -89,7 +89,8 @@ def make_batch(task: Task, threads: int, display: Display | None) -> str:
     if store.read(result_name(batch)) is not None:
         return "finished"
     config = load_condition(store, batch.condition)
-    plan = RunPlan(config, batch.seeds, task.steps, task.folder, threads, 0, task.checkpoint_seconds)
+    rules, seconds = load_rules(store, config), task.checkpoint_seconds
+    plan = RunPlan(config, batch.seeds, task.steps, task.folder, threads, 0, seconds, rules=rules)
     _fetch_state(store, task)
     manifest = _make(plan, _Carrying(store, task, display) if store.folder is None else display)
     if manifest.status != "finished":

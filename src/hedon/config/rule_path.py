@@ -1,0 +1,45 @@
+"""Where the file of a rule is: a TOML file names it relative to itself, what is typed to the current folder."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hedon.config.config import Config
+from hedon.config.species import RULE_USES
+
+RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
+"""A rule: its file, its function and, once a run has it, the digest of the file."""
+
+
+def rule_places(config: Config) -> tuple[str, ...]:
+    """The places of all rules of a config."""
+    places = (getattr(species, use).rule for species in config.agents.values() for use in RULE_USES)
+    return tuple(place for place in places if place)
+
+
+def absolute_rule(place: Any, folder: Path) -> Any:
+    """The place of a rule with the absolute path of its file, if that is relative to `folder`.
+
+    One with a digest stays as it is: a run that has it keeps its text, wherever the file is by now. So does what is no
+    place of a rule, which is refused later.
+    """
+    match = re.fullmatch(RULE_PATTERN, place) if isinstance(place, str) else None
+    if match is None or match[3] or "\0" in place:
+        return place
+    return f"{folder.absolute() / match[1]}:{match[2]}"
+
+
+def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The tables of a config, or of a species, with the absolute paths of the files of rules."""
+    found = dict(tables)
+    for use in RULE_USES:
+        section = found.get(use)
+        if isinstance(section, dict) and "rule" in section:
+            found[use] = section | {"rule": absolute_rule(section["rule"], folder)}
+    species = found.get("species")
+    if isinstance(species, dict):
+        found["species"] = {
+            name: with_absolute_rules(own, folder) if isinstance(own, dict) else own for name, own in species.items()
+        }
+    return found

@@ -1,0 +1,57 @@
+"""A sweep over rules in Python: named relative to its file, and kept where it lives."""
+
+import shutil
+
+import pytest
+from sweep_case import assert_same_table, planned, sweep_file, table_of
+
+from hedon.config.problem import ConfigError
+from hedon.sweep.error import SweepError
+from hedon.sweep.plan import load_condition, load_rules
+from hedon.sweep.read import read_sweep
+from hedon.sweep.work import make_batch, make_task
+
+pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
+
+RULES = """
+def once(agent):
+    return agent.linear
+
+def twice(agent):
+    return 2.0 * agent.linear
+"""
+FACTORS = """
+[factor]
+"reward.rule" = ["rules/my.py:once", "rules/my.py:twice"]
+"""
+
+
+def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
+    home = tmp_path / "home"
+    (home / "rules").mkdir(parents=True)
+    (home / "rules" / "my.py").write_text(RULES)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    file = sweep_file(home, 96, rest=FACTORS)
+    tables = []
+    for name in ("first", "second"):
+        plan, store = planned(file, str(tmp_path / name))
+        first = load_condition(store, 0)
+        assert first.reward.rule == f"my.py:once@{load_rules(store, first)[0].digest}"
+        if name == "second":  # the plan needs the files no more
+            shutil.rmtree(home)
+        for batch in plan.batches():
+            task = make_task(store.location, plan, batch, tmp_path / name / "work" / batch.name, 1e9)
+            assert make_batch(task, 1, None) == "finished"
+        tables.append(table_of(store.location))
+    assert_same_table(*tables)
+    assert tables[0]["digest"].n_unique() == 4  # two rules, two seeds
+    shutil.rmtree(tmp_path / "second" / "rules")
+    with pytest.raises(SweepError, match=r"has no text of the rule my\.py:once@"):
+        load_rules(store, first)
+
+
+def test_a_rule_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ConfigError, match=rf"cannot read {tmp_path}/rules/my\.py: No such file"):
+        read_sweep(sweep_file(tmp_path, 96, rest=FACTORS))
