@@ -12,6 +12,7 @@ from hedon.env import batch
 
 CONFIG = load_config("baseline", overrides=[*QUICK, "population.capacity=6", "population.initial_count=4"])
 SHAPE = (1, 6, 2)
+make: Any = batch
 
 
 def put(name: str, value: Any) -> Callable[[Any], None]:
@@ -32,12 +33,12 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "half a repeat": (lambda w: w.step(1.5), r"repeat = 1\.5: must be"),
     "repeat as a truth": (lambda w: w.step(True), "repeat = True: must be"),
     "species as a number": (
-        lambda w: batch(CONFIG, [1], species=5),
+        lambda w: make(CONFIG, [1], species=5),
         "species: must be a name, or a list of them, not 5",
     ),
-    "species of numbers": (lambda w: batch(CONFIG, [1], species=[5]), "species '5': there is no such species"),
-    "seeds as a number": (lambda w: batch(CONFIG, 3), "seeds = 3: must be a list"),
-    "threads": (lambda w: batch(CONFIG, [1], threads="two"), "threads = 'two': must be a whole number"),
+    "species of numbers": (lambda w: make(CONFIG, [1], species=[5]), "species '5': there is no such species"),
+    "seeds as a number": (lambda w: make(CONFIG, 3), "seeds = 3: must be a list"),
+    "threads": (lambda w: make(CONFIG, [1], threads="two"), "threads = 'two': must be a whole number"),
     "masked": (put("actions", np.ma.masked_array(np.zeros(SHAPE, np.float32), True)), ARRAY),
     "shape": (put("actions", np.zeros((1, 6), np.float32)), ARRAY),
     "type": (put("actions", np.zeros(SHAPE)), ARRAY),
@@ -112,7 +113,7 @@ def test_wrong_actions_of_pettingzoo_are_named_and_none_is_told(actions, says):
         world.step(actions)
     assert "\n" not in str(caught.value)
     for each in (world, other):
-        each.step({"agent_2": np.array([1, 2]), "agent_3": (0.5, -0.5)})
+        each.step({"agent_2": np.array([1, 2]), "agent_3": np.array((0.5, -0.5))})
     assert world.simulation.worlds[0].digest() == other.simulation.worlds[0].digest()
 
 
@@ -120,13 +121,13 @@ def test_other_arguments_of_pettingzoo_are_named():
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
     from hedon.env import parallel_env
 
-    nothing: Any = None
-    world = parallel_env(CONFIG)
+    new: Any = parallel_env
+    world: Any = parallel_env(CONFIG)
     wrong = {
-        "seeds = 'x'": lambda: world.reset(seed=nothing or "x"),
-        "seeds = None": lambda: parallel_env(CONFIG, seed=nothing),
-        "max_steps = -1": lambda: parallel_env(CONFIG, max_steps=-1),
-        "agent '5': there is no such agent": lambda: world.action_space(nothing or 5),
+        "seeds = 'x'": lambda: world.reset(seed="x"),
+        "seeds = None": lambda: new(CONFIG, seed=None),
+        "max_steps = -1": lambda: new(CONFIG, max_steps=-1),
+        "agent '5': there is no such agent": lambda: world.action_space(5),
         "agent 'agent_²'": lambda: world.action_space("agent_²"),
     }
     for says, call in wrong.items():
