@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from reference_draw import philox
+from reference.draw import philox
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation
 
 from hedon.experiment.simulation import Simulation
