@@ -32,30 +32,27 @@ def assert_touches(
     # Furthest that a body moves in a step at the speed cap [u].
     moves = math.sqrt(2) * physics.max_speed * physics.dt * physics.substeps
     ids, bits = world.view("life.agent_id")[slots].tolist(), touch_bits(world, slots)
-    others = [(a.x, a.y, rules.of(a).body.radius) for a in before.agents]
+    foods = [[(x, y, rules.food_radius) for x, y in stock.foods] for stock in before.stocks]
+    near_foods = [_near(rules, before, circles, moves) for circles in foods]
+    near_agents = _near(rules, before, [(a.x, a.y, rules.of(a).body.radius) for a in before.agents], 2 * moves)
     for i, (agent, deed) in enumerate(zip(before.agents, deeds, strict=True)):
         species = rules.of(agent)
-        for k, (kind, stock) in enumerate(zip(rules.kinds, before.stocks, strict=True)):
+        for k, kind in enumerate(rules.kinds):
             eaten = {f for kind_met, f in deed.mouthfuls if kind_met == k}
             if kind not in species.eats or kind not in species.touches:
                 assert not eaten
                 continue
-            inside, close = _within(species, agent, [(x, y, rules.food_radius) for x, y in stock.foods], moves)
+            inside, close = near_foods[k][i]
             assert inside <= eaten <= close
             sectors = _mouth_sectors(species)
             # A newborn may lie where an agent died in this step; what that one touched is not known any more.
             if sectors and ids[i] == agent.agent_id:
                 felt = bits[i] >> species.touches.index(kind) * species.sensor.touch_sectors
                 assert any(felt >> sector & 1 for sector in sectors) == bool(eaten)
-        inside, close = (
-            {
-                before.agents[j].agent_id
-                for j in found
-                if j != i and rules.names[before.agents[j].species] in species.eats
-            }
-            for found in _within(species, agent, others, 2 * moves)
-        )
-        assert inside <= set(deed.prey) <= close
+        prey = {j for j, other in enumerate(before.agents) if rules.names[other.species] in species.eats} - {i}
+        met_here = {j for j in prey if before.agents[j].agent_id in deed.prey}
+        assert len(met_here) == len(deed.prey)
+        assert near_agents[i][0] & prey <= met_here <= near_agents[i][1]
         for o, polygon in enumerate(rules.arena.obstacles):
             apart = min(wall_distance(agent.x, agent.y, (*a, *b)) for a, b in sides(polygon))
             touches = apart < species.body.radius - MARGIN or encloses(polygon, agent.x, agent.y)
@@ -67,15 +64,19 @@ def assert_touches(
     return met
 
 
-def _within(species: Any, agent: Any, circles: list, moves: float) -> tuple[set[int], set[int]]:
-    """Which circles lay in the mouth, and which so near that they could come into it."""
+def _near(rules: Rules, world: World, circles: list, moves: float) -> list[tuple[set[int], set[int]]]:
+    """Of each agent, which circles lay in its mouth, and which so near that they could come into it."""
     x, y, radius = np.reshape(circles, (-1, 3)).T
-    dx, dy, reach = x - agent.x, y - agent.y, radius + species.body.radius
+    bodies = [(a.x, a.y, a.angle, rules.of(a).body.radius, rules.of(a).sensor.mouth_spread) for a in world.agents]
+    at_x, at_y, angle, own, spread = np.reshape(bodies, (-1, 5, 1)).swapaxes(0, 1)
+    dx, dy, reach = x - at_x, y - at_y, radius + own
     apart = np.hypot(dx, dy)
-    end = math.cos(math.radians(species.sensor.mouth_spread)) + MARGIN
-    ahead = dy * math.cos(agent.angle) - dx * math.sin(agent.angle) > end * apart
+    ahead = dy * np.cos(angle) - dx * np.sin(angle) > (np.cos(np.radians(spread)) + MARGIN) * apart
     inside, close = (apart < reach - MARGIN) & ahead, apart < reach + moves
-    return set(np.flatnonzero(inside).tolist()), set(np.flatnonzero(close).tolist())
+    return [
+        (set(np.flatnonzero(here).tolist()), set(np.flatnonzero(there).tolist()))
+        for here, there in zip(inside, close, strict=True)
+    ]
 
 
 def _mouth_sectors(species: Any) -> list[int]:

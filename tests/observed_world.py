@@ -123,13 +123,6 @@ def rollout_rows(simulation: Simulation, before: World, slots: list[int], name: 
     return rows if width > 1 else rows.reshape(len(slots))
 
 
-def sight(simulation: Simulation, before: World) -> list[np.ndarray]:
-    """What the rays of each agent read now, (rays, types that it sees) each, in the order of their ids."""
-    world = simulation.worlds[0]
-    rays = [iter(world.rays(s).astype(float)) for s in range(len(world.config.agents))]
-    return [next(rays[agent.species]) for agent in before.agents]
-
-
 def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: dict, seen: list) -> list[Deed]:
     """What those in `slots` did in the last step. Who touched what is noted in the physics' lists of pairs."""
     view = simulation.worlds[0].view

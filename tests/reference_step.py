@@ -7,14 +7,14 @@ import ppo_reference
 import pytest
 from acting_weights import AFTER_W2, HIDDEN, as_read
 from observed_touch import assert_touches, touch_bits
-from observed_world import food_slots, read_deeds, read_world, rollout_rows, sight
+from observed_world import food_slots, read_deeds, read_world, rollout_rows
 from reference.draw import normals
 from reference.heredity import first_log_sd, inherited_network
 from reference.model import Model
 from reference.reward import inputs
 from reference.sense import body_sense, smells
 from reference.setting import Rules
-from reference.state import Outcome, World
+from reference.state import Agent, Outcome, World
 from same_world import FORCE, PLACE, REWARD, WEIGHT, assert_close, assert_same_world
 
 from hedon.experiment.simulation import Simulation
@@ -51,11 +51,10 @@ class Judge:
         """Makes one step and asserts that it followed the rules."""
         simulation, world = self.simulation, self.simulation.worlds[0]
         before, slots, foods = read_world(simulation), world.living.tolist(), food_slots(simulation)
-        seen, motion = sight(simulation, before), self.motion(slots)
+        observations = self.observations(before)
+        seen = [self.sight(agent, row) for agent, row in zip(before.agents, observations, strict=True)]
         if before.step % 5 == 0:
-            self.assert_observations(before, slots, motion)
-        observed = [iter(world.observations(s)) for s in range(len(self.model.rules.species))]
-        observations = [next(observed[agent.species]) for agent in before.agents]
+            self.assert_observations(before, slots, observations)
         params, command = world.view("params"), world.view("command").reshape(len(world.view("alive")), -1)
         params = params[slots] if len(params) else np.zeros((len(slots), 0), np.float32)
         told = command[slots].tolist() if command.size else [(0.0, 0.0)] * len(slots)
@@ -115,31 +114,34 @@ class Judge:
         for turn in turns:
             self.count(**{f"paid_{name}": value != 0 for name, value in inputs(rules, turn).items()})
 
-    def motion(self, slots: list[int]) -> np.ndarray:
-        view = self.simulation.worlds[0].view
-        names = ("velocity_x", "velocity_y", "angular_velocity")
-        return np.stack([view(f"physics.bodies.{name}")[slots] for name in names], axis=1).astype(float)
+    def observations(self, before: World) -> list[np.ndarray]:
+        """What each agent observes now, in the order of their ids."""
+        rows = [iter(self.simulation.worlds[0].observations(s)) for s in range(len(self.model.rules.species))]
+        found = [next(rows[agent.species]) for agent in before.agents]
+        assert all(next(rest, None) is None for rest in rows)
+        return found
 
-    def assert_observations(self, before: World, slots: list[int], motion: np.ndarray) -> None:
+    def sight(self, agent: Agent, observation: np.ndarray) -> np.ndarray:
+        """What the rays of an agent read, (rays, types that it sees)."""
+        species = self.model.rules.of(agent)
+        rays, sees = species.sensor.ray_count, len(species.sees)
+        return observation[: rays * sees].reshape(sees, rays).T.astype(float)
+
+    def assert_observations(self, before: World, slots: list[int], observations: list[np.ndarray]) -> None:
         """All of an observation but rays: touch is that of the state, the rest follows from the rules."""
         world, rules = self.simulation.worlds[0], self.model.rules
         touch = touch_bits(world, slots)
-        for s, species in enumerate(rules.species):
-            observed = iter(world.observations(s).astype(float))
+        names = ("velocity_x", "velocity_y", "angular_velocity")
+        motion = np.stack([world.view(f"physics.bodies.{name}")[slots] for name in names], axis=1).tolist()
+        for i, (agent, row) in enumerate(zip(before.agents, observations, strict=True)):
+            species, smelled = rules.of(agent), smells(rules, before, agent)
             rays, bits = (
                 species.sensor.ray_count * len(species.sees),
                 len(species.touches) * species.sensor.touch_sectors,
             )
-            for i, agent in enumerate(before.agents):
-                if agent.species != s:
-                    continue
-                row = next(observed)
-                assert row[rays : rays + bits].tolist() == [touch[i] >> bit & 1 for bit in range(bits)]
-                smelled = smells(rules, before, agent)
-                own = body_sense(species, agent, motion[i], smelled)
-                assert_close(row[rays + bits :], own, SENSE, 1e-6)
-                self.count(smelled=bool(np.any(smelled > 0.1)))
-            assert next(observed, None) is None
+            assert row[rays : rays + bits].tolist() == [touch[i] >> bit & 1 for bit in range(bits)]
+            assert_close(row[rays + bits :], body_sense(species, agent, motion[i], smelled), SENSE, 1e-6)
+            self.count(smelled=bool(np.any(smelled > 0.1)))
 
     def assert_networks_act(self, before: World, slots: list[int], observations: list, params: np.ndarray) -> None:
         """Actions, their log-probabilities and the values follow from the observations and the networks."""

@@ -39,7 +39,8 @@ def assert_close(actual, expected, tolerance, share=1e-12):
 
 def column(world: World, name: str) -> np.ndarray:
     """A field of all agents; where each has several numbers, one agent's after another's."""
-    return np.concatenate([np.atleast_1d(getattr(agent, name)) for agent in world.agents] + [np.zeros(0)])
+    values = [getattr(agent, name) for agent in world.agents]
+    return np.concatenate([*values, np.zeros(0)]) if name in ("genome", "memory") else np.array(values)
 
 
 def assert_same_world(actual: World, expected: World, costs: float, force: float, late: bool) -> None:

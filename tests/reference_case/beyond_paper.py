@@ -163,7 +163,7 @@ HEREDITY = {
     "instinct": Case(
         "children have the network that their parent was born with",
         ('birth.network="initial"', "birth.network_noise=0.02", "learning.learning_rate=0.01"),
-        {"network_initial": 20, "network_of_learned": 5},
+        {"network_initial": 20, "network_of_learned": 3},
     ),
     "lamarck": Case(
         "children have what their parent has learned; genes of a father, networks of a mother",
@@ -171,7 +171,7 @@ HEREDITY = {
             *('birth.network="learned"', "learning.learning_rate=0.01", 'birth.mating="pairs"', "birth.kappa=0.3"),
             *("birth.mating_range=60", "genome.learning.action_sd.initial_sd=0.3", "birth.distance_sd=60"),
         ),
-        {"network_learned": 20, "network_of_learned": 5, "mated": 20},
+        {"network_learned": 20, "network_of_learned": 3, "mated": 20},
     ),
     "laws": Case(
         "laws of mutation, of all genes and of one",
@@ -211,7 +211,7 @@ FAMILIES = {
             *each("fed", 'reward.family="fed"', "reward.threshold=3", "genome.family.threshold_width.initial_sd=0.4"),
             *each("fed", "reward.threshold_width=0.5", "genome.family.threshold.initial_mean=-0.2"),
         ),
-        {"births": 20, "eaten": 10},
+        {"births": 12, "eaten": 10},
     ),
     "by age": Case(
         "weights that change with age; gains by meals count double",

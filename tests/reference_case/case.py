@@ -26,7 +26,7 @@ class Case:
     happens: dict[str, float] = field(default_factory=dict)
     preset: str = "baseline"
     fidelity: str | None = None
-    steps: int = 80
+    steps: int = 70
 
     @property
     def config(self) -> Config:
