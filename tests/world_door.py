@@ -120,7 +120,9 @@ def _drive(simulation: Simulation) -> None:
     """Tells the agents that wait for a caller what to do."""
     for i, species in enumerate(simulation.config.agents.values()):
         if species.learning.policy == "external":
-            actions = np.tile(np.array([0.8, -0.3], np.float32), (len(simulation.worlds), species.population.capacity, 1))
+            actions = np.tile(
+                np.array([0.8, -0.3], np.float32), (len(simulation.worlds), species.population.capacity, 1)
+            )
             simulation.engine.command(i, actions)
 
 

@@ -127,7 +127,7 @@ def test_a_world_of_prey_and_predators_keeps_its_ledger_and_its_bits(fidelity):
         many = ("hazard.kappa=0.02", "species.predator.population.initial_count=45")
         config = load_config("predator", fidelity, [*QUICK, *many])
         simulation = Simulation(config, [3], threads)
-        simulation.run(3 * 64 + 7)
+        simulation.run(5 * 64 + 7)
         return simulation
 
     one, two = lived(1), lived(2)

@@ -56,7 +56,7 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
     assert judge.happened["rivals"] > 50
 
 
-@pytest.mark.parametrize("sharing", ["one"])
+@pytest.mark.parametrize("sharing", ["one", "each"])
 def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
     """Chains of claims, rivals for one agent, pairs that claim each other, and those who starve meanwhile."""
     settings = (

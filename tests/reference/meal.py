@@ -47,15 +47,17 @@ def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
         if near and turn.agent.digestion == 0 and not turn.starved and not by_id[near[0]].starved:
             claims[turn.agent.agent_id] = near[0]
         turn.agent.digestion = max(turn.agent.digestion - 1, 0)
+    if rules.each_gains:  # all are judged at once, by what they have before anyone eats
+        energy = {each: by_id[each].agent.energy for each in claims.values()}
+        for eater, prey in claims.items():
+            gain(rules, world, by_id[eater], by_id[prey], energy[prey])
+            by_id[prey].caught = True
+        return
     while claims:
         free = [eater for eater in claims if eater not in claims.values()]
         eater = min(free or claims, key=lambda each: rules.draw("hunt", each, world.step)[0])
         prey = claims[eater]
-        eaters = [eater]
-        if rules.each_gains:
-            eaters += [each for each in free if each != eater and claims[each] == prey]
-        for each in eaters:
-            gain(rules, world, by_id[each], by_id[prey])
+        gain(rules, world, by_id[eater], by_id[prey], by_id[prey].agent.energy)
         by_id[prey].caught = True
         # Who is eaten eats nothing: in a cycle, who has eaten cannot be eaten any more.
         claims = {each: of for each, of in claims.items() if of not in (prey, eater) and each not in (prey, eater)}
@@ -65,10 +67,10 @@ def distance(turn: Turn, other: Turn) -> float:
     return math.hypot(turn.deed.x - other.deed.x, turn.deed.y - other.deed.y)
 
 
-def gain(rules: Rules, world: World, turn: Turn, prey: Turn) -> None:
-    """An eater's share of what its prey has left."""
+def gain(rules: Rules, world: World, turn: Turn, prey: Turn, energy: float) -> None:
+    """An eater's share of the energy that its prey has."""
     species, eater, sums = rules.of(turn.agent), turn.agent, world.sums[turn.agent.species]
-    gained = species.eats[rules.names[prey.agent.species]] * prey.agent.energy
+    gained = species.eats[rules.names[prey.agent.species]] * energy
     wanted = eater.energy + gained
     eater.energy = min(wanted, species.energy.capacity)
     eater.energy_gained += gained
