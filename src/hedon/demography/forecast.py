@@ -1,16 +1,20 @@
 """What can be said of a setting before it is run: can it live, can it die, and what will limit it?"""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from hedon.config import Config
+from hedon.config.food import FoodConfig
 from hedon.config.layout import diet, inner_states
+from hedon.config.schedule import ScheduleConfig
+from hedon.config.species import SpeciesConfig
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
-from hedon.demography.schedule import mean_factor
+from hedon.demography.schedule import factor_at, factor_range, mean_factor, mean_hazard, scaled_hazard
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(32)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -53,11 +57,13 @@ class Forecast:
     """What a setting promises.
 
     Attributes:
-        levels: lives at some energies.
+        levels: lives at some energies; where the chance of death follows a schedule, at its mean factor.
         room: chances of finding a place.
         need: energy that an agent with a fresh policy is charged [energy/step].
-        supply: energy that grows as food [energy/step]; poison does not count.
-        fed: agents that the supply pays for, supply / need; infinite where living costs nothing.
+        supply: energy that grows as food that the species eats [energy/step], at the mean factor of a schedule; poison
+            does not count.
+        fed: agents that the supply pays for, supply / need; infinite where living costs nothing, NaN for a species
+            that eats no food.
         force: mean norm of the forces of a fresh policy.
         warnings: what to know before running, in sentences.
     """
@@ -90,7 +96,7 @@ def setting_warnings(config: Config) -> tuple[str, ...]:
 
 def fresh_force(config: Config) -> float:
     """Mean norm of both forces under a fresh policy, whose raw actions are standard normal, by quadrature."""
-    low, high = config.motor.min_force, config.motor.max_force
+    low, high = (config.motor.force_scale * force for force in (config.motor.min_force, config.motor.max_force))
     force = low + (high - low) / (1.0 + np.exp(-_NODES))
     return float(_WEIGHTS @ np.hypot(force[:, None], force[None, :]) @ _WEIGHTS)
 
@@ -103,19 +109,45 @@ def _energies(config: Config) -> list[float]:
 def _balance(config: Config) -> tuple[float, float, float]:
     """Energy that an agent with a fresh policy is charged, energy that grows [energy/step], agents that it pays for."""
     need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
-    eaten = diet(config, next(iter(config.agents.values())))
-    energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
-    supply = sum(
-        food.growth_rate * mean_factor(food.schedule, "growth_rate") * energies[kind]
-        for kind, food in config.food.items()
-        if energies[kind] > 0
+    supply = _supply(config, lambda food: mean_factor(food.schedule, "growth_rate"))
+    return need, supply, _fed(config, supply)
+
+
+def _supply(config: Config, factor: Callable[[FoodConfig], float]) -> float:
+    """Energy of the food that a species eats that grows [energy/step], for a factor of each kind's growth."""
+    return sum(
+        config.food[kind].growth_rate * factor(config.food[kind]) * each for kind, each in _feeding(config).items()
     )
-    return need, supply, supply / need if need else math.inf
+
+
+def _fed(config: Config, supply: float) -> float:
+    """Agents that a supply pays for; NaN for a species that eats no food."""
+    if not _eats_food(config):
+        return math.nan
+    need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
+    return supply / need if need else math.inf
+
+
+def _eats_food(config: Config) -> bool:
+    return any(kind in config.food for kind in diet(config, _own(config)))
+
+
+def _feeding(config: Config) -> dict[str, float]:
+    """The energy that a species gains by each kind of food that feeds it."""
+    eaten = diet(config, _own(config))
+    energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
+    return {kind: energy for kind, energy in energies.items() if energy > 0}
+
+
+def _own(config: Config) -> SpeciesConfig:
+    """The species whose forecast it is: the first."""
+    return next(iter(config.agents.values()))
 
 
 def _level(config: Config, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
-    lifetime = float(expected_lifetime(config.hazard, energy))
-    r0 = float(reproduction_number(config.hazard, config.birth, energy)) if config.birth.kappa else 0.0
+    hazard = mean_hazard(config.hazard)
+    lifetime = float(expected_lifetime(hazard, energy))
+    r0 = float(reproduction_number(hazard, config.birth, energy)) if config.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
     population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
     return EnergyLevel(energy, lifetime, r0, refusal, population)
@@ -147,21 +179,94 @@ def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tu
         found.append("It cannot die: at energy 0 the chance of death is 0, and it rises with neither hunger nor age.")
     elif math.isinf(best.lifetime):
         found.append(f"It need not die: at energy {best.energy:g} the chance of death is 0 at any age.")
-    if fed < founders:
+    begun = _fed(config, _supply(config, lambda food: float(factor_at(food.schedule, "growth_rate", 0))))
+    if begun < founders:
         rest = "the others starve" if floor else "the others starve to death"
-        found.append(f"Food is short from the start: it pays for {fed:,.0f} of {founders} founders; {rest}.")
+        found.append(f"Food is short from the start: it pays for {begun:,.0f} of {founders} founders; {rest}.")
     if fed > capacity and LONG_LIFE < best.lifetime < math.inf:
         many = "any number of" if math.isinf(fed) else f"{fed:,.0f}"
         found.append(
             f"It can fill up and stand still: food pays for {many} agents, the capacity is {capacity}, and those who "
             f"eat well live {best.lifetime:,.0f} steps. Then hardly anybody is born or dies, and selection fades."
         )
-    return (*found, *_beyond(config))
+    return (*found, *_scheduled(config, best.energy), *_others(config), *_beyond(config))
+
+
+def _scheduled(config: Config, energy: float) -> Iterator[str]:
+    """What follows time: at which factor the numbers are, and what they are at the others."""
+    low, high = factor_range(config.hazard.schedule, "scale")
+    if low < high:
+        ends = [scaled_hazard(config.hazard, factor) for factor in (low, high)]
+        lives = [_steps(float(expected_lifetime(end, energy))) for end in ends]
+        r0 = [float(reproduction_number(end, config.birth, energy)) if config.birth.kappa else 0.0 for end in ends]
+        which = _which(config.hazard.schedule, "scale")
+        yield (
+            f"The chance of death follows a schedule, from {low:g} to {high:g} times what is set: lives and R0 are "
+            f"those at {which}. Held at its lowest, it would give {lives[0]} and R0 {r0[0]:.2f} at energy {energy:g}; "
+            f"at its highest {lives[1]} and R0 {r0[1]:.2f}. What a life meets depends on when it begins."
+        )
+    grown = {kind: config.food[kind] for kind in _feeding(config)}
+    bounds = {kind: factor_range(food.schedule, "growth_rate") for kind, food in grown.items()}
+    if any(low < high for low, high in bounds.values()):
+        parts = [
+            f"{kind} from {low:g} to {high:g} times what is set (here {_which(grown[kind].schedule, 'growth_rate')})"
+            for kind, (low, high) in bounds.items()
+            if low < high
+        ]
+        least, most = (_fed(config, _supply(config, partial(_extreme, which=which))) for which in (0, 1))
+        yield f"Growth follows a schedule, {', '.join(parts)}: food pays for {least:,.0f} to {most:,.0f} agents."
+    for kind, food in grown.items():
+        low, high = factor_range(food.schedule, "capacity")
+        if low < high:
+            yield (
+                f"The capacity of {kind} follows a schedule, from {low:g} to {high:g} times what is set: how much "
+                "of what grows it cuts off depends on what is eaten, and is not forecast."
+            )
+
+
+def _extreme(food: FoodConfig, which: int) -> float:
+    """The smallest (0) or the largest (1) factor of a kind's growth."""
+    return factor_range(food.schedule, "growth_rate")[which]
+
+
+def _which(schedules: Mapping[str, ScheduleConfig], name: str) -> str:
+    """Which factor of a schedule the numbers are at."""
+    mean = mean_factor(schedules, name)
+    return f"the mean over a period, {mean:g}" if schedules[name].period else f"its end, {mean:g}, which stays"
+
+
+def _steps(lifetime: float) -> str:
+    return "an endless life" if math.isinf(lifetime) else f"a mean life of {lifetime:,.0f} steps"
+
+
+def _others(config: Config) -> Iterator[str]:
+    """What a species has to do with agents that it eats, that eat it, and that eat and live beside it."""
+    own, name = _own(config), next(iter(config.agents))
+    eaten = diet(config, own)
+    prey = [each for each in config.species if each in eaten]
+    if prey:
+        only = "" if _eats_food(config) else "no food, but "
+        what = f"{only}{' and '.join(prey)}"
+        yield f"It eats {what}: how many it catches depends on what agents learn, and is not forecast."
+    elif not _eats_food(config):
+        yield "It eats nothing: nobody gains energy."
+    eaters = [other for other, each in config.species.items() if name in diet(config, each)]
+    if eaters:
+        yield f"It is eaten by {' and '.join(eaters)}: lives here are without such deaths."
+    beside = [
+        other
+        for other, each in config.species.items()
+        if other != name and set(_feeding(config)) & set(diet(config, each))
+    ]
+    if beside:
+        yield f"Its food is also eaten by {' and '.join(beside)}: what it pays for is shared with them."
+    if len(config.species) > 1:
+        yield "Places that agents of other species take are not counted: there is less room than this."
 
 
 def _beyond(config: Config) -> Iterator[str]:
     """What enters births and deaths, but not this forecast."""
-    species = next(iter(config.agents.values()))
+    species = _own(config)
     inner = inner_states(config, species)
     if config.obstacle.count and config.obstacle.damage:
         yield (

@@ -1,13 +1,13 @@
 """Factors that follow time, as the engine computes them in `world/schedule.h`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hedon.config.life import HazardConfig
 from hedon.config.schedule import ScheduleConfig
-
-_SAMPLES = 10_000
 
 
 def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLike) -> NDArray[np.float64]:
@@ -26,9 +26,29 @@ def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLik
 
 
 def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
-    """The mean factor of a setting over a period, or over the steps between its points if it has none."""
+    """The mean factor of a setting over the steps of a period, exactly; without a period the last one, which stays."""
     schedule = schedules.get(name)
     if schedule is None or not schedule.points:
         return 1.0
-    start, end = (0, schedule.period) if schedule.period else (schedule.points[0][0], schedule.points[-1][0])
-    return float(factor_at(schedules, name, np.linspace(start, end, _SAMPLES, endpoint=False)).mean())
+    if not schedule.period:
+        return schedule.points[-1][1]
+    edges = sorted({0, schedule.period, *(step for step, _ in schedule.points)})
+    first, last = factor_at(schedules, name, edges[:-1]), factor_at(schedules, name, np.array(edges[1:]) - 1)
+    return float(np.diff(edges) @ (first + last) / 2 / schedule.period)  # in a piece factors are an arithmetic series
+
+
+def factor_range(schedules: Mapping[str, ScheduleConfig], name: str) -> tuple[float, float]:
+    """The smallest and the largest factor that a setting ever has."""
+    schedule = schedules.get(name)
+    factors = [factor for _, factor in schedule.points] if schedule is not None else []
+    return min(factors, default=1.0), max(factors, default=1.0)
+
+
+def mean_hazard(hazard: HazardConfig) -> HazardConfig:
+    """A hazard whose chances are those of its schedule's mean factor."""
+    return scaled_hazard(hazard, mean_factor(hazard.schedule, "scale"))
+
+
+def scaled_hazard(hazard: HazardConfig, factor: float) -> HazardConfig:
+    """A hazard with all chances times a factor, and without a schedule."""
+    return replace(hazard, kappa=factor * hazard.kappa, alpha_age=factor * hazard.alpha_age, schedule={})

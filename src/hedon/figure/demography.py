@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from hedon.analysis.world.population import run_tail
 from hedon.config import Config
 from hedon.demography.life import expected_lifetime, reproduction_number
+from hedon.demography.schedule import mean_hazard
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 
 _LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
@@ -29,7 +30,7 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
         populations: tables `population` of the worlds; none where there was no run.
     """
     energy = _energies(config)
-    lifetime = expected_lifetime(config.hazard, energy)
+    lifetime = expected_lifetime(mean_hazard(config.hazard), energy)
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
@@ -61,7 +62,7 @@ def draw_reproduction(axes: Axes, config: Config) -> Line2D:
         The line R0 = 1, with its label, for the legend.
     """
     energy = _energies(config)
-    r0 = reproduction_number(config.hazard, config.birth, energy)
+    r0 = reproduction_number(mean_hazard(config.hazard), config.birth, energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
     one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
     axes.set_title("children tried in a life, R0")

@@ -6,8 +6,12 @@ from matplotlib.path import Path as Polygon
 
 from hedon.config import Config, load_config
 from hedon.config.arena import outline
+from hedon.config.layout import of_species
+from hedon.config.schedule import ScheduleConfig
 from hedon.demography.forecast import forecast, fresh_force, setting_warnings
+from hedon.demography.life import expected_lifetime, hazard
 from hedon.demography.placement import is_free, placement_success
+from hedon.demography.schedule import factor_at, mean_factor, scaled_hazard
 
 
 def setting(*overrides: str) -> Config:
@@ -98,3 +102,60 @@ def test_free_places_are_those_of_the_engines_rules() -> None:
     at = np.array([[240.0, 180.0], [259.9, 180.0], [260.1, 180.0], [240.0, 193.9], [240.0, 194.1]])
     assert is_free(config, at, at[:1], nothing).tolist() == [False, False, True, False, False]
     assert is_free(config, at, nothing, at[:1]).tolist() == [False, True, True, False, True]
+
+
+def test_a_hazard_that_follows_time_is_taken_at_its_mean_and_its_range() -> None:
+    """The mean over a period is exact; at each end of the range, lives are those of that factor."""
+    year = "hazard.schedule.scale={points=[[0, 0.5], [300, 2.0]], period=1000}"
+    config, plain = load_config("baseline", overrides=[year]), load_config("baseline")
+    mean = 0.3 * 0.5 + 0.7 * 2.0
+    found = forecast(config)
+    for level in found.levels:
+        scaled = scaled_hazard(plain.hazard, mean)
+        assert level.lifetime == pytest.approx(float(expected_lifetime(scaled, level.energy)), rel=1e-12)
+    text = next(each for each in found.warnings if each.startswith("The chance of death follows a schedule"))
+    assert "from 0.5 to 2 times what is set" in text
+    assert f"the mean over a period, {mean:g}" in text
+    for factor in (0.5, 2.0):
+        assert f"{float(expected_lifetime(scaled_hazard(plain.hazard, factor), 400.0)):,.0f} steps" in text
+
+
+def test_scaled_chances_are_those_of_the_hazard_times_the_factor() -> None:
+    config = load_config("baseline").hazard
+    for age, energy in ((0.0, 0.0), (50_000.0, 5.0), (900_000.0, 100.0)):
+        expected = 3.0 * float(hazard(config, age, energy))
+        assert float(hazard(scaled_hazard(config, 3.0), age, energy)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("form", ["steps", "linear"])
+@pytest.mark.parametrize("period", [0, 997])
+def test_the_mean_of_a_schedule_is_that_of_its_steps(form: str, period: int) -> None:
+    points = ((0, 0.3), (100, 1.7), (613, 0.9))
+    schedules = {"scale": ScheduleConfig(points=points, form=form, period=period)}  # pyright: ignore[reportArgumentType]
+    expected = factor_at(schedules, "scale", np.arange(period)).mean() if period else 0.9
+    assert mean_factor(schedules, "scale") == pytest.approx(expected, rel=1e-12)
+
+
+def test_growth_that_follows_time_is_told_with_its_range() -> None:
+    growth = "food.normal.schedule.growth_rate={points=[[0, 0.1], [500, 2.0]], period=1000}"
+    found = forecast(load_config("baseline", overrides=[growth]))
+    plain = forecast(load_config("baseline"))
+    assert found.supply == pytest.approx(1.05 * plain.supply)
+    text = next(each for each in found.warnings if each.startswith("Growth follows a schedule"))
+    assert f"food pays for {0.1 * plain.fed:,.0f} to {2 * plain.fed:,.0f} agents" in text
+    short = next(each for each in found.warnings if "from the start" in each)
+    assert f"pays for {0.1 * plain.fed:,.0f} of" in short, "at the start growth is at its lowest"
+
+
+def test_what_is_said_fits_what_a_species_eats() -> None:
+    config = load_config("predator")
+    said = {name: " ".join(setting_warnings(of_species(config, name))) for name in config.species}
+    assert "It eats no food, but prey" in said["predator"]
+    assert "pays for" not in said["predator"]
+    assert "It is eaten by predator" in said["prey"]
+    assert math.isnan(forecast(of_species(config, "predator")).fed)
+
+
+def test_a_fresh_force_is_that_of_the_motors() -> None:
+    stronger = load_config("baseline", overrides=["motor.force_scale=1.5"])
+    assert fresh_force(stronger) == pytest.approx(1.5 * fresh_force(load_config("baseline")))

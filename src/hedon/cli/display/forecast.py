@@ -24,9 +24,10 @@ def forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
         for level in found.levels
     ]
     fed = "no limit" if math.isinf(found.fed) else f"{found.fed:,.0f} agents"
+    food = "it eats no food" if math.isnan(found.fed) else f"{found.supply:g} grow per step: enough for {fed}"
     note = (
         f"A fresh policy pays {found.need:.2e} per step ({config.energy.basic_cost:g} for living, the rest for a mean "
-        f"force of {found.force:.1f}); {found.supply:g} grow per step: enough for {fed}. R0 counts the children tried; "
+        f"force of {found.force:.1f}); {food}. R0 counts the children tried; "
         "refusals are births without a place. Room allows as many agents as leave R0 at 1."
     )
     room = [{"agents in the arena": place.alive, "births that find a place": place.success} for place in found.room]
