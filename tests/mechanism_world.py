@@ -34,6 +34,7 @@ WORLDS = {
         'species.hunter.energy.starvation="death"',
     ),
     "species that differ in everything": (
+        "genome.neutral_count=4",
         "obstacle.count=2",
         "obstacle.min_side=10",
         "obstacle.max_side=10",

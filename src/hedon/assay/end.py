@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.analysis.gene.weight import world_weights
+from hedon.analysis.world.species import by_species
 from hedon.assay.landscape import AssayError
 from hedon.config.config import Config
 from hedon.record.founder_source import parse_point
@@ -37,7 +38,8 @@ class End:
 def read_ends(path: Path, config: Config) -> list[End]:
     """The ends of the worlds that a run's folder, its `summary.json`, or a `reproduction.json` tells of.
 
-    Of a reproduction with several conditions only the rows of the config's own condition count, if there are any.
+    Of a reproduction with several conditions only the rows of the config's own condition count, if there are any; of a
+    run with several species, the species that the config has first.
 
     Raises:
         AssayError: There are none, or the file cannot be read.
@@ -46,7 +48,12 @@ def read_ends(path: Path, config: Config) -> list[End]:
     name = brief(str(path))
     if path.is_dir():
         run = open_run(path)
-        found = world_weights(run.agents(), run.reward_names)
+        own = next(iter(config.agents))
+        mine = by_species(run.agents(), run.columns).get(own if run.columns.several else run.columns.species[0])
+        if mine is None:
+            there = ", ".join(run.columns.species)
+            raise AssayError(f"--ends {name}: the run has no species {own} (there are {there})")
+        found = world_weights(mine, [gene for gene in run.reward_names if mine[gene].is_not_null().any()])
         seeds = run.manifest.seeds
         ends = [
             End(f"{path.name}, seed {seeds[world]}", {gene: spread.mean or 0.0 for gene, spread in weights.items()})
@@ -59,16 +66,17 @@ def read_ends(path: Path, config: Config) -> list[End]:
             raise AssayError(f"--ends {name}: cannot be read: {error}") from None
         if not isinstance(content, dict):
             raise AssayError(f"--ends {name}: is no summary.json and no reproduction.json")
-        ends = _summary_ends(content, path) if "worlds" in content and "tables" not in content else []
+        ends = _summary_ends(content, path, config) if "worlds" in content and "tables" not in content else []
         ends = ends or _reproduction_ends(content, path, config)
     if not ends:
         raise AssayError(f"--ends {name}: tells of no world's mean weights")
     return ends
 
 
-def _summary_ends(content: Mapping[str, Any], path: Path) -> list[End]:
-    ends = []
-    for world in content["worlds"]:
+def _summary_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
+    ends, own = [], next(iter(config.agents))
+    for whole in content["worlds"]:
+        world = whole.get("species", {}).get(own, {}) | {"seed": whole["seed"]} if "species" in whole else whole
         weights = {gene: spread.get("mean") for gene, spread in world.get("weights", {}).items()}
         if weights and all(isinstance(mean, float) for mean in weights.values()):
             ends.append(End(f"{path.parent.name}, seed {world['seed']}", weights))

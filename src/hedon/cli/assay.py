@@ -90,7 +90,7 @@ def landscape(
     own = choose_species(species, config)
     pair = choose_genes(genes, config if own is None else of_species(config, own))
     found = [] if own else paper_ends(config)
-    found += [end for path in ends or () for end in read_ends(path, config)]
+    found += [end for path in ends or () for end in read_ends(path, config if own is None else of_species(config, own))]
     founders = spread_founders(config, parse_spread(spread, sd, config), own)
     plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
     console = make_console()

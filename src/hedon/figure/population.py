@@ -13,15 +13,15 @@ from hedon.figure.trace import draw_time_axis, draw_traces
 _POINTS = 100  # few enough that chance does not hide the course
 
 
-def draw_population(population: pl.DataFrame, food_kinds: Sequence[str], colors: Mapping[str, str]) -> Figure:
-    """Six panels: alive, births and deaths, failed births, energy, food eaten, generation.
+def draw_population(population: pl.DataFrame, meals: Sequence[str], colors: Mapping[str, str]) -> Figure:
+    """Six panels: alive, births and deaths, failed births, energy, what is eaten, generation.
 
     Args:
-        population: table `population`.
-        food_kinds: names.
-        colors: per food kind.
+        population: table `population` of one species.
+        meals: names of the kinds of food, and of the species, that it eats.
+        colors: per meal.
     """
-    rows = history(population, food_kinds, points=_POINTS)
+    rows = history(population, meals, points=_POINTS)
     with styled():
         figure = new_figure(8.6, 4.9)
         panels = figure.subplots(2, 3, sharex=True)
@@ -34,8 +34,9 @@ def draw_population(population: pl.DataFrame, food_kinds: Sequence[str], colors:
         }
         _draw(panels[0, 2], rows, "failed births per 1000 steps", failed)
         _draw(panels[1, 0], rows, "mean energy of the living", {"energy_mean": ("", INK)})
-        eaten = {f"eaten_{kind}": (kind if len(food_kinds) > 1 else "", colors[kind]) for kind in food_kinds}
-        _draw(panels[1, 1], rows, "foods eaten per 1000 steps of life", eaten)
+        eaten = {f"eaten_{meal}": (meal if len(meals) > 1 else "", colors[meal]) for meal in meals}
+        what = "foods" if all(f"food_{meal}" in population.columns for meal in meals) else "meals"
+        _draw(panels[1, 1], rows, f"{what} eaten per 1000 steps of life", eaten)
         _draw(panels[1, 2], rows, "mean generation", {"generation_mean": ("", INK)})
         for axes in panels[1]:
             draw_time_axis(axes, rows)

@@ -17,6 +17,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from hedon.config.config import Config
 from hedon.record.atomic import write_atomically
 
 INK = "#22303c"
@@ -29,6 +30,7 @@ SKY, PINK, YELLOW, VIOLET = "#56b4e9", "#cc79a7", "#f0e442", "#5e4fa2"
 ACTION_COLOR = BLUE
 NEUTRAL_COLOR = "#8d99a4"
 FOOD_COLORS = (GREEN, ORANGE, PINK, SKY, VERMILION, VIOLET, YELLOW, MUTED)
+PREY_COLORS = (VERMILION, VIOLET, SKY, PINK)
 SEED_COLORS = (BLUE, VERMILION, GREEN, ORANGE, PINK, SKY, VIOLET, MUTED, YELLOW, INK)
 
 STYLE: dict[Any, Any] = {
@@ -125,6 +127,12 @@ def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[s
     """A color per food kind: the wanted ones, where they are given, else the defaults in order."""
     given = wanted if len(wanted) == len(food_kinds) else [FOOD_COLORS[i % 8] for i in range(len(food_kinds))]
     return dict(zip(food_kinds, given, strict=True))
+
+
+def meal_colors(config: Config, prey: Sequence[str] = ()) -> dict[str, str]:
+    """A color per food kind of a config, and per species that is eaten."""
+    foods = food_colors(list(config.food), [food.color for food in config.food.values()])
+    return foods | {name: PREY_COLORS[i % len(PREY_COLORS)] for i, name in enumerate(prey)}
 
 
 def seed_color(index: int) -> str:

@@ -17,6 +17,7 @@ from hedon.figure.style import (
     MUTED,
     NEUTRAL_COLOR,
     PALE,
+    draw_message,
     head,
     new_figure,
     say_empty,
@@ -74,7 +75,10 @@ def draw_weights(
         neutral_names: the other genome columns.
         count: agents per world.
     """
-    return draw_weight_groups([WeightGroup(last_agents(agents, count), against_action(reward_names))], neutral_names)
+    panels = against_action(reward_names)
+    if not panels:
+        return draw_message("no weight but that of action")
+    return draw_weight_groups([WeightGroup(last_agents(agents, count), panels)], neutral_names)
 
 
 def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[str]) -> Figure:

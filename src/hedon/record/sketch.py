@@ -1,6 +1,7 @@
 """How a run shows itself in a notebook: a small table, and how many lived over time."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 
 import polars as pl
@@ -11,6 +12,8 @@ WIDTH, HEIGHT, EDGE = 460, 110, 16
 """Of the figure, and what its edge takes for labels [px]."""
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#6b7884")
 """Of the worlds, in turn: Okabe & Ito (2008)."""
+DASHES = ("", "6 3", "2 3", "6 3 2 3")
+"""Of the species of a world, in turn."""
 
 
 def status_line(manifest: Manifest) -> str:
@@ -23,45 +26,75 @@ def status_line(manifest: Manifest) -> str:
 
 
 def run_html(title: str, manifest: Manifest, population: pl.DataFrame) -> str:
-    """A table with a row per world, and a figure of the numbers alive.
+    """A table with a row per world and species, and a figure of the numbers alive.
 
     Args:
         title: stands above; any text, which is escaped.
         manifest: of the run.
         population: table `population`.
     """
-    head = "<tr><th>seed</th><th>steps</th><th>alive</th><th>births</th><th>deaths</th></tr>"
-    worlds = [population.filter(pl.col("seed") == seed) for seed in manifest.seeds]
-    rows = "".join(_row(seed, rows) for seed, rows in zip(manifest.seeds, worlds, strict=True))
+    several = manifest.columns.several
+    named = "<th>species</th>" if several else ""
+    head = f"<tr><th>seed</th>{named}<th>steps</th><th>alive</th><th>births</th><th>deaths</th></tr>"
+    worlds = [
+        _Course(seed, index, name if several else "", population.filter(_rows_of(seed, name, several=several)))
+        for index, seed in enumerate(manifest.seeds)
+        for name in manifest.species
+    ]
+    rows = "".join(map(_row, worlds))
     return (
         f"<div><strong>{escape(title)}</strong><br>{escape(status_line(manifest))}"
         f"<table><thead>{head}</thead><tbody>{rows}</tbody></table>{_figure(worlds)}</div>"
     )
 
 
-def _row(seed: int, rows: pl.DataFrame) -> str:
+@dataclass(frozen=True)
+class _Course:
+    """The rows of one species of a world, with what tells it apart; the name is empty where there is only one."""
+
+    seed: int
+    index: int
+    species: str
+    rows: pl.DataFrame
+
+
+def _rows_of(seed: int, species: str, *, several: bool) -> pl.Expr:
+    here = pl.col("seed") == seed
+    return here & (pl.col("species") == species) if several else here
+
+
+def _row(course: _Course) -> str:
+    rows, named = course.rows, [escape(course.species)] if course.species else []
     last = rows.filter(pl.col("step") == pl.col("step").max())
     step = last["step"][0] if last.height else 0
-    numbers = (seed, step, last["alive"].sum(), rows["births"].sum(), rows["deaths"].sum())
+    numbers = (course.seed, *named, step, last["alive"].sum(), rows["births"].sum(), rows["deaths"].sum())
     return "<tr>" + "".join(f"<td>{number}</td>" for number in numbers) + "</tr>"
 
 
-def _figure(worlds: Sequence[pl.DataFrame]) -> str:
-    """Numbers alive over time as an SVG, a line per world; empty where nothing is recorded."""
-    courses = [rows.group_by("step").agg(pl.col("alive").sum()).sort("step") for rows in worlds]
-    last = max((int(course["step"][-1]) for course in courses if course.height), default=0)
-    most = max((int(course["alive"].to_numpy().max()) for course in courses if course.height), default=0)
+def _figure(courses: Sequence[_Course]) -> str:
+    """Numbers alive over time as an SVG, a line per world and species; empty where nothing is recorded."""
+    last = max((int(each.rows["step"].to_numpy().max(initial=0)) for each in courses), default=0)
+    most = max((int(each.rows["alive"].to_numpy().max(initial=0)) for each in courses), default=0)
     if not last or not most:
         return ""
+    names = list(dict.fromkeys(each.species for each in courses))
     lines = []
-    for i, course in enumerate(courses):
-        x = EDGE + course["step"].to_numpy() / last * (WIDTH - 2 * EDGE)
-        y = HEIGHT - EDGE - course["alive"].to_numpy() / most * (HEIGHT - 2 * EDGE)
+    for each in courses:
+        rows = each.rows.sort("step")
+        x = EDGE + rows["step"].to_numpy() / last * (WIDTH - 2 * EDGE)
+        y = HEIGHT - EDGE - rows["alive"].to_numpy() / most * (HEIGHT - 2 * EDGE)
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-        lines.append(f'<polyline points="{points}" fill="none" stroke="{COLORS[i % len(COLORS)]}"/>')
+        dashes = DASHES[names.index(each.species) % len(DASHES)]
+        dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
+        title = f"<title>{escape(each.species)}, seed {each.seed}</title>" if each.species else ""
+        color = COLORS[each.index % len(COLORS)]
+        line = f'<polyline points="{points}" fill="none" stroke="{color}"{dashed}'
+        lines.append(f"{line}>{title}</polyline>" if title else f"{line}/>")
+    dashing = zip(names, ("solid", "dashed", "dotted", "dash-dotted"), strict=False)
+    legend = ", ".join(f"{escape(name)} {how}" for name, how in dashing if name)
     base = f'<line x1="{EDGE}" x2="{WIDTH - EDGE}" y1="{HEIGHT - EDGE}" y2="{HEIGHT - EDGE}" stroke="#c9d1d8"/>'
     words = (
-        f'<text x="{EDGE}" y="{EDGE - 5}">alive, up to {most:,}</text>'
+        f'<text x="{EDGE}" y="{EDGE - 5}">alive, up to {most:,}{f" ({legend})" if legend else ""}</text>'
         f'<text x="{WIDTH - EDGE}" y="{HEIGHT - 3}" text-anchor="end">step {last:,}</text>'
     )
     return (

@@ -13,7 +13,7 @@ from hedon.figure.named import NamedFigure
 from hedon.figure.population import draw_population
 from hedon.figure.regime import draw_regimes
 from hedon.figure.selection import draw_selection
-from hedon.figure.style import food_colors, weight_colors, weight_titles
+from hedon.figure.style import meal_colors, weight_colors, weight_titles
 from hedon.figure.survival import draw_survival
 from hedon.figure.weight import draw_weights
 from hedon.report import figure
@@ -28,7 +28,7 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
     """
     first = worlds[0]
     mine = {name: _of_condition(table.rows, first.condition) for name, table in tables.items()}
-    colors = food_colors(first.food_kinds, [food.color for food in first.config.food.values()])
+    colors = meal_colors(first.config, first.prey)
     titles = weight_titles(first.reward_names, first.neutral_names)
     tints = weight_colors(titles, colors)
     agents = pl.concat([world.agents.with_columns(world=_index(i)) for i, world in enumerate(worlds)])
@@ -37,10 +37,10 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
     def rows(name: str) -> pl.DataFrame:
         return mine.get(name, pl.DataFrame())
 
-    kinds, neutral = first.food_kinds, first.neutral_names
+    meals, neutral = (*first.food_kinds, *first.prey), first.neutral_names
     yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
     yield figure.HISTORY.drawn(draw_history(population, first.reward_names, neutral, colors))
-    yield figure.POPULATION.drawn(draw_population(population, kinds, colors))
+    yield figure.POPULATION.drawn(draw_population(population, meals, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))
     selected = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)

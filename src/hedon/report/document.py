@@ -12,7 +12,7 @@ from hedon.record.manifest import Manifest, Session
 from hedon.record.schema import FORMAT_VERSION, Columns, run_tables
 from hedon.record.snapshot import Snapshot
 from hedon.report.figure import FIGURES
-from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
+from hedon.report.summary_key import CAUSE_KEYS, INTERVAL_KEYS, RUN_KEYS, SEVERAL_KEYS, WORLD_KEYS, WORLD_SEVERAL_KEYS
 
 _HEAD = f"""\
 # What a run leaves behind
@@ -82,6 +82,17 @@ Written by `hedon report`. A number that does not exist (nobody died, one world)
 Means over worlds are objects with these keys:
 """
 
+_HUNTS = """\
+Each world, or each species of it, has these keys too. Where agents eat agents, the run has `prey_per_step` and
+`prey_per_agent_step` beside `food_per_step`, as means and intervals.
+"""
+
+_SPECIES = """\
+Prey and predators are not averaged with one another: each species has numbers of its own, and sums over all of them are
+called totals. These keys stand in place of those of one species; a sweep's table has them as `prey.alive_mean` and
+`total_alive_mean`.
+"""
+
 
 def records_page() -> str:
     """The page, as Markdown."""
@@ -98,6 +109,9 @@ def records_page() -> str:
     parts.append(f"## summary.json\n\n{_SUMMARY}\n{_key_table(INTERVAL_KEYS)}")
     parts.append(f"### The run\n\n{_key_table(RUN_KEYS)}")
     parts.append(f"### Each of `worlds`\n\n{_key_table(WORLD_KEYS)}")
+    parts.append(f"### Where agents starve to death, or eat agents\n\n{_HUNTS}\n{_key_table(CAUSE_KEYS)}")
+    parts.append(f"### The run, with several species\n\n{_SPECIES}\n{_new_keys(SEVERAL_KEYS, RUN_KEYS)}")
+    parts.append(f"### Each of `worlds`, with several species\n\n{_new_keys(WORLD_SEVERAL_KEYS, WORLD_KEYS)}")
     return "\n".join(parts)
 
 
@@ -138,6 +152,11 @@ def _further_columns(table: Table) -> str:
 def _key_table(keys: Mapping[str, str]) -> str:
     rows = [f"| `{key}` | {meaning} |" for key, meaning in keys.items()]
     return "\n".join(["| key | meaning |", "|---|---|", *rows]) + "\n"
+
+
+def _new_keys(keys: Mapping[str, str], others: Mapping[str, str]) -> str:
+    """A table of the keys that others do not have, or that mean something else there."""
+    return _key_table({key: meaning for key, meaning in keys.items() if others.get(key) != meaning})
 
 
 def _attributes(kind: type) -> str:

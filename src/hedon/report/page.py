@@ -113,7 +113,7 @@ def runs_context(runs: Sequence[Run]) -> dict[str, Any]:
 
 def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any]:
     """What a page says of some worlds of one setting, and of the setting."""
-    config = worlds[0].config
+    config = worlds[0].run_config
     changes: list[tuple[str, Any, Any]] = []
     if config.preset in PRESETS:
         changes = diff(load_config(config.preset, config.fidelity), config)

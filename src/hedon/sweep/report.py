@@ -45,7 +45,9 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
         figures[f"curve-{_slug(factor)}"] = draw_curves(table, factor, shown, ranged=factor in plan.ranged)
     for pair in _crossed(table, varied):
         for name, title in shown.items():
-            figures[f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name}"] = draw_map(table, pair, name, title)
+            figures[f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name.replace('.', '-')}"] = draw_map(
+                table, pair, name, title
+            )
     try:
         with one_writer(folder):
             files = [save_figure(figure, folder / f"{name}.png") for name, figure in figures.items()]
@@ -72,13 +74,21 @@ def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figure
         f"# Sweep {plan.name}",
         "",
         f"{table.height} of {asked} worlds ({len(plan.settings)} settings x {len(plan.seeds)} seeds) of "
-        f"{plan.steps:,} steps; {int(table['extinct'].sum())} died out. Intervals are of 95 %, over worlds.",
+        f"{plan.steps:,} steps; {int(table['extinct'].sum())} died out{_alone(table)}. Intervals are of 95 %, over "
+        "worlds.",
         "",
     ]
     if plan.factors and len(plan.settings) <= MOST_CELLS:
         lines += _rows(plan.factors, table, shown)
     lines += [line for name in figures for line in (f"![{name}]({name}.png)", "")]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _alone(table: pl.DataFrame) -> str:
+    """In how many worlds each of several species died out while others live on."""
+    gone = {name.removesuffix(".extinct"): table[name] for name in table.columns if name.endswith(".extinct")}
+    counts = {species: int((column & ~table["extinct"]).sum()) for species, column in gone.items()}
+    return "".join(f", {species} alone in {count}" for species, count in counts.items())
 
 
 def _rows(factors: Sequence[str], table: pl.DataFrame, shown: Mapping[str, str]) -> list[str]:

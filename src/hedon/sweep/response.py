@@ -17,9 +17,10 @@ TITLES = {
     "alive_mean": "agents alive, last tenth",
     "mean_energy": "mean energy, last tenth",
     "food_per_agent_step": "food per agent and step",
+    "prey_per_agent_step": "agents eaten per agent and step",
     "mean_lifetime": "lifetime of the dead [step]",
 }
-"""Responses that every report has, by column, and what they are called."""
+"""Responses that every report has, by column, and what they are called; where there are several species, of each."""
 BINS = 8
 """Most groups of neighboring values for which means are shown, where every world has a value of its own."""
 
@@ -50,13 +51,22 @@ def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str])
             near = nearest(name, fit)
             hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
             raise SweepError(f"--only: {name!r} is not a column of numbers of the table{hint}")
-    weights = {name: f"mean of {name.removesuffix('_mean')}" for name in fit if _is_weight(name)}
-    usual = {name: title for name, title in TITLES.items() if name in fit} | weights
+    usual = {name: title for key in TITLES for name in fit if (title := _title(name, key))}
+    usual |= {name: title for name in fit if (title := _weight_title(name))}
     return {name: usual.get(name, name) for name in asked} if asked else usual
 
 
-def _is_weight(name: str) -> bool:
-    return name.startswith("w_") and name.endswith("_mean")
+def _title(column: str, key: str) -> str:
+    """What a column of one of the `TITLES` is called, with its species if it names one; empty for other columns."""
+    species, _, name = column.rpartition(".")
+    return f"{TITLES[key]}{f': {species}' if species else ''}" if name == key else ""
+
+
+def _weight_title(column: str) -> str:
+    """The same for the mean of a weight."""
+    species, _, name = column.rpartition(".")
+    is_weight = name.startswith("w_") and name.endswith("_mean")
+    return f"mean of {name.removesuffix('_mean')}{f': {species}' if species else ''}" if is_weight else ""
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:

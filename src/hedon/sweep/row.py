@@ -7,6 +7,8 @@ from hedon.config.problem import format_value
 from hedon.sweep.plan import Batch
 
 KEYS = ("condition", "repetition", "seed")
+SPECIES = "species"
+"""The part of a summary that has the numbers of several species, by name."""
 TIMED = "steps_per_second"
 """The part of a summary that differs from one machine to another: it is not in the table."""
 
@@ -18,14 +20,18 @@ def world_rows(
 ) -> list[Row]:
     """One row per world of a batch: its keys, its settings, the digest of its end, and its part of the summary.
 
-    Nested values get names joined by "_": weights.w_action.mean is w_action_mean.
+    Nested values get names joined by "_": weights.w_action.mean is w_action_mean. Where there are several species, what
+    is of one of them begins with its name and a dot, as in prey.alive_mean, and sums over all are totals: total_alive.
     """
     varied = {name: _plain(value) for name, value in settings.items()}
     rows = []
     for i, (world, digest) in enumerate(zip(summary["worlds"], digests, strict=True)):
         keys = dict(zip(KEYS, (batch.condition, batch.first + i, world["seed"]), strict=True))
-        rest = {name: value for name, value in world.items() if name not in (TIMED, "seed")}
-        rows.append({**keys, **varied, "digest": digest, **dict(_flat(rest))})
+        rest = {name: value for name, value in world.items() if name not in (TIMED, "seed", SPECIES)}
+        row = {**keys, **varied, "digest": digest, **dict(_flat(rest))}
+        for species, part in world.get(SPECIES, {}).items():
+            row |= {f"{species}.{name}": value for name, value in _flat(part)}
+        rows.append(row)
     return rows
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import polars as pl
 
 from hedon.analysis.agent.lifetime import dead_agents
+from hedon.analysis.world.species import require_one_species
 
 
 def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None) -> float | None:
@@ -17,24 +18,29 @@ def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int 
 
     Args:
         agents: table `agents`.
-        food_kinds: kinds to count, poison too if it is named.
+        food_kinds: kinds (or species that are eaten) to count, poison too if it is named.
         last: only over those who died last.
 
     Returns:
-        None where nobody died. Lives of no step are left out.
+        None where nobody died, or no kind is named, as for who eats no food. Lives of no step are left out.
     """
+    if not food_kinds:
+        return None
     dead = dead_agents(agents, last=last).filter(pl.col("lifetime") > 0)
     values = dead.select(_eaten(food_kinds) / pl.col("lifetime")).to_series().to_numpy()
     return float(values.mean()) if len(values) else None
 
 
 def food_per_agent_step(population: pl.DataFrame, food_kinds: Sequence[str]) -> float | None:
-    """Total foods eaten / total steps lived by all agents [1/step]; None where nobody lived.
+    """Total foods eaten / total steps lived by all agents [1/step]; None where nobody lived, or no kind is named.
 
     Args:
-        population: table `population`.
+        population: table `population`, of one species.
         food_kinds: kinds to count, poison too if it is named.
     """
+    require_one_species(population)
+    if not food_kinds:
+        return None
     steps = population["agent_steps"].sum()
     return population.select(_eaten(food_kinds).sum()).item() / steps if steps else None
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import depth, genealogy, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
-from hedon.analysis.world.record import WorldRecord
+from hedon.analysis.world.record import WorldRecord, shares_noise
 from hedon.config.gene import gene_of
 
 WALKS = 500
@@ -50,10 +50,11 @@ def world_course(
 
     Returns:
         None where there is no pedigree, or one with gaps, or nobody lives at the end of the first interval, or the
-        founders come from a table, whose law the neutral genes do not know.
+        founders come from a table, whose law the neutral genes do not know, or noise is fixed by the number of a birth
+        among those of several species.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.genome.founders:
+    if tree.gaps or not tree.size or world.config.genome.founders or shares_noise(world):
         return None
     # A small excess, or rounding could cost the last time.
     times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)

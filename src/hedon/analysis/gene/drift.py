@@ -19,7 +19,7 @@ from scipy import stats
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.gene.weight import LAST_AGENTS
-from hedon.analysis.world.record import WorldRecord, generator
+from hedon.analysis.world.record import WorldRecord, generator, shares_noise
 from hedon.config.gene import gene_of
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
@@ -92,10 +92,13 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
 
     Returns:
         None at all where there is no pedigree, or one with gaps, whose walks would have no beginning; nor where the
-        founders come from a table, whose law the walks do not know, or where children have two parents.
+        founders come from a table, whose law the walks do not know, or where children have two parents, or where noise
+        is fixed by the number of a birth among those of several species.
     """
     tree = genealogy(world.agents)
     if tree.gaps or not tree.size or world.config.genome.founders or world.config.birth.mating == "pairs":
+        return []
+    if shares_noise(world):
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
     laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}

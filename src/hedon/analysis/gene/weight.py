@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import polars as pl
 
 from hedon.analysis.world.record import WorldRecord
+from hedon.analysis.world.species import require_one_species
 
 LAST_AGENTS = 5000  # whose weights the paper shows
 
@@ -29,7 +30,11 @@ def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
     Args:
         agents: table `agents`.
         count: per world; all where there are fewer.
+
+    Raises:
+        ArgumentError: the rows are of several species.
     """
+    require_one_species(agents)
     return agents.sort("world", "birth_step", "agent_id").group_by("world", maintain_order=True).tail(count)
 
 

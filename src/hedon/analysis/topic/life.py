@@ -51,7 +51,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
 
 
 def food(conditions: Conditions) -> list[ResultTable]:
-    """Food by both rules of averaging."""
+    """Food, and agents that are eaten, by both rules of averaging: of each world what its agents may eat."""
     rows = [
         labels(world)
         | {
@@ -61,7 +61,7 @@ def food(conditions: Conditions) -> list[ResultTable]:
         }
         for worlds in conditions.values()
         for world in worlds
-        for kind in world.food_kinds
+        for kind in (*world.food_kinds, *world.prey)
     ]
     worlds_table = table("food_world", "Food, world by world [1/step]", rows, shown=False)
     quantities = {"per_agent": "mean over the dead of foods / lifetime", "per_step": "all foods / all steps lived"}
@@ -119,9 +119,11 @@ def energy(conditions: Conditions) -> list[ResultTable]:
             for part, population in (("whole run", world.population), ("last tenth", run_tail(world.population))):
                 found = energy_budget(population)
                 if found is not None:
-                    rows.append(labels(world) | {"part": part} | asdict(found))
+                    flows = {name: value for name, value in asdict(found).items() if value is not None}
+                    rows.append(labels(world) | {"part": part} | flows)
     worlds_table = table("energy_world", "Energy budgets, world by world", rows, shown=False)
-    names = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared")
+    names = ["eaten", "basic", "action", "forgiven", "capped", "lost", "shared"]
+    names += [name for name in ("hunted", "damage") if name in worlds_table.rows.columns]
     quantities = {name: name for name in names} | {"forgiven_share": "share forgiven"}
     summary = over_worlds(worlds_table.rows, ("part",), quantities)
     note = (
@@ -130,6 +132,11 @@ def energy(conditions: Conditions) -> list[ResultTable]:
         "eaten, but destroyed because the agent was full. Lost: held by those who died. Shared: given by parents to "
         "their children, so that it stays in the world."
     )
+    further = {
+        "hunted": " Hunted: gained by eating agents, whose own energy is among what their species lost.",
+        "damage": " Damage: charged for touching obstacles.",
+    }
+    note += "".join(said for name, said in further.items() if name in quantities)
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
     return [table("energy", title, summary, note), worlds_table]
 

@@ -10,6 +10,8 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from hedon.analysis.world.species import require_one_species
+
 _SIGNS = {
     "eaten": 1.0,
     "hunted": 1.0,
@@ -84,7 +86,11 @@ def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) ->
 
     Returns:
         NaN for the first interval where the energy held before it is not known.
+
+    Raises:
+        ArgumentError: the rows are of several species.
     """
+    require_one_species(population)
     initial = None if agents is None else _initial(population, agents)
     total = population["energy_total"].to_numpy()
     flow = sum(_SIGNS[name.removeprefix("energy_")] * population[name].to_numpy() for name in flow_names(population))

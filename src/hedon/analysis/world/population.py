@@ -1,8 +1,14 @@
-"""How does a world fare: who lives, is born, dies, finds no place for a child, and is it hungry?"""
+"""How does a world fare: who lives, is born, dies, finds no place for a child, and is it hungry?
+
+Where there are several species, each has rows of its own: every function here takes those of one species, and refuses
+others with an `ArgumentError`.
+"""
 
 from collections.abc import Sequence
 
 import polars as pl
+
+from hedon.analysis.world.species import require_one_species
 
 TAIL = 0.1  # share of a run, at its end, over which its state is averaged
 
@@ -35,6 +41,7 @@ def history(
         births_failed_space per 1000 steps; eaten_<kind> per 1000 steps lived. What has no value, since
         nobody lived, is null.
     """
+    require_one_species(population)
     groups = population.group_by("world", _bin(population, points, end))
     means = ("alive", "energy_mean", "generation_mean", *(f"{name}_mean" for name in weight_names))
     eaten = [f"eaten_{kind}" for kind in food_kinds]
@@ -63,6 +70,7 @@ def run_tail(population: pl.DataFrame) -> pl.DataFrame:
 
 def mean_alive(population: pl.DataFrame) -> float | None:
     """Agents alive, averaged over the steps of the given intervals of one world; None without intervals."""
+    require_one_species(population)
     steps = int(population["steps"].sum())
     return int(population["agent_steps"].sum()) / steps if steps else None
 
@@ -73,33 +81,44 @@ def mean_energy(population: pl.DataFrame) -> float | None:
     Returns:
         None where nobody lived.
     """
+    require_one_species(population)
     alive = int(population["alive"].sum())
     return float((population["energy_mean"] * population["alive"]).sum()) / alive if alive else None
 
 
 def last_generation(population: pl.DataFrame) -> float | None:
     """Mean generation of the living at the end, or when somebody lived last; None if that is not recorded."""
+    require_one_species(population)
     known = population["generation_mean"].drop_nulls()
     return float(known[-1]) if len(known) else None
 
 
 def extinct_step(population: pl.DataFrame) -> int | None:
-    """End of the first interval at whose end nobody lived [step]; None while somebody lives."""
-    empty = population.filter(pl.col("alive") == 0)
-    return None if empty.is_empty() else int(empty["step"][0])
+    """End of the last interval in which somebody lived [step]; None while somebody lives.
+
+    Where nobody ever lived, as in a species without founders, the step at which the rows begin.
+    """
+    require_one_species(population)
+    if population.is_empty() or population["alive"][-1]:
+        return None
+    lived = population.filter(pl.col("agent_steps") > 0)
+    return int(population["step"][0] - population["steps"][0]) if lived.is_empty() else int(lived["step"][-1])
 
 
 def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
-    """How often the agents of a species that may be eaten die, and of what, in at most `points` intervals.
+    """How often the agents of a species die, and of what, in at most `points` intervals.
 
     Args:
-        population: table `population` of one species, of worlds with several.
+        population: table `population` of one species, of worlds where agents starve to death or eat agents.
         points: rows per world at most.
 
     Returns:
         By world and bin: step (its end [step]); age_energy, starved and eaten, deaths per 10,000 steps lived, null
         where nobody lived.
     """
+    require_one_species(population)
+    if "deaths_eaten" not in population.columns:  # nobody eats agents there
+        population = population.with_columns(deaths_eaten=pl.lit(0, pl.Int32))
     counted = ("deaths", "deaths_starved", "deaths_eaten", "agent_steps")
     rows = population.group_by("world", _bin(population, points)).agg(
         pl.col("step").max(), pl.col(counted).cast(pl.Int64).sum()

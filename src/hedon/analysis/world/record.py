@@ -8,8 +8,9 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.world.population import extinct_step
+from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config import Config, load_config
-from hedon.config.layout import layouts, of_species
+from hedon.config.layout import of_species
 from hedon.config.species import ONLY
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
@@ -30,12 +31,15 @@ class WorldRecord:
         run: name of the run's folder.
         seed: of the world.
         config: the resolved config; where there are several species, its sections are those of this one.
-        food_kinds, reward_names, neutral_names: of the tables' columns, in their order.
+        food_kinds, reward_names, neutral_names: of the tables' columns, in their order; where there are several
+            species, those that this one eats, and has.
         agents: its rows of the table `agents`, by agent_id.
         population: its rows of the table `population`, by step.
         last_step: up to which the records reach [step].
         extinct_step: at which nobody was left [step]; None while somebody lives.
         apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
+        prey: the species that it eats, its own among them if it does.
+        whole: the config of the run, with all species; None for that of a single one.
     """
 
     condition: str
@@ -50,6 +54,13 @@ class WorldRecord:
     last_step: int
     extinct_step: int | None
     apart_step: int | None = None
+    prey: tuple[str, ...] = ()
+    whole: Config | None = None
+
+    @property
+    def run_config(self) -> Config:
+        """The config of the run, as it stands in its folder."""
+        return self.config if self.whole is None else self.whole
 
     @property
     def species(self) -> str:
@@ -96,6 +107,11 @@ class WorldRecord:
         )
 
 
+def all_eaten(kind: str) -> str:
+    """The column of a record's `population` that has what all species of its world ate of a kind of food."""
+    return f"all_eaten_{kind}"
+
+
 Conditions = Mapping[str, Sequence[WorldRecord]]
 """Worlds by condition, at least one of each."""
 
@@ -139,6 +155,11 @@ def generator(world: WorldRecord) -> np.random.Generator:
     return np.random.default_rng([SEED, world.seed])
 
 
+def shares_noise(world: WorldRecord) -> bool:
+    """Whether its mutations depend on the births of other species, which its record does not have: frozen noise."""
+    return world.whole is not None and world.config.genome.mutation_noise == "frozen"
+
+
 def _by(end: int, step: int | None) -> int | None:
     return None if step is None or step > end else step
 
@@ -146,32 +167,29 @@ def _by(end: int, step: int | None) -> int | None:
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
     config = load_config(str(run.path / CONFIG))
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
+    own = kinds(run.columns, config)
     if not run.columns.several:
-        return _records(run, condition, config, agents, population, run.reward_names)
+        return _records(run, condition, config, agents, population, *own.values())
+    grazed = [pl.col(f"eaten_{kind}").sum().over("world", "step").alias(all_eaten(kind)) for kind in run.food_kinds]
+    agents_of, rows_of = by_species(agents, run.columns), by_species(population.with_columns(grazed), run.columns)
     worlds = []
-    for name, layout in layouts(config).items():
-        own = pl.col("species") == name
-        absent = [gene for gene in run.weight_names if gene not in layout.gene_names]
+    for name, kind in own.items():
+        absent = [gene for gene in run.weight_names if gene not in kind.genes]
         dropped = [*absent, *(f"{gene}_{what}" for gene in absent for what in ("mean", "sd"))]
-        rewards = tuple(gene for gene in run.reward_names if gene in layout.gene_names)
-        mine, rows = (table.filter(own).drop(dropped, strict=False) for table in (agents, population))
-        worlds += _records(run, f"{condition}: {name}", of_species(config, name), mine, rows, rewards)
+        mine, rows = (table[name].drop(dropped, strict=False) for table in (agents_of, rows_of))
+        found = _records(run, f"{condition}: {name}", of_species(config, name), mine, rows, kind)
+        worlds += [replace(world, whole=config) for world in found]
     return [replace(world, apart_step=_apart(world, worlds)) for world in worlds]
 
 
 def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
     """When the first of the other species of a world was gone [step]."""
     others = [each for each in every if each.seed == world.seed and each is not world]
-    return min((gone for each in others if (gone := extinct_step(each.population)) is not None), default=None)
+    return min((each.extinct_step for each in others if each.extinct_step is not None), default=None)
 
 
 def _records(
-    run: Run,
-    condition: str,
-    config: Config,
-    agents: pl.DataFrame,
-    population: pl.DataFrame,
-    reward_names: tuple[str, ...],
+    run: Run, condition: str, config: Config, agents: pl.DataFrame, population: pl.DataFrame, kind: Kind
 ) -> list[WorldRecord]:
     worlds = []
     for index, seed in enumerate(run.manifest.seeds):
@@ -179,24 +197,42 @@ def _records(
         rows = population.filter(pl.col("world") == index)
         ends = [rows["step"].max(), mine["birth_step"].max(), mine["death_step"].max()]
         last = max((int(end) for end in ends if isinstance(end, int)), default=0)
-        known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
-        extinct = extinct_step(rows) if known is None else known
         worlds.append(
             WorldRecord(
                 condition,
                 run.path.name,
                 seed,
                 config,
-                run.food_kinds,
-                reward_names,
-                run.neutral_names,
+                kind.foods,
+                kind.rewards,
+                kind.neutral,
                 mine,
                 rows,
                 last,
-                extinct,
+                gone_step(run, index, mine, rows),
+                prey=kind.prey,
             )
         )
     return worlds
+
+
+def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame) -> int | None:
+    """At which step nobody was left of one species of a world [step]; None while somebody lives.
+
+    Args:
+        run: whose world it is.
+        index: of the world.
+        agents: rows of the species in that world.
+        population: likewise.
+    """
+    known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
+    if not run.columns.several:  # the world's end is that of its species
+        return extinct_step(population) if known is None else known
+    gone = extinct_step(population)
+    died = agents["death_step"]
+    if gone is None or not len(died) or died.null_count():
+        return gone
+    return int(died.to_numpy().max())  # within the interval that the rows tell of
 
 
 def _label(run: Run, taken: set[str]) -> str:

@@ -5,9 +5,12 @@ some hundred births:
 
 - *hunger*: share of what was charged that could not be paid, since energy cannot fall below 0.
 - *refusal*: share of the births tried that found no place or no slot.
-- *uptake*: energy eaten over energy that grew.
+- *uptake*: energy eaten over energy that grew, of the foods that the species eats, by all species that eat them. A
+  species that eats no food has none.
 - *turnover*: deaths and births per agent and step, over the chance of death of a starving newborn.
 - *crowding*: agents alive over the capacity.
+
+Where there are several species, each has a regime of its own.
 
 The rules, tried in this order, and why:
 
@@ -34,7 +37,10 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.world.population import whole_window
+from hedon.analysis.world.record import all_eaten
+from hedon.analysis.world.species import require_one_species
 from hedon.config import Config
+from hedon.config.layout import diet
 from hedon.demography.life import hazard
 from hedon.demography.schedule import factor_at
 
@@ -86,6 +92,7 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
             one shorter than a window belongs to the one before, unless the world dies out in it: it is too short for
             rates.
     """
+    require_one_species(population)
     if population.is_empty():
         return []
     edges = np.linspace(0, population.height, min(intervals, population.height) + 1).astype(int).tolist()
@@ -96,20 +103,24 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
 
 
 def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
-    """The regime over some rows of the table `population` of one world that follow one another."""
+    """The regime over some rows of the table `population` of one species of a world that follow one another."""
+    require_one_species(rows)
     sums = {name: float(rows[name].sum()) for name in _SUMMED}
     steps, lived = int(rows["steps"].sum()), sums["agent_steps"]
     refused = sums["births_failed_full"] + sums["births_failed_space"]
     ends, lengths = rows["step"].to_numpy(), rows["steps"].to_numpy()
+    factors = diet(config, next(iter(config.agents.values())))
+    energies = {kind: factors.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
+    feeding = {kind: config.food[kind] for kind, energy in energies.items() if energy > 0}
     grown = sum(
-        food.growth_rate * food.energy * float(factor_at(food.schedule, "growth_rate", ends) @ lengths)
-        for food in config.food.values()
-        if food.energy > 0
+        energies[kind] * food.growth_rate * float(factor_at(food.schedule, "growth_rate", ends) @ lengths)
+        for kind, food in feeding.items()
     )
-    kinds = [kind for kind, food in config.food.items() if food.energy > 0]
-    eaten = sum(config.food[kind].energy * float(rows[f"eaten_{kind}"].sum()) for kind in kinds)
-    starving = float(hazard(config.hazard, 0.0, 0.0))
-    hunger = _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"])
+    eaten = sum(energies[kind] * _eaten(rows, kind) for kind in feeding)
+    scale = float(factor_at(config.hazard.schedule, "scale", ends) @ lengths) / steps
+    starving = scale * float(hazard(config.hazard, 0.0, 0.0))
+    damage = float(rows["energy_damage"].sum()) if "energy_damage" in rows.columns else 0.0
+    hunger = _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"] + damage)
     refusal = _ratio(refused, refused + sums["births"])
     uptake = _ratio(eaten, grown)
     turnover = _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving)
@@ -117,6 +128,12 @@ def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
     alive = int(rows["alive"][-1])
     name = _name(alive, hunger, refusal, uptake, turnover, crowding)
     return Regime(int(rows["step"][-1]), steps, name, hunger, refusal, uptake, turnover, crowding)
+
+
+def _eaten(rows: pl.DataFrame, kind: str) -> float:
+    """What was eaten of a kind of food, by all species where that is known."""
+    name = all_eaten(kind) if all_eaten(kind) in rows.columns else f"eaten_{kind}"
+    return float(rows[name].sum())
 
 
 _SUMMED = (

@@ -1,6 +1,7 @@
 """A run's summary for the terminal: our figures beside the paper's, then world by world."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Group
@@ -17,6 +18,8 @@ _QUANTITIES = {  # key of the summary: name, key among the paper's figures
     "food_per_step": ("food per step, mean over agents [1/step]", "food_per_step"),
     "food_per_agent_step": ("food per step lived [1/step]", ""),
     "alive": ("agents alive", "population"),
+    "prey_per_step": ("agents eaten per step, mean over agents [1/step]", ""),
+    "prey_per_agent_step": ("agents eaten per step lived [1/step]", ""),
     "mean_energy": ("mean energy", ""),
     "generation": ("mean generation", "generation"),
 }
@@ -29,13 +32,14 @@ _WORLD_COLUMNS = {  # key of a world: header
     "deaths": "deaths",
     "mean_lifetime": "life",
     "food_per_step": "food",
+    "prey_per_step": "prey",
     "mean_energy": "energy",
     "generation": "gen.",
 }
 
 
 def summary_table(summary: Mapping[str, Any]) -> Group:
-    """What `hedon run` and `hedon report` print at the end.
+    """What `hedon run` and `hedon report` print at the end: where there are several species, of each.
 
     Args:
         summary: of `summary.summarize`, or as read from `summary.json`.
@@ -44,32 +48,64 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
     if summary["extinct_worlds"]:
         count = summary["extinct_worlds"]
         notes.append(f"{count} of {len(summary['worlds'])} worlds died out; they count in the means above.")
-    if any(world["alive"] for world in summary["worlds"]):
+    parts = [_Part(*each) for each in _parts(summary)]
+    for part in parts:
+        gone = sum(fare["extinct"] for fare in part.fares) - summary["extinct_worlds"]
+        if part.species and gone:
+            rest = "; these worlds count in its means" if gone < len(part.fares) else ""
+            notes.append(f"The species {part.species} died out in {gone} of {len(part.fares)} worlds{rest}.")
+    if any(fare["alive"] for part in parts for fare in part.fares):
         notes.append("Agents that still live have no lifetime yet: where lives are long, the mean is too small.")
     if summary["damaged_parts"]:
         notes.append(f"Damaged files, left out: {', '.join(summary['damaged_parts'])}")
+    shown = [_over_worlds(summary, part) for part in parts]
     return Group(
-        *_over_worlds(summary),
-        _world_by_world(summary),
-        _weights(summary),
+        *(table for tables in shown for table in tables),
+        _world_by_world(summary, parts),
+        *(_weights(summary, part) for part in parts),
         *(Text(note, style="dim") for note in notes),
     )
 
 
-def _over_worlds(summary: Mapping[str, Any]) -> list[PrintedTable | Text]:
+@dataclass(frozen=True)
+class _Part:
+    """One species of a summary: its name, empty where there is only one, its means, and how it fares in each world."""
+
+    species: str
+    means: Mapping[str, Any]
+    fares: Sequence[Mapping[str, Any]]
+
+    @property
+    def shown(self) -> list[str]:
+        """The weights, and of the neutral markers the first."""
+        neutral = [name for name in self.means["weights"] if name.startswith("neutral_")]
+        return [name for name in self.means["weights"] if name not in neutral[1:]]
+
+
+def _parts(summary: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any], Sequence[Mapping[str, Any]]]]:
+    """The species of a summary, for `_Part`."""
+    if "species" not in summary:
+        yield "", summary, summary["worlds"]
+    for name, means in summary.get("species", {}).items():
+        yield name, means, [world["species"][name] for world in summary["worlds"]]
+
+
+def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable | Text]:
     count, paper = len(summary["worlds"]), summary["paper"]
     headers = ["mean over worlds", "value", "95 % interval"]
     if paper is not None:
         headers.append(f"paper ({STEPS / 1e6:g}e6 steps)")
     rows = []
     for key, (label, source) in _QUANTITIES.items():
-        reported = [] if paper is None else [_reported(paper.get(source))]
-        rows.append([label, *_interval(summary[key]), *reported])
-    rows += [[f"weight {weight}", *_interval(summary["weights"][weight])] for weight in _shown(summary)]
+        if key in part.means and (not part.species or part.means[key]["mean"] is not None):
+            reported = [] if paper is None else [_reported(paper.get(source))]
+            rows.append([label, *_interval(part.means[key]), *reported])
+    rows += [[f"weight {weight}", *_interval(part.means["weights"][weight])] for weight in part.shown]
     if count < SHOWN_FROM:
         for line in (headers, *rows):
             del line[2]
-    title = f"{_name(summary)}: {count} world{'s' if count > 1 else ''}"
+    of = f", {part.species}" if part.species else ""
+    title = f"{_name(summary)}{of}: {count} world{'s' if count > 1 else ''}"
     claim = [Text(f"The paper: {paper['claim']}.", style="dim italic")] if paper is not None and paper["claim"] else []
     return [PrintedTable(headers, rows, title=title), *claim]
 
@@ -82,31 +118,36 @@ def _name(summary: Mapping[str, Any]) -> str:
     return f"{name} ({', '.join(remarks)})" if remarks else name
 
 
-def _world_by_world(summary: Mapping[str, Any]) -> PrintedTable:
-    keys = list(_WORLD_COLUMNS)[1:]
-    rows = [[str(world["seed"]), *(format_number(world[key]) for key in keys)] for world in summary["worlds"]]
-    return PrintedTable(tuple(_WORLD_COLUMNS.values()), rows, title="world by world", dim=_extinct(summary))
+def _world_by_world(summary: Mapping[str, Any], parts: Sequence[_Part]) -> PrintedTable:
+    """A row per world; where there are several species one for each, below one of the totals."""
+    several = bool(parts[0].species)
+    known = {key for part in parts for fare in part.fares for key in (*fare, "steps", "steps_per_second")}
+    keys = [key for key in list(_WORLD_COLUMNS)[1:] if key in known]
+    headers = [_WORLD_COLUMNS["seed"], *(["species"] if several else []), *(_WORLD_COLUMNS[key] for key in keys)]
+    rows, dim = [], []
+    for i, world in enumerate(summary["worlds"]):
+        lines = {"total": world | world["total"]} if several else {}
+        lines |= (
+            {part.species: {**part.fares[i], "steps": world["steps"]} for part in parts} if several else {"": world}
+        )
+        for name, line in lines.items():
+            if line.get("extinct", world["extinct"]):
+                dim.append(len(rows))
+            cells = [format_number(line[key]) if key in line else "" for key in keys]
+            rows.append([str(world["seed"]), *([name] if several else []), *cells])
+    return PrintedTable(headers, rows, title="world by world", dim=dim)
 
 
-def _weights(summary: Mapping[str, Any]) -> PrintedTable:
-    names = _shown(summary)
+def _weights(summary: Mapping[str, Any], part: _Part) -> PrintedTable:
     rows = []
-    for world in summary["worlds"]:
-        spreads = [world["weights"][name] for name in names]
+    for world, fare in zip(summary["worlds"], part.fares, strict=True):
+        spreads = [fare["weights"][name] for name in part.shown]
         cells = [f"{_weight(spread['mean'])} ± {_weight(spread['sd'])}" for spread in spreads]
         rows.append([str(world["seed"]), *cells])
-    title = f"weights of the agents born last (at most {LAST_AGENTS}), mean ± sd"
-    return PrintedTable(("seed", *names), rows, title=title, dim=_extinct(summary))
-
-
-def _shown(summary: Mapping[str, Any]) -> list[str]:
-    """The weights, and of the neutral markers the first."""
-    neutral = [name for name in summary["weights"] if name.startswith("neutral_")]
-    return [name for name in summary["weights"] if name not in neutral[1:]]
-
-
-def _extinct(summary: Mapping[str, Any]) -> list[int]:
-    return [i for i, world in enumerate(summary["worlds"]) if world["extinct"]]
+    of = f"{part.species}: " if part.species else ""
+    title = f"{of}weights of the agents born last (at most {LAST_AGENTS}), mean ± sd"
+    dim = [i for i, fare in enumerate(part.fares) if fare["extinct"]]
+    return PrintedTable(("seed", *part.shown), rows, title=title, dim=dim)
 
 
 def _weight(value: float | None) -> str:

@@ -5,7 +5,7 @@ from functools import partial
 
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.named import NamedFigure
-from hedon.figure.style import draw_message, food_colors
+from hedon.figure.style import draw_message, meal_colors
 from hedon.replication.item.census import describe, missing, present, sentences, stack, world_indices
 from hedon.replication.item.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 from hedon.replication.item.item import Arm, Item, Material
@@ -34,7 +34,7 @@ def draw_courses(name: str, question: str, arms: Sequence[Arm], material: Materi
         for label, group in worlds.items()
     ]
     first = next(iter(worlds.values()))[0]
-    colors = food_colors(first.food_kinds, [food.color for food in first.config.food.values()])
+    colors = meal_colors(first.config, first.prey)
     yield NamedFigure(name, question, draw_histories(rows, first.reward_names, first.neutral_names, colors), caption)
 
 

@@ -1,0 +1,83 @@
+"""The door to tables of worlds with several species: whoever sums or averages rows takes those of one species.
+
+Rows of prey and predators look alike, so their means would be numbers of nobody. Functions that read a table ask here
+that it is of one species.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import polars as pl
+
+from hedon.config.config import Config
+from hedon.config.layout import diet, layouts
+from hedon.error import ArgumentError
+from hedon.record.schema import Columns
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What the columns of a table mean for one species.
+
+    Attributes:
+        foods: the kinds of food that it may eat.
+        prey: the species that it may eat, its own among them if it does.
+        rewards, neutral: its genes: those that have an effect, and the neutral markers.
+    """
+
+    foods: tuple[str, ...]
+    prey: tuple[str, ...]
+    rewards: tuple[str, ...]
+    neutral: tuple[str, ...]
+
+    @property
+    def genes(self) -> tuple[str, ...]:
+        """All its genes, in order."""
+        return (*self.rewards, *self.neutral)
+
+
+def by_species(rows: pl.DataFrame, columns: Columns) -> dict[str, pl.DataFrame]:
+    """The rows of each species, by name, in the order of the config; all rows where there is one species.
+
+    Args:
+        rows: table `agents` or `population`, or a part of it.
+        columns: of the run, `run.columns`.
+    """
+    if not columns.several:
+        return {columns.species[0]: rows}
+    return {name: rows.filter(pl.col("species") == name) for name in columns.species}
+
+
+def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
+    """What each species of a run eats and inherits, by name.
+
+    Args:
+        columns: of the run. Where there is one species, all of them are its own.
+        config: of the run; needed where there are several species.
+    """
+    if not columns.several:
+        only = Kind(columns.food_kinds, columns.prey, columns.reward_names, columns.neutral_names)
+        return {columns.species[0]: only}
+    if config is None:
+        raise ArgumentError("config: is needed where there are several species")
+    found = {}
+    for name, layout in layouts(config).items():
+        eaten, own = diet(config, config.agents[name]), set(layout.gene_names)
+        found[name] = Kind(
+            foods=tuple(kind for kind in columns.food_kinds if kind in eaten),
+            prey=tuple(each for each in columns.prey if each in eaten),
+            rewards=tuple(gene for gene in columns.reward_names if gene in own),
+            neutral=tuple(gene for gene in columns.neutral_names if gene in own),
+        )
+    return found
+
+
+def require_one_species(rows: pl.DataFrame) -> None:
+    """Refuses rows of several species.
+
+    Raises:
+        ArgumentError: they are of several.
+    """
+    if "species" in rows.columns and rows["species"].n_unique() > 1:
+        names = ", ".join(rows["species"].unique(maintain_order=True))
+        raise ArgumentError(f"rows are of several species ({names}): choose one, as by_species(rows, run.columns) does")
