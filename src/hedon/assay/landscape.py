@@ -106,13 +106,13 @@ def spread_founders(config: Config, spread: Spread, species: str | None = None, 
     """
     names = gene_columns(config) if species is None else layouts(config)[species].gene_names
     rng = np.random.default_rng(_SEED)
-    limits = np.array([limit_of(config, name) for name in names])
+    prefix = "" if species is None else f"{species}."
+    limits = np.array([limit_of(config, prefix + name) for name in names])
     if spread.sd is None:
         values = rng.uniform(spread.low, spread.high, (rows, len(names)))
     else:
         values = rng.normal(0.0, spread.sd, (rows, len(names)))
     values = np.clip(values, -limits, limits)
-    prefix = "" if species is None else f"{species}."
     return make_founders([prefix + name for name in names], values, ["spread"] * rows)
 
 

@@ -88,10 +88,11 @@ def landscape(
 
     config = assay_config(load_config(source, fidelity, overrides or ()))
     own = choose_species(species, config)
-    pair = choose_genes(genes, config if own is None else of_species(config, own))
+    mine = config if own is None else of_species(config, own)
+    pair = choose_genes(genes, mine)
     found = [] if own else paper_ends(config)
-    found += [end for path in ends or () for end in read_ends(path, config if own is None else of_species(config, own))]
-    founders = spread_founders(config, parse_spread(spread, sd, config), own)
+    found += [end for path in ends or () for end in read_ends(path, mine)]
+    founders = spread_founders(config, parse_spread(spread, sd, mine), own)
     plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
     console = make_console()
     runs = make([plan], console)

@@ -138,10 +138,6 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
 
 
 def _founders(config: Config) -> Iterator[Problem]:
-    for path, _, value in leaves(config):
-        if path.endswith(".initial_mean") and abs(value) > config.genome.weight_limit:
-            rule = f"must be within ± genome.weight_limit = {config.genome.weight_limit:g}"
-            yield Problem(path, rule, format_value(value))
     digests = {
         "genome.founders": "a table of founders, which `--founders` sets",
         "learning.networks": "a file of networks, which `--networks` sets",

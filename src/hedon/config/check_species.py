@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
+from hedon.config.check_gene import law_problems
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
 from hedon.config.evolution import GenomeConfig
@@ -210,6 +211,7 @@ def _genes(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
         if gene not in names:
             rule = "there is no such gene: there are " + ", ".join(names)
             yield Problem(f"{path}genome.mutation.{gene}", rule, nearest=nearest(gene, names))
+    yield from law_problems(config, species, path)
 
 
 def _known(path: str, names: Sequence[str], known: Sequence[str]) -> Iterator[Problem]:

@@ -13,5 +13,8 @@ def gene_of(config: Config, column: str) -> Gene:
 
 
 def limit_of(config: Config, column: str) -> float:
-    """What a gene is clipped to, on both sides."""
-    return gene_of(config, column).mutation.limit
+    """What a gene is clipped to, on both sides; without a species in the column, in all that have it."""
+    species, _, name = column.rpartition(".")
+    made = layouts(config)
+    wanted = [made[species]] if species else made.values()
+    return min(gene.mutation.limit for layout in wanted for gene in layout.genes if gene.name == name)

@@ -1,9 +1,15 @@
+import numpy as np
 import pytest
 
+from hedon.assay.landscape import AssayError, spread_founders
+from hedon.assay.option import parse_spread
 from hedon.config import ConfigError, load_config
+from hedon.config.gene import limit_of
+from hedon.config.layout import of_species
 
 NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
 
+TWO = ["species.a.body.radius=10", "species.b.body.radius=10"]
 NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
 
 
@@ -79,6 +85,26 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
             "genome.action.initial_mean = 11.0: must be within ± genome.weight_limit = 10",
         ),
         (
+            [*TWO, "species.b.genome.weight_limit=1", "species.b.genome.action.initial_mean=5"],
+            "species.b.genome.action.initial_mean = 5.0: must be within ± species.b.genome.weight_limit = 1",
+        ),
+        (
+            [*TWO, "species.b.genome.weight_limit=1", "food.normal.gene.initial_mean=5"],
+            "food.normal.gene.initial_mean = 5.0: must be within ± species.b.genome.weight_limit = 1",
+        ),
+        (
+            [*TWO, "species.b.genome.weight_limit=1", "species.b.reward.see.a.gene.initial_mean=-5"],
+            "species.b.reward.see.a.gene.initial_mean = -5.0: must be within ± species.b.genome.weight_limit = 1",
+        ),
+        (
+            ["genome.mutation.w_action.limit=2", "genome.action.initial_mean=5"],
+            "genome.action.initial_mean = 5.0: must be within ± genome.mutation.w_action.limit = 2",
+        ),
+        (
+            ['reward.family="sinh"', "genome.action.initial_mean=9"],
+            "genome.action.initial_mean = 9.0: must be within ± 2",
+        ),
+        (
             ["food.normal.color=green"],
             'food.normal.color = "green": must be "#rrggbb" in lower-case hexadecimal digits',
         ),
@@ -138,3 +164,17 @@ def test_contradictions_are_told_together_with_what_is_wrong_by_itself():
 def test_a_body_with_no_area_is_refused_by_name():
     with pytest.raises(ConfigError, match=r"body.radius = 5e-324: is 0 in the engine"):
         load_config("baseline", overrides=["body.radius=5e-324"])
+
+
+def test_each_species_has_limits_of_its_own():
+    """What one may have is not judged by another's limit, nor by that of the config's own sections."""
+    wide = ("species.a.genome.weight_limit=50", "species.a.genome.action.initial_mean=40")
+    own = ("species.b.diet.eats=[]", "food.normal.gene.initial_mean=30")
+    config = load_config("baseline", overrides=[*TWO, *wide, *own])
+    assert config.species["b"].genome.weight_limit == 10
+    assert limit_of(config, "a.w_action") == 50
+    assert limit_of(config, "b.w_action") == limit_of(config, "w_action") == 10
+    spread = parse_spread("-40:40", None, of_species(config, "a"))
+    assert np.abs(spread_founders(config, spread, "a").values).max() > 39
+    with pytest.raises(AssayError, match=r"within -10:10"):
+        parse_spread("-40:40", None, of_species(config, "b"))
