@@ -48,8 +48,9 @@ class NutrientConfig:
 
 @dataclass(frozen=True, slots=True)
 class ToxinConfig:
-    """What some foods leave: toxin ← max(0, toxin + Σ toxin·eaten − decay). It takes σ(toxin − threshold) of the force.
+    """What some foods leave: toxin ← max(0, toxin + Σ toxin·eaten − decay). It weakens both motors.
 
+    They keep the share (1 − σ(toxin − threshold))/(1 − σ(−threshold)) of their force: all of it without toxin.
     A species has it if it eats a kind of food with `toxin` above 0. A child is born without any.
     """
 
