@@ -65,7 +65,7 @@ def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
         *each("prey", "energy.basic_cost=0.7", 'energy.starvation="death"'),
         *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
         *each("hunter", "energy.basic_cost=0.7", 'energy.starvation="death"'),
-        *each("top", 'diet.eats=[["hunter", 0.5], ["prey", 0.2]]', "energy.capacity=4"),
+        *each("top", 'diet.eats=[["hunter", 0.5], ["prey", 0.2], ["top", 0.1]]', "energy.capacity=4"),
     )
     simulation = Simulation(load_config("baseline", None, (*LIVELY, *settings)), [SEED], threads=1)
     rng, judge = np.random.default_rng(0), Judge(simulation, SEED)
