@@ -18,6 +18,7 @@ from hedon.experiment.memory import memory_needed
 from hedon.experiment.simulation import Simulation
 
 EXAMPLES = int(os.environ.get("HEDON_FUZZ", "0"))
+FUZZ = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 SMALL = (
     "population.capacity=12",
     "population.initial_count=3",
@@ -116,7 +117,7 @@ def changes(draw: st.DrawFn) -> tuple[str, list[tuple[str, Any]]]:
     return source, [(path, draw(values(setting, value))) for path, setting, value in chosen]
 
 
-@settings(max_examples=EXAMPLES or 400, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=EXAMPLES or 400, **FUZZ)
 @given(changed=changes())
 @example(changed=("one", [("nutrient.hazard_share", 1e7)]))
 @example(changed=("one", [("motor.max_force", 1e4), ("motor.force_scale", 1e3)]))
