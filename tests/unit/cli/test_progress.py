@@ -2,7 +2,9 @@
 
 import io
 
-from hedon.cli.display.run import LineDisplay
+from rich.console import Console
+
+from hedon.cli.display.run import LineDisplay, LiveDisplay
 from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
 
@@ -39,3 +41,21 @@ def test_the_speed_follows_the_last_seconds_where_windows_are_short():
     moments = [(float(i), i * WINDOW) for i in range(1, 30)] + [(29 + i / 10, (29 + i) * WINDOW) for i in range(1, 72)]
     speed = float(shown(moments)[-1].split(" steps/s")[0].split()[-1].replace(",", ""))
     assert speed > 3000
+
+
+def test_a_species_that_is_gone_has_no_energy():
+    """The world lives on: its other species has a line of its own."""
+    nan = float("nan")
+    gone = ROW | {"alive": 0, "energy_mean": nan, "generation_mean": nan, "w_normal_mean": nan, "w_action_mean": nan}
+    here = ROW | {"generation_mean": 1.5}
+    columns = Columns(("normal",), 0, species=("prey", "hunter"))
+    moment = Moment(0, WINDOW, WINDOW, 60.0, (here, gone), (None, None), WINDOW)
+    stream, file = io.StringIO(), io.StringIO()
+    LineDisplay(stream, columns, (1,)).update(moment)
+    lines = stream.getvalue().splitlines()
+    assert "seed 1 prey: 3 alive" in lines[0]
+    assert lines[1].endswith("seed 1 hunter: 0 alive, 0 births, 0 deaths")
+    console = Console(file=file, width=140)
+    console.print(LiveDisplay(console, columns, (1,))._draw(moment, None))
+    assert "nan" not in file.getvalue()
+    assert "1 hunter" in file.getvalue()

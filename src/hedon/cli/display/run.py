@@ -96,7 +96,7 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
     if extinct is not None:
         return f"extinct at step {extinct:,}"
     parts = [f"{row['alive']} alive", f"{row['births']} births", f"{row['deaths']} deaths"]
-    parts.append(f"energy {row['energy_mean']:.2f}")
+    parts += [f"energy {row['energy_mean']:.2f}"] if row["alive"] else []
     parts += [f"{name} {row[f'{name}_mean']:+.2f}" for name in weights if not math.isnan(row[f"{name}_mean"])]
     return ", ".join(parts)
 
@@ -149,7 +149,9 @@ class LiveDisplay:
             return [label, "0"]
         eaten = sum(value for name, value in row.items() if name.startswith("eaten_"))
         cells = [label, *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
-        cells += [f"{row['energy_mean']:.2f}", f"{row['generation_mean']:.1f}", f"{eaten:,}"]
+        known = row["alive"] > 0  # of several species one may be gone while the world lives
+        cells += [f"{row['energy_mean']:.2f}" if known else "", f"{row['generation_mean']:.1f}" if known else ""]
+        cells.append(f"{eaten:,}")
         means = [row[f"{name}_mean"] for name in self._weights]
         return cells + ["" if math.isnan(mean) else f"{mean:+.3f}" for mean in means]
 
