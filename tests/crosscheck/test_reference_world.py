@@ -16,7 +16,7 @@ STEPS = 48
 TOGETHER = 6
 """Mechanisms of a random world."""
 BATCH = 5
-REFUSED = 2
+REFUSED = 1
 """Of a batch, how many worlds may be refused, for founders that do not fit or schedules that end too soon."""
 
 
