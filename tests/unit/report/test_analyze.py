@@ -5,6 +5,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
+from resumed_run import small_run
 from rich.console import Console
 from synthetic_run import write_run
 
@@ -47,6 +48,14 @@ def test_numbers_are_those_of_the_statistics(analysis: Analysis) -> None:
     assert price["residual"].drop_nulls().abs().to_numpy().max() < 1e-12
     drift = analysis.tables["drift"].rows
     assert set(drift["weight"]) == {"w_normal", "w_poison", "w_action", "neutral_1"}
+
+
+def test_one_of_two_species_may_have_no_neutral_markers(tmp_path: Path) -> None:
+    two = ("species.plain.genome.neutral_count=0", "species.marked.genome.neutral_count=2")
+    small_run(tmp_path / "run", 96, seeds=(1,), overrides=two)
+    lines = analyze([open_run(tmp_path / "run")], ["genealogy"]).tables["lineage"].rows
+    names = {name.rpartition(": ")[2]: set(lines.filter(condition=name)["weight"]) for name in set(lines["condition"])}
+    assert names == {"plain": {"w_normal", "w_action"}, "marked": {"w_normal", "w_action", "neutral_1", "neutral_2"}}
 
 
 def test_the_same_records_give_the_same_answers(analysis: Analysis) -> None:
