@@ -195,7 +195,7 @@ def _check_tables(folder: _Folder) -> None:
         folder.add(check_digests(folder.path, parts))
     for name, table in run_tables(columns).items():
         wrong += folder.add(check_numbering(folder.path, name))
-        if name == "agents" and not (folder.path / LIVING).exists():
+        if name == "agents" and not (folder.path / LIVING).exists() and not _has_just_begun(folder):
             wrong += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
         parts = [pl.DataFrame(schema=table.polars_schema)]
         latest: dict[int, int] = {}
@@ -210,6 +210,12 @@ def _check_tables(folder: _Folder) -> None:
         if name != "frames":
             folder.tables[name] = pl.concat(parts)
     folder.whole = not wrong
+
+
+def _has_just_begun(folder: _Folder) -> bool:
+    """Whether a run has written nothing yet, or was killed then: the living are written before its first checkpoint."""
+    running = folder.manifest is not None and folder.manifest.status == "running"
+    return running and not checkpoint_paths(folder.path)
 
 
 def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iterator[Finding]:

@@ -262,6 +262,15 @@ def test_what_is_usable_is_told(run: Path) -> None:
     assert check_run(run).notes == ()
 
 
+def test_a_run_that_was_killed_before_its_first_checkpoint_is_not_damaged(run: Path) -> None:
+    """It has a config and a manifest; the living are written just before a checkpoint."""
+    edit_json(run / "manifest.json", status="running", ended=None, world_digests=[], records_digest=None)
+    for folder in ("agents", "population", "frames", "checkpoints"):
+        shutil.rmtree(run / folder)
+        (run / folder).mkdir()
+    assert findings(run) == ""
+
+
 def test_a_branch_and_a_killed_run_pass(run: Path, tmp_path: Path) -> None:
     branch(run, tmp_path / "branch", ["food.normal.growth_rate=0.05"], steps=700)
     assert check_run(tmp_path / "branch").findings == ()
