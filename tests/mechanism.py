@@ -165,6 +165,12 @@ class Mixture:
         file.write_text(self.text)
         return load_config(file)
 
+    @property
+    def pairs(self) -> set[tuple[str, str]]:
+        """The pairs of mechanisms that meet in it."""
+        names = {part.mechanism.name for part in self.parts}
+        return {*combinations([name for name in mechanisms() if name in names], 2)}
+
     def any(self, what: str) -> bool:
         """Whether a mechanism says this: "driven", "founders" or "networks"."""
         return any(getattr(part.mechanism, what) for part in self.parts)
@@ -199,8 +205,7 @@ def worlds(seed: int, size: int) -> Iterator[tuple[Mixture, set[tuple[str, str]]
     while True:
         missing = missing or possible_pairs()
         world = _draw_world(draw, missing, size)
-        names = sorted({part.mechanism.name for part in world.parts}, key=list(mechanisms()).index)
-        new = missing & {*combinations(names, 2)}
+        new = missing & world.pairs
         missing -= new
         yield world, new
 

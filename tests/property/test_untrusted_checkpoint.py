@@ -1,15 +1,26 @@
-"""A checkpoint may come from anywhere: what cannot be is refused, and nothing that is accepted harms the engine."""
+"""A checkpoint may come from anywhere: what cannot be is refused, and nothing that is accepted harms the engine.
+
+HEDON_SPOILED=N spoils N worlds of many mechanisms a hundred times each, instead of the few of the suite.
+"""
 
 import contextlib
+import os
+import random
+from itertools import islice
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanism import Mixture, worlds
+from mechanism_data import begin
 from worlds import QUICK, RELEASED, make_simulation
 
 from hedon.error import EngineError
 
+WORLDS = int(os.environ.get("HEDON_SPOILED", "12"))
+SPOILED = 100 if "HEDON_SPOILED" in os.environ else 20
+"""Spoiled checkpoints of one world."""
 CROWD = ("arena.width=220", "arena.height=180", "motor.min_force=20", "food.normal.initial_count=12")
 LIVELY = (
     *RELEASED,
@@ -123,6 +134,56 @@ def test_a_checkpoint_of_another_shape_says_so(saved):
     ):
         other = make_simulation(*LIVELY, "population.initial_count=20", "food.normal.initial_count=5", setting)
         refused(other, saved, array)
+
+
+def spoil(saved, draw):
+    """Some numbers of some arrays, each with random bytes, or with a value that is small or at an edge."""
+    spoiled = dict(saved)
+    names = sorted(name for name, array in saved.items() if array.size)
+    for name in draw.choices(names, k=draw.randint(1, 3)):
+        array = spoiled[name].copy()
+        at = draw.randrange(array.size)
+        number = draw.choice(EDGES)
+        with np.errstate(over="ignore", invalid="ignore"):
+            edge = np.array([number]).astype(array.dtype)[0]
+        noise = np.frombuffer(draw.randbytes(array.itemsize), array.dtype)[0]
+        array.reshape(-1)[at] = draw.choice((edge, noise))
+        spoiled[name] = array
+    return spoiled
+
+
+EDGES = (-1, 0, 1, 2, 3, 7, 63, 64, 255, 10_000, 2**31 - 1, -(2**31), 1e-30, -0.5, 1e6, 3e38)
+CALM = ("curious", "swamp", "uncrowded")
+"""Rules are compiled for each world, which takes longer than its life."""
+
+
+def mixtures(count):
+    """Worlds of many mechanisms, other ones than those of the test of combinations."""
+    for world, _ in islice(worlds(3, 18), count):
+        kept = tuple(part for part in world.parts if part.mechanism.name not in CALM)
+        yield Mixture(world.species, kept)
+
+
+@pytest.mark.parametrize("number", range(WORLDS))
+def test_spoiled_worlds_of_every_mechanism_are_refused_or_do_no_harm(number, tmp_path):
+    """What passes is lived through, past the learning of its window. A signal ends the test with its number shown."""
+    world = next(islice(mixtures(WORLDS), number, None))
+    config, draw = world.config(tmp_path), random.Random(number)
+    simulation = begin(world, config, (5,), 1)
+    target = begin(world, config, (5,), 1)
+    taken: list[bool] = []
+    for _ in range(SPOILED // 10):
+        simulation.run(draw.randrange(1, 20))
+        saved = simulation.engine.save(0)
+        for _ in range(10):
+            taken.append(False)
+            with contextlib.suppress(ValueError, EngineError):
+                target.engine.restore(0, spoil(saved, draw))
+                taken[-1] = True
+                target.run(draw.choice((3, 40)))
+            for species in range(len(config.agents)):
+                target.worlds[0].observations(species)
+    assert 0 < sum(taken) < len(taken)
 
 
 def test_random_numbers_are_refused_or_do_no_harm(saved):
