@@ -20,6 +20,7 @@ from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import resume
 from hedon.record.error import RecordError
 from hedon.record.reader import Run, open_run
+from hedon.record.schema import Columns, run_tables
 
 CUT = 150
 HUNTS = {"deaths_eaten", "energy_hunted", "energy_prey"}
@@ -96,3 +97,12 @@ def test_a_branch_keeps_its_counts_and_cannot_begin_to_starve(tmp_path: Path) ->
     assert check_run(tmp_path / "branch").findings == ()
     with pytest.raises(RecordError, match=r"a branch cannot change energy\.starvation"):
         branch(tmp_path / "run", tmp_path / "no", ['energy.starvation="floor"'], steps=STEPS)
+
+
+def test_a_manifest_that_does_not_say_has_the_columns_of_its_time() -> None:
+    """Earlier versions gave several species all columns of causes and hunts, and one species none."""
+    several = run_tables(Columns(("normal",), 1, species=("a", "b")))
+    assert {"cause"} < set(several["agents"].polars_schema)
+    assert HUNTS | {"deaths_starved"} < set(several["population"].polars_schema)
+    one = run_tables(Columns(("normal",), 1))
+    assert not (HUNTS | {"deaths_starved", "cause"}) & {name for table in one.values() for name in table.polars_schema}
