@@ -199,7 +199,7 @@ def _check_tables(folder: _Folder) -> None:
             wrong += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
         parts = [pl.DataFrame(schema=table.polars_schema)]
         latest: dict[int, int] = {}
-        for part, rows, faults in read_parts(folder.path, table):
+        for part, rows, faults in read_parts(folder.path, table, folder.manifest):
             wrong += folder.add(iter(faults))
             if rows is None:
                 continue

@@ -8,7 +8,10 @@ import polars as pl
 
 from hedon.check.finding import Finding
 from hedon.record.column import Table
+from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, part_path, part_paths
+from hedon.record.manifest import Manifest
+from hedon.record.part import load_part, value_faults
 
 
 def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
@@ -34,7 +37,9 @@ def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
         yield Finding(str(missing.relative_to(folder)), "is missing, though later parts are there")
 
 
-def read_parts(folder: Path, table: Table) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
+def read_parts(
+    folder: Path, table: Table, manifest: Manifest | None
+) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
     """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong."""
     paths = part_paths(folder, table.name)
     if table.name == "agents" and (folder / LIVING).exists():
@@ -42,16 +47,16 @@ def read_parts(folder: Path, table: Table) -> Iterator[tuple[str, pl.DataFrame |
     for path in paths:
         name = str(path.relative_to(folder))
         try:
-            rows = pl.read_parquet(path, glob=False)
-        except (pl.exceptions.PolarsError, OSError) as error:
-            yield name, None, [Finding(name, f"cannot be read: {str(error).splitlines()[0]}")]
+            rows = load_part(path)
+        except RecordError as error:
+            yield name, None, [Finding(name, f"cannot be read: {str(error).removeprefix(f'damaged part {path} ')}")]
             continue
         faults = list(_check_columns(name, rows, table))
-        if not faults:
-            faults = list(_check_numbers(name, rows, table))
-            yield name, rows, faults
-        else:
+        if faults:
             yield name, None, faults
+        else:
+            faults = [Finding(name, fault) for fault in value_faults(rows, table, manifest)]
+            yield name, rows, faults
 
 
 def _check_columns(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Finding]:
@@ -66,14 +71,3 @@ def _check_columns(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Find
     ):
         if columns:
             yield Finding(name, f"{what}: {', '.join(columns)}")
-
-
-def _check_numbers(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Finding]:
-    """Values that are missing but must not be, or that are not finite."""
-    for column in table.columns:
-        values = rows[column.name]
-        wrong = 0 if column.nullable else values.null_count()
-        if column.dtype in ("f32", "f64"):
-            wrong += int((~values.is_finite()).sum())
-        if wrong:
-            yield Finding(name, f"{wrong:,} values of {column.name} are missing or not finite")

@@ -53,6 +53,8 @@ def view(
     data: dict[str, Any] = {"page": lambda: page}
     if index is not None:
         data["run"] = index.describe
+        for name in index.damaged():
+            typer.echo(f"hedon: {name} is damaged, and left out", err=True)
     if export is not None:
         told = {name: tell() for name, tell in data.items()}
         size = write_site(export, told, index.files() if index else {})

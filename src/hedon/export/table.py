@@ -30,10 +30,9 @@ def table_of(run: Run, name: TableName) -> pl.LazyFrame:
         return run.agents().lazy()
     if name == "population":
         return run.population().lazy()
-    frames = run.frames()
-    if frames.select(pl.len()).collect().item() == 0:
+    if not sum(rows.height for rows in run.frame_parts()):  # reads every part, so that a damaged one is named
         raise ExportError(f"{run.path} has no frames: record them with `hedon run --frames 64`")
-    return frames
+    return run.frames()
 
 
 def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> None:
@@ -70,5 +69,6 @@ def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
         raise ExportError(f"{brief(str(out))} is there already: choose another file with --out, or remove it")
     try:
         write_atomically(out, write)
-    except OSError as error:
-        raise ExportError(f"cannot write {brief(str(out))}: {error.strerror or error}") from error
+    except (OSError, pl.exceptions.PolarsError) as error:
+        why = (error.strerror if isinstance(error, OSError) else None) or brief(str(error))
+        raise ExportError(f"cannot write {brief(str(out))}: {why}") from error

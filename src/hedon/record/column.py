@@ -30,6 +30,7 @@ class Column:
         unit: "1" for counts and pure numbers.
         meaning: one phrase.
         nullable: whether a value may be missing; pass −1 (integers) or NaN (floats) to the writer for such a value.
+        choices: the values that a string may have.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Column:
     unit: str
     meaning: str
     nullable: bool = False
+    choices: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ import numpy as np
 import polars as pl
 
 from hedon.record.column import Table
-from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, part_paths
+from hedon.record.part import load_part
 from hedon.record.schema import Columns, run_tables
 
 PARTS_AT_ONCE = 64
@@ -37,18 +37,11 @@ def records_digest(folder: Path, columns: Columns) -> str:
 def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
     digests = {}
     for first in range(0, len(paths), PARTS_AT_ONCE):
-        rows = pl.concat([_read(path, table) for path in paths[first : first + PARTS_AT_ONCE]])
+        rows = pl.concat([load_part(path, table) for path in paths[first : first + PARTS_AT_ONCE]])
         data, worlds = _row_bytes(rows, table), rows["world"].to_numpy()
         for world in np.unique(worlds).tolist():
             digests.setdefault(world, hashlib.sha256()).update(np.ascontiguousarray(data[worlds == world]))
     return {world: digest.hexdigest() for world, digest in digests.items()}
-
-
-def _read(path: Path, table: Table) -> pl.DataFrame:
-    try:
-        return pl.read_parquet(path, columns=[column.name for column in table.columns], glob=False)
-    except (pl.exceptions.PolarsError, OSError) as error:
-        raise RecordError(f"damaged part {path} ({error})") from error
 
 
 def _row_bytes(rows: pl.DataFrame, table: Table) -> np.ndarray:

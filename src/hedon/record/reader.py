@@ -1,8 +1,8 @@
 """Reads a run's folder, also while the run is still running."""
 
 import difflib
-from dataclasses import dataclass
-from io import BytesIO
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -14,13 +14,13 @@ from hedon.record.folder import (
     CONFIG,
     LIVING,
     MANIFEST,
-    PARTS_BEFORE,
     holds_run,
     part_paths,
     require_plain,
     require_unicode,
 )
 from hedon.record.manifest import Manifest, load_manifest
+from hedon.record.part import read_living, read_part
 from hedon.record.schema import Columns, run_tables
 from hedon.record.sketch import run_html, status_line
 from hedon.record.tool_frame import FrameName, require_frame, to_pandas
@@ -97,7 +97,7 @@ class Run:
         """
         require_frame(frame)
         living, parts = self._living(skip_damaged)
-        dead = _read(part_paths(self.path, "agents")[:parts], self._tables["agents"], skip_damaged)
+        dead = self._read("agents", part_paths(self.path, "agents")[:parts], skip_damaged)
         rows = pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
         return to_pandas(rows) if frame == "pandas" else rows
 
@@ -117,35 +117,70 @@ class Run:
             ArgumentError: `frame` is none of these, or pandas is not installed.
         """
         require_frame(frame)
-        rows = _read(part_paths(self.path, "population"), self._tables["population"], skip_damaged)
+        rows = self._read("population", part_paths(self.path, "population"), skip_damaged)
         rows = rows.sort("world", "step", maintain_order=True)
         return to_pandas(rows) if frame == "pandas" else rows
 
     def frames(self) -> pl.LazyFrame:
-        """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded."""
+        """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded.
+
+        Collecting it raises an error of Polars where a part is damaged; `frame_parts` names the part.
+        """
         table = self._tables["frames"]
         paths = part_paths(self.path, "frames")
         return pl.scan_parquet(paths, glob=False) if paths else pl.LazyFrame(schema=table.polars_schema)
 
+    def frame_parts(self, *names: str) -> Iterator[pl.DataFrame]:
+        """The frames part by part, in the order in which they were written.
+
+        Args:
+            names: only these columns; by default all.
+
+        Raises:
+            RecordError: a part is damaged.
+        """
+        table = self._tables["frames"]
+        if names:
+            table = replace(table, columns=tuple(column for column in table.columns if column.name in names))
+        for path in part_paths(self.path, "frames"):
+            yield read_part(path, table, self.manifest)
+
     def damaged_parts(self) -> list[Path]:
-        """The files of the tables agents and population that cannot be read."""
-        paths = [*part_paths(self.path, "agents"), *part_paths(self.path, "population")]
-        paths += [self.path / LIVING] if (self.path / LIVING).exists() else []
-        return [path for path in paths if _fault(path) is not None]
+        """The files of the tables agents and population that cannot be used."""
+        living = [self.path / LIVING] if (self.path / LIVING).exists() else []
+        paths = {"agents": [*part_paths(self.path, "agents"), *living]}
+        paths["population"] = part_paths(self.path, "population")
+        return [path for name, each in paths.items() for path in each if self._fault(name, path) is not None]
 
     def _living(self, skip_damaged: bool) -> tuple[pl.DataFrame, int | None]:
         """The living, and how many parts hold the deaths before that moment; None for all existing parts."""
         table, path = self._tables["agents"], self.path / LIVING
         if path.exists():
             try:
-                content = BytesIO(path.read_bytes())  # in one read, because the file can be replaced at any time
-                rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
-                parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
-                return rows, None if parts is None else int(parts)
-            except (pl.exceptions.PolarsError, OSError, ValueError) as error:
+                return read_living(path, table, self.manifest)
+            except RecordError as error:
                 if not skip_damaged:
-                    raise _damaged([f"{path} ({error})"]) from error
+                    raise _remedied([error]) from error
         return pl.DataFrame(schema=table.polars_schema), None
+
+    def _read(self, name: str, paths: list[Path], skip_damaged: bool) -> pl.DataFrame:
+        table = self._tables[name]
+        frames, faults = [pl.DataFrame(schema=table.polars_schema)], []
+        for path in paths:
+            try:
+                frames.append(read_part(path, table, self.manifest))
+            except RecordError as error:
+                faults.append(error)
+        if faults and not skip_damaged:
+            raise _remedied(faults) from faults[0]
+        return pl.concat(frames)
+
+    def _fault(self, name: str, path: Path) -> RecordError | None:
+        try:
+            read_part(path, self._tables[name], self.manifest)
+        except RecordError as error:
+            return error
+        return None
 
     @property
     def _tables(self) -> dict[str, Table]:
@@ -170,28 +205,9 @@ def open_run(path: Path | str) -> Run:
     return Run(folder, load_manifest(folder), config_text)
 
 
-def _read(paths: list[Path], table: Table, skip_damaged: bool) -> pl.DataFrame:
-    frames, faults = [pl.DataFrame(schema=table.polars_schema)], []
-    for path in paths:
-        try:
-            frames.append(pl.read_parquet(path, columns=[column.name for column in table.columns], glob=False))
-        except (pl.exceptions.PolarsError, OSError) as error:
-            faults.append(f"{path} ({error})")
-    if faults and not skip_damaged:
-        raise _damaged(faults)
-    return pl.concat(frames)
-
-
-def _damaged(faults: list[str]) -> RecordError:
-    return RecordError(f"damaged part {'; '.join(faults)}: read the others with skip_damaged=True, or remove the file")
-
-
-def _fault(path: Path) -> str | None:
-    try:
-        pl.read_parquet(path, glob=False)
-    except (pl.exceptions.PolarsError, OSError) as error:
-        return str(error)
-    return None
+def _remedied(faults: Sequence[RecordError]) -> RecordError:
+    listed = "; ".join(map(str, faults))
+    return RecordError(f"{listed}: read the others with skip_damaged=True, or remove the file")
 
 
 def _nearest(folder: Path) -> str:

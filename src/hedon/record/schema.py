@@ -103,10 +103,11 @@ def columns_of(config: Config) -> Columns:
     )
 
 
-SPECIES = Column("species", "string", "", "name of the species")
 CAUSES = ("age_energy", "starved", "eaten")
 """Why agents die, in the engine's order."""
-_CAUSE = Column("cause", "string", "", "why it died: " + ", ".join(CAUSES) + "; missing while it lives", nullable=True)
+_CAUSE = Column(
+    "cause", "string", "", "why it died: " + ", ".join(CAUSES) + "; missing while it lives", True, choices=CAUSES
+)
 _STARVING = (Column("deaths_starved", "i32", "1", "deaths by starvation in the interval"),)
 _HUNTING = (
     Column("deaths_eaten", "i32", "1", "agents of the species that were eaten in the interval"),
@@ -127,7 +128,7 @@ def agent_table(columns: Columns) -> Table:
         "one agent; living agents have no death_step",
         WORLD,
         SEED,
-        *([SPECIES] if columns.several else []),
+        *_species_columns(columns),
         Column("agent_id", "i64", "1", "unique within the world, never used again"),
         Column("parent_id", "i64", "1", "agent_id of the parent; missing for founders", nullable=True),
         *([_MATE] if columns.mating else []),
@@ -159,7 +160,7 @@ def population_table(columns: Columns) -> Table:
         else "one world over one interval of steps",
         WORLD,
         SEED,
-        *([SPECIES] if columns.several else []),
+        *_species_columns(columns),
         Column("step", "i64", "step", "end of the interval"),
         Column("steps", "i32", "step", "length of the interval"),
         Column("alive", "i32", "1", "agents alive at the end"),
@@ -205,14 +206,15 @@ def population_table(columns: Columns) -> Table:
     )
 
 
-def frame_table() -> Table:
+def frame_table(columns: Columns) -> Table:
     """One row per agent or food and frame; written only if frames were asked for."""
+    kinds = (*columns.species, *columns.food_kinds)
     return _table(
         "frames",
         "one agent or one food in one frame",
         WORLD,
         Column("step", "i64", "step", "steps completed when the frame was taken"),
-        Column("kind", "string", "", "the name of the species, or of the food kind"),
+        Column("kind", "string", "", "the name of the species, or of the food kind", choices=kinds),
         Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
         Column("x", "f32", "u", "position of the center"),
         Column("y", "f32", "u", "position of the center"),
@@ -226,9 +228,14 @@ def run_tables(columns: Columns) -> dict[str, Table]:
     tables = (
         agent_table(columns),
         population_table(columns),
-        frame_table(),
+        frame_table(columns),
     )
     return {table.name: table for table in tables}
+
+
+def _species_columns(columns: Columns) -> list[Column]:
+    name = Column("species", "string", "", "name of the species", choices=columns.species)
+    return [name] if columns.several else []
 
 
 def _gene_column(name: str, columns: Columns) -> Column:

@@ -1,6 +1,5 @@
 """The state of one world at one moment, for pictures: `final.npz`, plain arrays without pickle."""
 
-import zipfile
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ import numpy as np
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import SNAPSHOT
+from hedon.text import brief
 
 _ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, o obstacles, c corners, r rays, t types, s species)
     "agent_id": (np.int64, "n"),
@@ -121,8 +121,27 @@ def load_snapshot(folder: Path) -> Snapshot | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             values = {each.name: file[each.name] for each in fields(Snapshot) if each.name in file}
-    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise RecordError(f"damaged snapshot {path}: {error}") from error
-    scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
-    names = {name: tuple(values[name].tolist()) for name in ("food_kinds", "species_names")}
-    return Snapshot(**{**values, **scalars, **names})
+        scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
+        names = {name: tuple(values[name].tolist()) for name in ("food_kinds", "species_names") if name in values}
+        snapshot = Snapshot(**{**values, **scalars, **names})
+        _require_drawable(snapshot)
+    except Exception as error:  # a file that is not from hedon can raise any exception
+        raise RecordError(f"damaged snapshot {path}: {brief(str(error))}") from error
+    return snapshot
+
+
+def _require_drawable(snapshot: Snapshot) -> None:
+    """Refuses what no world is: numbers that are not finite, indices of nothing, names that are no text."""
+    for name in _ARRAYS:
+        if not np.isfinite(getattr(snapshot, name)).all():
+            raise ValueError(f"{name} has numbers that are not finite")
+    for name, names in (("species", snapshot.species_names), ("food_kind", snapshot.food_kinds)):
+        index = getattr(snapshot, name)
+        if not all(isinstance(each, str) for each in names) or ((index < 0) | (index >= len(names))).any():
+            raise ValueError(f"{name} does not fit the names {brief(repr(names))}")
+    wrong_rays = (snapshot.ray_count < 0) | (snapshot.ray_count > snapshot.rays.shape[1])
+    if len(snapshot.radius) != len(snapshot.species_names) or wrong_rays.any():
+        raise ValueError("the bodies of the species do not fit their names or rays")
+    for name in ("world", "seed", "step"):
+        if not isinstance(getattr(snapshot, name), int):
+            raise TypeError(f"{name} is no integer")

@@ -10,7 +10,6 @@ import polars as pl
 from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.load import parse_config
-from hedon.record.folder import part_paths
 from hedon.record.reader import Run, open_run
 from hedon.record.snapshot import Snapshot
 from hedon.video.error import VideoError
@@ -43,7 +42,7 @@ class Footage:
         Frames are read part by part, so a long run needs no more memory than a short one.
 
         Raises:
-            VideoError: a frame is damaged.
+            RecordError: a frame is damaged.
         """
         recorded = self._recorded(first - self.run.manifest.frames, last + self.run.manifest.frames)
         before, after = next(recorded, None), next(recorded, None)
@@ -60,28 +59,22 @@ class Footage:
         Raises:
             VideoError: no frame has this agent.
         """
-        rows = self.run.frames().filter((pl.col("world") == self.world) & (pl.col("id") == agent))
-        first, last = rows.select(pl.col("step").min(), last=pl.col("step").max()).collect().row(0)
-        if first is None:
+        found = _steps(self.run, (pl.col("world") == self.world) & (pl.col("id") == agent))
+        if found is None:
             raise VideoError(f"--follow {agent}: no frame has this agent; `hedon export agents` lists them all")
-        return first, last
+        return found
 
     def usual_energy(self) -> float:
         """The energy that one in twenty agents exceeds: the end of the scale of colors."""
-        found = self.run.frames().filter(pl.col("world") == self.world)
-        quantile = found.select(pl.col("energy").quantile(0.95)).collect().item()
+        parts = self.run.frame_parts("world", "energy")
+        quantile = pl.concat(rows.filter(pl.col("world") == self.world)["energy"] for rows in parts).quantile(0.95)
         return 40.0 if quantile is None else max(float(quantile), 40.0)
 
     def _recorded(self, first: int, last: int) -> Iterator[Snapshot]:
         kept = pl.DataFrame()
-        for path in part_paths(self.run.path, "frames"):
-            rows = pl.scan_parquet(path, glob=False).filter(
-                (pl.col("world") == self.world) & pl.col("step").is_between(first, last)
-            )
-            try:
-                kept = pl.concat([kept, rows.collect()]) if len(kept) else rows.collect()
-            except (pl.exceptions.PolarsError, OSError) as error:
-                raise VideoError(f"damaged part {path}: {error}") from error
+        for part in self.run.frame_parts():
+            rows = part.filter((pl.col("world") == self.world) & pl.col("step").is_between(first, last))
+            kept = pl.concat([kept, rows]) if len(kept) else rows
             *whole, kept = kept.partition_by("step", maintain_order=True) or [kept]
             yield from map(self._snapshot, whole)  # the rest of the last frame may be in the next part
         if len(kept):
@@ -127,18 +120,24 @@ def open_footage(folder: Path, seed: int | None = None) -> Footage:
 
     Raises:
         VideoError: the run has no frames, or no such world.
-        RecordError: it is no run.
+        RecordError: it is no run, or a part of its frames is damaged.
     """
     run = open_run(folder)
     seeds = run.manifest.seeds
     if seed is not None and seed not in seeds:
         raise VideoError(f"--world {seed}: there is no such world; the run has seeds " + ", ".join(map(str, seeds)))
     world = 0 if seed is None else seeds.index(seed)
-    rows = run.frames().filter(pl.col("world") == world)
-    first, last = rows.select(pl.col("step").min(), last=pl.col("step").max()).collect().row(0)
-    if first is None:
+    found = _steps(run, pl.col("world") == world)
+    if found is None:
         raise VideoError(f"{run.path} has no frames of this world: record them with `hedon run --frames 64`")
-    return Footage(run, parse_config(run.config_text, str(folder)), world, first, last)
+    return Footage(run, parse_config(run.config_text, str(folder)), world, *found)
+
+
+def _steps(run: Run, wanted: pl.Expr) -> tuple[int, int] | None:
+    """The first and the last step of the frames that have such rows."""
+    parts = [rows.filter(wanted)["step"] for rows in run.frame_parts("world", "step", "id")]
+    known = pl.concat([pl.Series("step", [], pl.Int64), *parts])
+    return (int(known[0]), int(known[-1])) if len(known) else None
 
 
 def blend(before: Snapshot, after: Snapshot | None, step: int) -> Snapshot:

@@ -6,8 +6,11 @@ from typing import Any
 import polars as pl
 
 from hedon.config.load import parse_config
+from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, TABLE_FOLDERS, part_paths
+from hedon.record.part import read_part
 from hedon.record.reader import Run, open_run
+from hedon.record.schema import run_tables
 from hedon.view.layout import describe
 
 Span = tuple[int, int] | None
@@ -19,7 +22,7 @@ class RunIndex:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._spans: dict[tuple[str, int], list[Span]] = {}  # by name and size of a part
+        self._spans: dict[tuple[str, int], list[Span] | None] = {}  # by name and size of a part
         open_run(folder)
 
     def describe(self) -> dict[str, Any]:
@@ -28,8 +31,8 @@ class RunIndex:
         Returns:
             `name`, `status`, `seeds`, `steps` (done, per world), `extinct` (step or None, per world), `frames` (steps
             between two), `digests`, `obstacles` (corners of each, per world), `layout`, and `files`: for each table its
-            parts, each with `file` (relative to the run), `bytes` and, for frames, `worlds`: first and last step of each
-            world there, or None.
+            parts, each with `file` (relative to the run), `bytes` and, for frames, `worlds`: first and last step of
+            each world there, or None; or `damaged` where it cannot be read.
 
         Raises:
             RecordError: It is no run, or it holds a symbolic link.
@@ -52,6 +55,12 @@ class RunIndex:
             "files": {table: list(self._parts(run, table)) for table in TABLE_FOLDERS},
         }
 
+    def damaged(self) -> list[str]:
+        """The files of tables that cannot be used, by the names that the page asks for."""
+        run = open_run(self.folder)
+        frames = [part["file"] for part in self._parts(run, "frames") if part.get("damaged")]
+        return [*(path.relative_to(run.path).as_posix() for path in run.damaged_parts()), *frames]
+
     def files(self) -> dict[str, Path]:
         """The files that the page may read, by the name that it asks for: nothing else of the run is served."""
         run = open_run(self.folder)
@@ -65,15 +74,23 @@ class RunIndex:
         for path in paths:
             part: dict[str, Any] = {"file": path.relative_to(run.path).as_posix(), "bytes": path.stat().st_size}
             if table == "frames":
-                part["worlds"] = self._frame_spans(run, path, part["bytes"])
+                spans = self._frame_spans(run, path, part["bytes"])
+                part |= {"damaged": True} if spans is None else {"worlds": spans}
             parts.append(part)
         return parts
 
-    def _frame_spans(self, run: Run, path: Path, size: int) -> list[Span]:
+    def _frame_spans(self, run: Run, path: Path, size: int) -> list[Span] | None:
+        """The steps of each world in a part of the frames; None where it is damaged."""
         key = (path.name, size)
         if key not in self._spans:
-            rows = pl.scan_parquet(path, glob=False).group_by("world")
-            found = rows.agg(first=pl.col("step").min(), last=pl.col("step").max()).collect()
-            spans = {world: (first, last) for world, first, last in found.iter_rows()}
-            self._spans[key] = [spans.get(world) for world in range(len(run.manifest.seeds))]
+            try:
+                self._spans[key] = _spans(read_part(path, run_tables(run.columns)["frames"], run.manifest), run)
+            except RecordError:
+                self._spans[key] = None
         return self._spans[key]
+
+
+def _spans(rows: pl.DataFrame, run: Run) -> list[Span]:
+    ends = rows.group_by("world").agg(first=pl.col("step").min(), last=pl.col("step").max())
+    found = {world: (first, last) for world, first, last in ends.iter_rows()}
+    return [found.get(world) for world in range(len(run.manifest.seeds))]

@@ -170,7 +170,14 @@ AGENTS = {
     ),
     "its own parent": (change_child(parent_id=pl.col("agent_id")), "is its own ancestor: (\\d+) → \\1"),
     "a parent yet to be born": (change_child(parent_id=pl.lit(10**6)), "its parent is itself or a younger agent"),
-    "a parent that is not there": (change_child(parent_id=pl.lit(-5)), "its parent is missing"),
+    "a parent that is not there": (
+        lambda rows: change_child(parent_id=pl.lit(rows["agent_id"].min()))(
+            rows.filter(pl.col("agent_id") != rows["agent_id"].min())
+        ),
+        "its parent is missing",
+    ),
+    "a parent below zero": (change_child(parent_id=pl.lit(-5)), "parent_id = -5: must be from 0"),
+    "an id beyond all": (change_first(agent_id=pl.lit(2**62)), "4,611,686,018,427,387,[0-9]+ agents are missing"),
     "another parent": (change_child(parent_id=(pl.col("parent_id") + 1) % 2), "its number of children is not"),
     "another generation": (change_child(generation=pl.col("generation") + 1), "its generation is not one more"),
     "a founder with a past": (change_child(parent_id=pl.lit(None)), "has no parent but is not a founder"),

@@ -1,0 +1,99 @@
+"""Reads one file of a table, which may be damaged or come from anyone: whoever reads tables passes through here."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+
+import polars as pl
+
+from hedon.record.column import Table
+from hedon.record.error import RecordError
+from hedon.record.folder import PARTS_BEFORE
+from hedon.record.manifest import Manifest
+from hedon.text import brief
+
+_UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError, ValueError, OverflowError, MemoryError)
+"""What reading a damaged file raises. A panic of Polars is no `Exception`."""
+
+
+def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
+    """The rows of a file as they are, with the table's columns, or with all that it has.
+
+    Raises:
+        RecordError: it cannot be read; the message names it.
+    """
+    with _reading(path):
+        names = None if table is None else [column.name for column in table.columns]
+        return pl.read_parquet(path.read_bytes(), columns=names)
+
+
+def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
+    """The rows of a file, which no reader stumbles over.
+
+    Raises:
+        RecordError: it cannot be read, or it holds what no run writes; the message names it.
+    """
+    return _sound(path, load_part(path, table), table, manifest)
+
+
+def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFrame, int | None]:
+    """The living, and how many parts hold the deaths before that moment; None for all existing parts.
+
+    Raises:
+        RecordError: as `read_part`.
+    """
+    with _reading(path):
+        content = BytesIO(path.read_bytes())  # in one read, because the file can be replaced at any time
+        rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
+        parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
+        before = None if parts is None else int(parts)
+    return _sound(path, rows, table, manifest), before
+
+
+def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) -> Iterator[str]:
+    """What no run writes: other types, values that are missing, not finite or out of range, unknown names.
+
+    Args:
+        rows: with all columns of the table.
+        table: the schema.
+        manifest: of the run, which has its worlds and its steps; None if it cannot be read.
+    """
+    most = {} if manifest is None else {"world": len(manifest.seeds) - 1, "step": manifest.steps_asked}
+    other = [column for column, dtype in table.polars_schema.items() if rows.schema[column] != dtype]
+    if other:
+        yield f"these columns have a wrong type: {', '.join(other)}"
+        return
+    for column in table.columns:
+        values = rows[column.name]
+        wrong = 0 if column.nullable else values.null_count()
+        if values.dtype.is_float():
+            wrong += int((~values.is_finite()).sum())
+        if wrong:
+            yield f"{wrong:,} values of {column.name} are missing or not finite"
+        if values.dtype.is_integer():
+            limit = most.get("world" if column.name == "world" else column.unit)
+            outside = (values < 0) if limit is None else ~values.is_between(0, limit)
+            if outside.any():
+                first = values.filter(outside)[0]
+                yield f"{column.name} = {first}: must be from 0" + ("" if limit is None else f" to {limit}")
+        elif column.choices and not (known := values.drop_nulls().is_in(column.choices)).all():
+            yield f"{column.name} = {brief(repr(values.drop_nulls().filter(~known)[0]))}: the run has no such name"
+
+
+def _sound(path: Path, rows: pl.DataFrame, table: Table, manifest: Manifest) -> pl.DataFrame:
+    for fault in value_faults(rows, table, manifest):
+        raise _damaged(path, fault)
+    return rows
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except _UNREADABLE as error:
+        raise _damaged(path, str(error)) from error
+
+
+def _damaged(path: Path, why: str) -> RecordError:
+    return RecordError(f"damaged part {path} ({' '.join(why.split())})")
