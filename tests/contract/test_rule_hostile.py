@@ -30,6 +30,12 @@ REFUSED = {
     "syntax": ("def rule(agent:\n    return 1\n", "its file fails: SyntaxError"),
     "name": ("def rule(agent):\n    return 1 + oops\n", "Numba cannot compile it: .*oops"),
     "at once": ("1 / 0\n", "its file fails: ZeroDivisionError"),
+    "no exception": ("class Odd(BaseException):\n    pass\nraise Odd('x')\n", r"its file fails: Odd\('x'\)"),
+    "compiled": (
+        "def rule(agent):\n    if agent.age > 1.0:\n        raise SystemExit\n    return 1.0\n",
+        "Numba cannot compile it: .*for exception",
+    ),
+    "end of a generator": ("raise GeneratorExit\n", "its file fails: GeneratorExit"),
     "exit": ("import sys\nsys.exit(0)\n", "its file fails: SystemExit"),
     "import": ("import no_such_module\ndef rule(agent):\n    return 1.0\n", "its file fails: ModuleNotFoundError"),
     "number": ("rule = 3.0\n", "has no function rule"),

@@ -1,6 +1,9 @@
 """The local server gives the page and the run's tables to who has the link, and nothing else to anyone."""
 
 import http.client
+import socket
+import struct
+import time
 
 import pytest
 from typer.testing import CliRunner
@@ -93,6 +96,25 @@ def test_a_run_with_a_link_inside_is_refused(server, folder, tmp_path):
             RunIndex(folder)
     finally:
         trap.unlink()
+
+
+def test_a_page_that_hangs_up_leaves_the_server_quiet(server, capfd):
+    """At once, in the midst of its request, and in the midst of a large answer, with a reset."""
+    for request in (
+        b"",
+        b"GET /",
+        f"GET /{server.token}/hedon.wasm HTTP/1.0\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode(),
+    ):
+        for _ in range(3):
+            caller = socket.create_connection(("127.0.0.1", server.server_port))
+            caller.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
+            caller.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # closing resets
+            caller.sendall(request)
+            time.sleep(0.05)
+            caller.close()
+    time.sleep(0.3)
+    assert ask(server, f"/{server.token}/")[0].status == 200
+    assert capfd.readouterr().err == ""
 
 
 def test_a_site_is_not_written_over_something_else(tmp_path):

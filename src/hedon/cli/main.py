@@ -1,9 +1,9 @@
 """The command `hedon`."""
 
 import errno
-import io
 import resource
 import sys
+from contextlib import suppress
 from typing import Annotated, NoReturn
 
 import typer
@@ -15,6 +15,7 @@ from hedon.cli.branch import branch
 from hedon.cli.check import check
 from hedon.cli.demography import demography
 from hedon.cli.export import export
+from hedon.cli.output import OutputError, give_up, guard
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.reproduce import reproduce
@@ -98,12 +99,13 @@ def _hedon(
 
 def main() -> None:
     """Runs the command line; a problem that the user can fix ends in one message and exit code 2."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # where a terminal or file cannot show "±", print "?"
-            stream.reconfigure(errors="replace")
+    sys.stdout, sys.stderr = guard(sys.stdout), guard(sys.stderr)
     _require_addresses()
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()  # here, since at its end Python would print a traceback of its own
     except HedonError as error:
         fail(str(error))
     except OSError as error:
@@ -129,5 +131,7 @@ def _require_addresses() -> None:
 
 def fail(message: str) -> NoReturn:
     """Ends the command with a message and exit code 2. Names in it may hold any character, so it is made printable."""
-    typer.echo(f"hedon: {printable(message)}", err=True)
+    with suppress(OutputError):  # nobody can be told
+        typer.echo(f"hedon: {printable(message)}", err=True)
+    give_up()
     sys.exit(2)

@@ -69,7 +69,9 @@ class Rule:
         scope: dict[str, Any] = {"__name__": "hedon_rule", "__file__": self.source.file}
         try:
             exec(compile(self.source.text, self.source.file, "exec"), scope)
-        except (Exception, SystemExit) as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a file may raise anything, also what is no Exception
             raise self._error(f"its file fails: {brief(repr(error))}") from error
         found = scope.get(self.source.name)
         function = getattr(found, "py_func", found)  # of a function that Numba has compiled already
@@ -129,12 +131,14 @@ class Rule:
             near = nearest(name, self._seen)
             hint = f"; did you mean {near}?" if near else ""
             raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error
-        except Exception as error:  # Numba raises what its parts raise, not only its own errors
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # Numba raises what its parts raise, not only its own errors
             said = " ".join(str(error).split())
             self._refuse_neutral(said, error)
             raise self._error(f"Numba cannot compile it: {brief(said)}") from error
 
-    def _refuse_neutral(self, said: str, error: Exception) -> None:
+    def _refuse_neutral(self, said: str, error: BaseException) -> None:
         """RuleError: a field that was said to be missing is a neutral marker."""
         for name in self.neutral:
             if f"'{name}'" in said:

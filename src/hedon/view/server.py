@@ -6,6 +6,7 @@ a list of names, and gives the file or data behind a name; it never makes a path
 
 import secrets
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path, PurePosixPath
@@ -95,6 +96,15 @@ class _Handler(BaseHTTPRequestHandler):
         if found is None:
             return self._answer(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")
         return self._answer(HTTPStatus.OK, *found)
+
+    def handle(self) -> None:
+        """Answers until the page hangs up, also in the midst of an answer, as it does when it is closed."""
+        with suppress(ConnectionError, TimeoutError):
+            super().handle()
+
+    def finish(self) -> None:
+        with suppress(ConnectionError, ValueError):  # what was not sent yet stays unsent
+            super().finish()
 
     def _answer(self, status: HTTPStatus, content_type: str, content: bytes) -> None:
         self.send_response(status)
