@@ -45,7 +45,23 @@ Place place;
 
 }  // namespace
 
-void* reserve_pages(size_t bytes) { return calloc(bytes, 1); }
+/// The allocator stops where it would have to ask for 2 GB or more at once, but it gives what lies free in one piece.
+/// So it asks for the memory in parts, which lie one after the other, and become one piece as they are freed.
+void* reserve_pages(size_t bytes) {
+  constexpr size_t PART = size_t{1} << 28;
+  constexpr size_t ROOM = 4096;  ///< for what the allocator notes of a block
+  if (bytes > SIZE_MAX - ROOM) return nullptr;
+  void* parts[SIZE_MAX / PART + 1];
+  int count = 0;
+  bool there = true;
+  for (size_t left = bytes + ROOM; left > 0 && there; left -= std::min(left, PART)) {
+    parts[count] = malloc(std::min(left, PART));
+    there = parts[count] != nullptr;
+    count += there ? 1 : 0;
+  }
+  while (count > 0) free(parts[--count]);
+  return there ? calloc(bytes, 1) : nullptr;
+}
 
 void release_pages(void* block, size_t) { free(block); }
 

@@ -242,7 +242,7 @@ HEDON_EXPORT(hedon_by_hand) int hedon_by_hand() { return by_hand ? 1 : 0; }
 HEDON_EXPORT(hedon_keep) int hedon_keep() {
   if (need_rest() != 0) return 1;
   const size_t bytes = static_cast<size_t>(simulation->bytes_per_world());
-  if (!kept) kept.reset(static_cast<char*>(malloc(bytes)));
+  if (!kept) kept.reset(static_cast<char*>(reserve_pages(bytes)));
   if (!kept) return fail("there is no memory left to keep the world");
   memcpy(kept.get(), simulation->memory(0), bytes);
   kept_by_hand = by_hand;

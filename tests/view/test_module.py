@@ -86,6 +86,29 @@ def test_a_world_without_its_threads_says_so(tmp_path):
 
 
 @needs_node
+def test_a_world_that_no_page_can_have_is_refused_before_it_is_made(tmp_path):
+    text = engine_text(load_config("small", overrides=["population.capacity=15000"]), 1)
+    words = r"the world needs 5\.\d GB of memory, and a page has at most 4\.0 GB: lower population\.capacity"
+    with pytest.raises(AssertionError, match=words):
+        in_node("digest.mjs", "hedon.wasm", text, tmp_path, "1", "50", "0")
+
+
+@needs_node
+@pytest.mark.long
+def test_a_world_above_2_gigabytes_lives_and_says_where_there_is_no_more_room(tmp_path):
+    """Addresses above 2 GB are negative as signed numbers, and the allocator gives no such block at once."""
+    config = load_config("small", overrides=["population.capacity=7800"])
+    told = in_node("large.mjs", "hedon.wasm", engine_text(config, 1), tmp_path, "10")
+    simulation = Simulation(config, seeds=[1], kernel="portable")
+    simulation.run(10)
+    assert told["needed"] > 2.5e9
+    assert told["digest"] == simulation.worlds[0].digest()
+    assert told["first"] == simulation.worlds[0].view("life.agent_id")[0]
+    assert told["kept"] == "there is no memory left to keep the world"
+    assert told["going"] == 1
+
+
+@needs_node
 @pytest.mark.long
 @pytest.mark.parametrize("threads", [0, 2])
 @pytest.mark.parametrize("preset", LONG_PRESETS)

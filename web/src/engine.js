@@ -3,6 +3,8 @@
 
 /** @typedef {Int8Array | Uint8Array | Int32Array | Uint32Array | Float32Array | Float64Array | BigInt64Array | BigUint64Array} Numbers */
 
+// Addresses come as signed numbers: those above 2 GB are negative until `>>> 0`.
+
 /** What the module asks of a system: a clock, and nothing else that is used. @param {WebAssembly.Memory} memory */
 function system(memory) {
   const refused = 52; // the system's number for "not there"
@@ -10,7 +12,7 @@ function system(memory) {
     {
       clock_time_get: (/** @type {number} */ _id, /** @type {bigint} */ _precision, /** @type {number} */ at) => {
         const now = BigInt(Math.round(performance.now() * 1e6));
-        new DataView(memory.buffer).setBigUint64(at, now, true);
+        new DataView(memory.buffer).setBigUint64(at >>> 0, now, true);
         return 0;
       },
       proc_exit: () => {
@@ -42,6 +44,7 @@ function explained(exports) {
 const PAGE = 65536; // bytes
 const FIRST_PAGES = 64; // as the module was linked
 const MOST_PAGES = 65535;
+const MOST = 4e9; // bytes of a world: what 32 bits can name, less what is needed besides
 const SPARE = 64e6; // bytes of memory besides a world and the copy that is kept of it
 const NAP_MS = 100; // that a thread sleeps before it looks whether another one was stopped
 const SHARED_MEMORY = [3, ...new TextEncoder().encode("env"), 6, ...new TextEncoder().encode("memory"), 2, 3];
@@ -132,7 +135,7 @@ export class Engine {
    * @param {{ shared?: boolean, threads?: number, hire?: Hire, limit?: number }} [how] more than one thread needs
    * shared memory, and somebody to hire
    */
-  static async make(module, text, { shared = false, threads = 1, hire, limit = 3e9 } = {}) {
+  static async make(module, text, { shared = false, threads = 1, hire, limit = MOST } = {}) {
     const planned = new Engine(module, shared).#needOf(text, threads);
     if (planned > limit) {
       throw new EngineError(
@@ -156,7 +159,7 @@ export class Engine {
   /** Bytes that the world of a text needs, which `hedon_make` then makes. @param {string} text @param {number} threads */
   #needOf(text, threads) {
     const bytes = new TextEncoder().encode(text);
-    const at = this.exports.hedon_text(bytes.length);
+    const at = this.exports.hedon_text(bytes.length) >>> 0;
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
     this.#need(this.exports.hedon_read());
     return /** @type {number} */ (this.exports.hedon_bytes_needed(threads));
@@ -164,7 +167,7 @@ export class Engine {
 
   /** @param {number} seat @param {Hire} hire */
   async #hire(seat, hire) {
-    const at = this.exports.hedon_seat();
+    const at = this.exports.hedon_seat() >>> 0;
     if (at === 0) throw new EngineError("there is no room for another thread: ask for fewer");
     const [stack, locals] = new Uint32Array(this.memory.buffer, at, 2);
     const { module, memory } = this;
@@ -287,7 +290,7 @@ export class Engine {
 
   /** What the agent in a slot senses now, and its network's answer. @param {number} slot */
   mind(slot) {
-    const at = this.exports.hedon_mind(slot);
+    const at = this.exports.hedon_mind(slot) >>> 0;
     const { buffer } = this.memory;
     return {
       reading: new Float32Array(buffer, at, 32).slice(),
@@ -302,9 +305,9 @@ export class Engine {
     const known = this.known.get(name);
     if (known) return known;
     const bytes = new TextEncoder().encode(name);
-    const at = this.exports.hedon_path(bytes.length);
+    const at = this.exports.hedon_path(bytes.length) >>> 0;
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
-    const found = this.exports.hedon_view();
+    const found = this.exports.hedon_view() >>> 0;
     if (found === 0) return undefined;
     const place = /** @type {[number, number, number, number, number, number]} */ ([
       ...new Int32Array(this.memory.buffer, found, 6),
@@ -317,7 +320,7 @@ export class Engine {
   /** @param {number} status */
   #need(status) {
     if (status === 0) return;
-    const from = new Uint8Array(this.memory.buffer, this.exports.hedon_message());
+    const from = new Uint8Array(this.memory.buffer, this.exports.hedon_message() >>> 0);
     throw new EngineError(new TextDecoder().decode(from.slice(0, from.indexOf(0))));
   }
 }

@@ -81,6 +81,8 @@ export class Replay implements Source {
 
   status(): string {
     if (this.trouble) return this.trouble;
+    const damaged = this.index.files.frames.filter((part) => part.damaged).map((part) => part.file);
+    if (damaged.length > 0) return `damaged, and left out: ${damaged.join(", ")}`;
     const seed = `seed ${this.index.seeds[this.world]}`;
     const none = this.index.files.frames.length === 0 ? "; no positions: run with --frames 64 to see agents move" : "";
     return `${this.index.name}, ${seed}, ${this.index.status}${none}`;

@@ -107,6 +107,7 @@ export interface Part {
   file: string;
   bytes: number;
   worlds?: ([number, number] | null)[]; // of frames: first and last step of each world
+  damaged?: boolean;
 }
 
 export interface RunIndex {
