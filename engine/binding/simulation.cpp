@@ -13,6 +13,7 @@
 #include "binding/checkpoint.h"
 #include "binding/config.h"
 #include "binding/device.h"
+#include "binding/drive.h"
 #include "binding/parts.h"
 #include "binding/python_simulation.h"
 #include "binding/state_view.h"
@@ -24,10 +25,6 @@ namespace hedon {
 namespace {
 
 using FloatsIn = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using TableIn = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
-using TableOut = nb::ndarray<float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
-using RowsOut = nb::ndarray<float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using IdsOut = nb::ndarray<int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using IntsIn = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 /// A copy with its own memory, as a NumPy array.
@@ -206,18 +203,6 @@ void set_networks(PythonSimulation& self, int index, int species,
   }
 }
 
-/// Refuses an array of the caller that has not one row for each slot of a species in each world.
-template <class Table>
-void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
-  const WorldShape& shape = self.get().shape();
-  if (species < 0 || species >= shape.species) throw nb::index_error("no species has this index");
-  if (self.get().config().species[species].learning.policy != Policy::external)
-    throw nb::value_error("the species must be external");
-  if (table.shape(0) != static_cast<size_t>(self.get().world_count()) ||
-      table.shape(1) != static_cast<size_t>(shape.of[species].capacity()))
-    throw nb::value_error("arrays must have a row for each slot of the species in each world");
-}
-
 /// The address of a function `Rule`. It must stay as long as the simulation: the caller holds it.
 void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address) {
   if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");
@@ -227,39 +212,6 @@ void set_rule(PythonSimulation& self, int32_t species, const std::string& use, u
     return;
   }
   throw nb::value_error("a rule is for reward, hazard or birth");
-}
-
-void command(PythonSimulation& self, int32_t species, TableIn actions) {
-  need_rows(self, species, actions);
-  if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
-  self.get().command(species, actions.data());
-}
-
-void show(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
-  need_rows(self, species, observation);
-  need_rows(self, species, reward);
-  need_rows(self, species, agent_id);
-  const int32_t entries = self.get().shape().of[species].network.observation.size();
-  if (observation.shape(2) != static_cast<size_t>(entries))
-    throw nb::value_error("observations must have as many columns as there are entries");
-  self.show(species, {observation.data(), reward.data(), agent_id.data()});
-}
-
-void pay(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id) {
-  need_rows(self, species, reward);
-  need_rows(self, species, agent_id);
-  self.show(species, {nullptr, reward.data(), agent_id.data()});
-}
-
-/// What the agents of a species have eaten since the worlds began: (worlds, meals).
-nb::object meals_of(PythonSimulation& self, int32_t species) {
-  const Simulation& simulation = self.get();
-  const WorldShape& shape = simulation.shape();
-  if (species < 0 || species >= shape.species) throw nb::index_error("no species has this index");
-  const size_t worlds = static_cast<size_t>(simulation.world_count()), meals = static_cast<size_t>(shape.meals());
-  std::vector<int64_t> counts(worlds * meals);
-  simulation.count_meals(species, counts.data());
-  return copy_array(std::move(counts), {worlds, meals});
 }
 
 /// `FloatMode` as a context manager.
