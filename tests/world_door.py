@@ -1,15 +1,19 @@
 """Every door of hedon for one world: from its config to its page, in one process."""
 
 import json
+import multiprocessing
+import os
 import random
-import shutil
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
+import pytest
 from mechanism import Mixture
 from mechanism_data import begin, founders_of, networks_of
 from resumed_run import assert_same_run
@@ -19,6 +23,7 @@ from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
 from hedon.config.load import load_config
 from hedon.env.batch import batch
+from hedon.error import ArgumentError
 from hedon.experiment.plan import Moment, RunPlan
 from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import resume
@@ -69,10 +74,12 @@ class Trial:
         return RunPlan(config, SEEDS, steps, self.folder / name, 1, FRAMES, checkpoint_seconds, **given)
 
 
-def doors(trial: Trial, *, report: bool) -> Iterator[tuple[str, Callable[[Trial], None]]]:
-    """The doors that a world goes through, in their order, by name; with a report there are figures too."""
+def doors(trial: Trial, *, recorded: bool, report: bool) -> Iterator[tuple[str, Callable[[Trial], None]]]:
+    """The doors that a world goes through, in order, by name: also those of records, and a report with figures."""
     yield from CHEAP.items()
-    if not trial.world.any("driven"):
+    if trial.world.any("driven"):
+        yield "environment", _driven
+    elif recorded:
         yield from RECORDED.items()
         if report:
             yield "report", _report
@@ -144,31 +151,47 @@ def _close(world: Any) -> None:
 
 
 def _killed(trial: Trial) -> None:
-    """A copy of the folder at a moment is what a kill at that moment leaves: it goes on to the same end."""
-    trial.draw.seed(trial.draw.random())
-    copied = _Copy(trial.folder / "run", trial.folder / "killed", trial.draw.randrange(STEPS))
-    run(trial.plan("run", checkpoint_seconds=0.0), copied)
-    assert not check_run(trial.folder / "killed").findings, "of the killed run"
-    resume(trial.folder / "killed", threads=1)
-    assert_same_run(trial.folder / "killed", trial.folder / "run")
+    """A run that is killed goes on to the same end as one that is not."""
+    run(trial.plan("run"))
+    process = _context.Process(target=_run_until_killed, args=(trial, trial.draw.randrange(STEPS)))
+    process.start()
+    process.join(120)
+    folder = trial.folder / "killed"
+    if process.exitcode == 0:  # everyone died before
+        assert_same_run(folder, trial.folder / "run")
+        return
+    assert process.exitcode == -signal.SIGKILL
+    assert not check_run(folder).findings, [f"{each.where}: {each.what}" for each in check_run(folder).findings]
+    resume(folder, threads=1)
+    assert_same_run(folder, trial.folder / "run")
 
 
-class _Copy:
-    """A display that copies the run's folder once, at the first moment from a step on."""
+def _run_until_killed(trial: Trial, step: int) -> None:
+    run(trial.plan("killed", checkpoint_seconds=0.0), _Death(step))
 
-    def __init__(self, folder: Path, target: Path, step: int) -> None:
-        self.folder, self.target, self.step = folder, target, step
+
+class _Death:
+    """A display that kills its process at the first moment from a step on."""
+
+    def __init__(self, step: int) -> None:
+        self.step = step
 
     def update(self, moment: Moment) -> None:
-        if moment.step >= self.step and not self.target.exists():
-            shutil.copytree(self.folder, self.target, ignore=shutil.ignore_patterns("*.tmp"))
+        if moment.step >= self.step:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
+_context = multiprocessing.get_context("forkserver")
+_context.set_forkserver_preload(["world_door"])
 
 
 def _longer(trial: Trial) -> None:
     """A run that ended is made longer, to the same end."""
-    run(trial.plan("longer", trial.draw.randrange(1, STEPS)))
-    resume(trial.folder / "longer", STEPS, threads=1)
-    assert_same_run(trial.folder / "longer", trial.folder / "run")
+    folder = trial.folder / "longer"
+    manifest = run(trial.plan("longer", trial.draw.randrange(1, STEPS)))
+    if None in manifest.extinct_steps:
+        resume(folder, STEPS, threads=1)
+    assert_same_run(folder, trial.folder / "run")
 
 
 def _check(trial: Trial) -> None:
@@ -180,10 +203,18 @@ def _check(trial: Trial) -> None:
 
 
 def _summary(trial: Trial) -> None:
+    """Plain values, and as many agents of each species as the records have."""
     opened = open_run(trial.folder / "run")
-    summary = summarize(opened)
+    summary, agents = summarize(opened), opened.agents()
     json.dumps(summary, allow_nan=False)
-    assert summary["agents"] == opened.agents().height
+    several = opened.columns.several
+    assert (summary["total"] if several else summary)["agents"] == agents.height
+    for i, world in enumerate(summary["worlds"]):
+        living = agents.filter((pl.col("world") == i) & pl.col("death_step").is_null())
+        if not several:
+            assert world["alive"] == living.height
+        for name, told in world.get("species", {}).items():
+            assert told["alive"] == living.filter(pl.col("species") == name).height
 
 
 def _analysis(trial: Trial) -> None:
@@ -197,7 +228,9 @@ def _report(trial: Trial) -> None:
 
 def _export(trial: Trial) -> None:
     opened = open_run(trial.folder / "run")
-    tables: tuple[TableName, ...] = ("agents", "population", "frames")
+    tables: list[TableName] = ["agents", "population"]
+    if opened.frames().collect().height:  # else everyone died before the first
+        tables.append("frames")
     for name in tables:
         out = trial.folder / f"{name}.csv"
         write_table(table_of(opened, name), "csv", out)
@@ -210,7 +243,9 @@ def _export(trial: Trial) -> None:
         tree = pedigree(opened, SEEDS[0], species if "species" in agents.columns else None)
         now = last_step(opened, tree)
         assert alife_table(tree, opened.weight_names).height == tree.height
-        assert newick(tree, now)
+        if "mate_id" in tree.columns and tree["mate_id"].is_not_null().any():
+            continue  # there is no tree
+        assert newick(tree, now) or not tree["death_step"].null_count()
         assert index_table(tree, now, 5).height
 
 
@@ -235,8 +270,8 @@ def _view(trial: Trial) -> None:
             ids = set(rows.filter(pl.col("step") == step)["id"])
             assert ids == _alive(lives, step), f"agents of step {step}"
             assert shown[step] == len(ids), f"the moment of step {step}"
-    first_last = [(part["first"], part["last"]) for part in told["files"]["frames"]]
-    assert all(a[1] < b[0] for a, b in zip(first_last, first_last[1:], strict=False)), "a step is in two parts"
+        spans = [part["worlds"][i] for part in told["files"]["frames"] if part["worlds"][i] is not None]
+        assert all(a[1] < b[0] for a, b in pairwise(spans)), "a step is in two parts"
 
 
 def _alive(lives: pl.DataFrame, step: int) -> set[int]:
@@ -259,16 +294,17 @@ RECORDED: dict[str, Callable[[Trial], None]] = {
 }
 
 
-def drive_from_outside(trial: Trial) -> None:
-    """Driven through `hedon.env`, with repeated steps or one by one."""
-    config = trial.config()
-    worlds = [batch(config, SEEDS, threads=1) for _ in range(2)]
-    paid = []
-    for each, repeat in zip(worlds, (1, 5), strict=True):
-        for _ in range(30 // repeat):
+def _driven(trial: Trial) -> None:
+    """Who drives agents from outside gets the same worlds on any number of threads; a run refuses them."""
+    config, repeat = trial.config(), trial.draw.randrange(1, 7)
+    pair = [batch(config, SEEDS, threads=threads) for threads in (1, 2)]
+    for each in pair:
+        for _ in range(STEPS // repeat):
             for group in each.groups.values():
                 group.actions[...] = 0.4
             each.step(repeat)
-        paid.append([world.agents()["reward"].sum() for world in each.simulation.worlds])
-    _same(worlds[0].simulation, worlds[1].simulation, "repeated steps differ")
-    assert paid[0] == paid[1]
+    _same(pair[0].simulation, pair[1].simulation, "two threads differ")
+    for name, group in pair[0].groups.items():
+        np.testing.assert_array_equal(group.observations, pair[1].groups[name].observations)
+    with pytest.raises(ArgumentError, match="external"):
+        trial.plan("run")
