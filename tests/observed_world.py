@@ -9,6 +9,7 @@ from reference.state import COUNTED, HARMED, HUNTED, Agent, Deed, Newborn, Stock
 from hedon.config.arena import walls
 from hedon.config.layout import SpeciesLayout, layouts
 from hedon.experiment.simulation import Simulation
+from hedon.record.schema import CAUSES
 
 FIRST, SECOND = 1, 2
 """Marks of a pair of bodies: the mouth of the first, or of the second, touches the other, which it may eat."""
@@ -154,10 +155,14 @@ def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: d
     deeds = []
     places = np.stack([view(f"physics.bodies.{name}")[slots] for name in ("x", "y", "angle")], axis=1).tolist()
     now = view("life.agent_id")[slots].tolist()
+    deaths = simulation.engine.head(0)["event_count"]
+    eaten = view("event.agent_id")[:deaths][view("event_cause")[:deaths] == CAUSES.index("eaten")]
     for i, (slot, agent, place) in enumerate(zip(slots, before.agents, places, strict=True)):
         if now[i] != agent.agent_id:  # it died, and a newborn lies there
             place = [agent.x, agent.y, agent.angle]
+        gone = now[i] != agent.agent_id and agent.agent_id in eaten
+        met = (mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i])
         left, right = actions[i]
         x, y, angle = place
-        deeds.append(Deed((left, right), x, y, angle, mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i]))
+        deeds.append(Deed((left, right), x, y, angle, *met, gone))
     return deeds

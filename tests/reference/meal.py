@@ -64,7 +64,7 @@ def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
 
 
 def distance(turn: Turn, other: Turn) -> float:
-    return math.hypot(turn.deed.x - other.deed.x, turn.deed.y - other.deed.y)
+    return 0.0 if other.deed.gone else math.hypot(turn.deed.x - other.deed.x, turn.deed.y - other.deed.y)
 
 
 def gain(rules: Rules, world: World, turn: Turn, prey: Turn, energy: float) -> None:

@@ -120,6 +120,7 @@ class Deed:
     prey        ids of the agents that its mouth touched and that it may eat
     obstacles   those that it touched, by their numbers
     seen        (rays, types that it sees) what it acted on
+    gone        it was eaten, and where it ended is not known: of several in a mouth it was the nearest
     """
 
     action: tuple[float, float]
@@ -130,6 +131,7 @@ class Deed:
     prey: list[int]
     obstacles: list[int]
     seen: np.ndarray
+    gone: bool = False
 
 
 @dataclass
