@@ -72,7 +72,8 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
 HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy,
                                int64_t birth_step = 0) {
   const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
-  if (world.shape->inner) set_inner(world, slot, world.shape->of[species].config->nutrient.initial, 0.0);
+  const NutrientConfig& nutrient = world.shape->of[species].config->nutrient;
+  if (world.shape->inner) set_inner(world, slot, nutrient.present != 0 ? nutrient.initial : 0.0, 0.0);
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   init_genome(world.shape->of[species].config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},

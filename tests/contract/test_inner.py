@@ -3,11 +3,15 @@
 import math
 
 import numpy as np
+import polars as pl
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 from hedon.config import ConfigError, load_config
 from hedon.config.layout import observation_columns
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
+from hedon.record.reader import open_run
 
 NUTRIENT = ("food.normal.nutrient=1", "nutrient.basic_cost=0.05", "nutrient.action_cost=1e-3")
 TOXIN = ("food.normal.toxin=10",)
@@ -153,6 +157,22 @@ def test_records_and_checkpoints_hold_the_stores(tmp_path):
     two.run(92)
     assert one.worlds[0].digest() == two.worlds[0].digest()
     assert one.worlds[0].agents()["toxin"].max() > 0
+
+
+def test_a_species_without_a_store_holds_none_of_it(tmp_path):
+    small = ("population.capacity=20", "population.initial_count=6")
+    species = ("species.grazer.body.radius=10", "species.moth.diet.eats=[]", *DEATHLESS, "birth.kappa=0.02")
+    config = load_config("baseline", overrides=(*QUICK, *small, "food.normal.nutrient=1", *species))
+    run(RunPlan(config, (1,), 128, tmp_path / "run", 1))
+    simulation = make_simulation(*QUICK, *small, "food.normal.nutrient=1", *species)
+    simulation.run(128)
+    agents = simulation.worlds[0].agents()
+    assert set(agents["species"]) == {0, 1}
+    assert (agents["nutrient"] > 0).tolist() == (agents["species"] == 0).tolist()
+    rows = open_run(tmp_path / "run").population()
+    for name, known in (("grazer", True), ("moth", False)):
+        means = rows.filter(pl.col("species") == name)["nutrient_mean"]
+        assert means.is_not_null().to_list() == [known] * len(means)
 
 
 @pytest.mark.parametrize(

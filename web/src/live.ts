@@ -1,9 +1,9 @@
 // A world that the engine runs in this page, as a source of moments.
 import { Lives } from "./lives";
 import type { Deed, Moment, Order, Report } from "./live.worker";
-import { Series } from "./series";
+import { columnOf, Series } from "./series";
 import type { Source } from "./source";
-import type { Frame, LiveWorld, Mind, Place } from "./types";
+import type { Frame, Life, LiveWorld, Mind, Place } from "./types";
 
 const SAMPLE_STEPS = 256; // between two points of the plots
 const KEPT_FRAMES = 2000; // that can be looked back at
@@ -163,16 +163,17 @@ export class Live implements Source {
 
   private sample(moment: Moment): void {
     const { lives, frame, counts } = moment;
-    const mean = (of: (i: number) => number) => {
-      const known = lives.map((_, i) => of(i)).filter((value) => !Number.isNaN(value));
-      return known.reduce((sum, value) => sum + value, 0) / known.length;
-    };
-    const row: Record<string, number> = { alive: lives.length, energy_mean: mean((i) => lives[i]!.energy) };
+    const row: Record<string, number> = { alive: lives.length };
     row.births = counts.births! - this.sampled.births;
     row.deaths = counts.deaths! - this.sampled.deaths;
     row.generation_max = lives.reduce((most, life) => Math.max(most, life.generation), 0);
-    this.layout.genes.forEach((gene, g) => {
-      row[`${gene.name}_mean`] = mean((i) => lives[i]!.genome[g]!);
+    this.layout.species.forEach((species, s) => {
+      const own = lives.filter((life) => life.species === s);
+      const mean = (of: (life: Life) => number) => own.reduce((sum, life) => sum + of(life), 0) / own.length;
+      const put = (name: string, value: number) => (row[columnOf(this.layout, species, name)] = value);
+      put("alive", own.length);
+      put("energy_mean", mean((life) => life.energy));
+      for (const g of species.genes) put(`${this.layout.genes[g]!.name}_mean`, mean((life) => life.genome[g]!));
     });
     this.layout.foods.forEach((food, k) => {
       row[`food_${food.name}`] = frame.foodKind.reduce((count, kind) => count + (kind === k ? 1 : 0), 0);

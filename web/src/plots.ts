@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { by, element, option, show, styleColor } from "./element";
+import { columnOf } from "./series";
 import type { Source } from "./source";
 import type { Frame } from "./types";
 
@@ -29,12 +30,19 @@ export class Plots {
     const { layout, series } = source;
     const host = by<HTMLDivElement>("plots");
     host.replaceChildren();
-    const reward = layout.genes.filter((gene) => gene.role === "reward");
-    const add = (title: string, names: string[], labels: string[], colors: string[], band = false) =>
-      this.add(host, title, names, labels, colors, band, seek);
-    add("agents alive", ["alive"], ["alive"], [LINES[0]!]);
-    add("mean energy", ["energy_mean"], ["energy"], [LINES[3]!]);
-    add("mean weights, and the band of the neutral genes", reward.map((gene) => `${gene.name}_mean`), reward.map((gene) => gene.name), LINES, true);
+    const add = (title: string, names: string[], labels: string[], colors: string[], neutral: string[] = []) =>
+      this.add(host, title, names, labels, colors, neutral, seek);
+    const several = layout.species.length > 1;
+    const each = (name: string) => layout.species.map((species) => columnOf(layout, species, name));
+    const kinds = layout.species.map((species) => species.name);
+    add("agents alive", each("alive"), kinds, LINES);
+    add("mean energy", each("energy_mean"), kinds, several ? LINES : [LINES[3]!]);
+    for (const species of layout.species) {
+      const genes = (role: string) => species.genes.map((g) => layout.genes[g]!).filter((gene) => gene.role === role);
+      const means = (role: string) => genes(role).map((gene) => columnOf(layout, species, `${gene.name}_mean`));
+      const title = `mean weights${several ? ` of ${species.name}` : ""}, and the band of the neutral genes`;
+      add(title, means("reward"), genes("reward").map((gene) => gene.name), LINES, means("neutral"));
+    }
     add("food present", layout.foods.map((food) => `food_${food.name}`), layout.foods.map((food) => food.name), layout.foods.map((food) => food.color));
     if (series.get(`eaten_${layout.foods[0]?.name}`).length > 0) {
       add("food eaten", layout.foods.map((food) => `eaten_${food.name}`), layout.foods.map((food) => food.name), layout.foods.map((food) => food.color));
@@ -61,10 +69,9 @@ export class Plots {
     if (frame) this.drawLiving(frame);
   }
 
-  private add(host: HTMLElement, title: string, names: string[], labels: string[], colors: string[], band: boolean, seek: (step: number) => void): void {
-    const { series, layout } = this.source;
-    const neutral = layout.genes.filter((gene) => gene.role === "neutral").map((gene) => `${gene.name}_mean`);
-    const withBand = band && neutral.length > 1;
+  private add(host: HTMLElement, title: string, names: string[], labels: string[], colors: string[], neutral: string[], seek: (step: number) => void): void {
+    const { series } = this.source;
+    const withBand = neutral.length > 1;
     const data = () => {
       const columns = names.map((name) => fitted(series.get(name), series.step.length));
       const limits = withBand ? spread(neutral.map((name) => series.get(name)), series.step.length) : [];

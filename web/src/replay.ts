@@ -27,6 +27,12 @@ function together(rows: Row[]): Row {
   return out;
 }
 
+/** The numbers of each species by its name: `prey.alive`. */
+function apart(rows: Map<string, Row>): Row {
+  const named = [...rows].flatMap(([species, row]) => Object.entries(row).map(([name, value]) => [`${species}.${name}`, value] as const));
+  return Object.fromEntries(named);
+}
+
 export class Replay implements Source {
   readonly live = false;
   readonly lives = new Lives();
@@ -134,7 +140,7 @@ export class Replay implements Source {
       const { rows } = this.interval; // they may begin in the part before, as in old runs
       rows.set(species?.[row] ?? "", Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
       this.series.rewind(step[row]! - 1);
-      this.series.add(step[row]!, rows.size === 1 ? [...rows.values()][0]! : together([...rows.values()]));
+      this.series.add(step[row]!, rows.size === 1 ? [...rows.values()][0]! : { ...together([...rows.values()]), ...apart(rows) });
     }
   }
 

@@ -1,4 +1,10 @@
 // Numbers of a world over time, column by column, in the order of steps.
+import type { Layout, Species } from "./types";
+
+/** The column of a number of one species; the columns of a world's only species are those of the world. */
+export function columnOf(layout: Layout, species: Species, name: string): string {
+  return layout.species.length > 1 ? `${species.name}.${name}` : name;
+}
 
 export class Series {
   readonly step: number[] = [];

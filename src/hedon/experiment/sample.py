@@ -103,8 +103,9 @@ class PopulationSampler:
         for name, k in _meals(self.columns).items():
             row[f"eaten_{name}"] = now.eaten[k] - since.eaten[k]
         row["energy_total"] = lives["energy"].sum()
+        own = list(layouts(world.config).values())[self.species].inner
         for name in self.columns.inner:
-            row[f"{name}_mean"] = lives[name].mean() if len(lives[name]) else np.nan
+            row[f"{name}_mean"] = lives[name].mean() if name in own and len(lives[name]) else np.nan
         return row
 
     def _now(self) -> Sampled:
