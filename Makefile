@@ -39,7 +39,7 @@ sanitized: sync
 # The same questions asked hundreds of times, and those that take minutes: before a release.
 test-long: sync
 	HEDON_NODES=20 $(RUN) $(EXTRA) --extra remote pytest -m "long or not long" tests/sweep
-	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
+	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 HEDON_DAMAGED=50 HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
 	  $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
 	  -m "long or not long" tests/property tests/contract
 	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view

@@ -15,10 +15,22 @@ from unittest import mock
 from hedon.cli.start import main
 
 
+class Captured(TextIOWrapper):
+    """A stream whose text stays readable; the command line leaves streams alone that are not the process's own."""
+
+    def __init__(self) -> None:
+        self.kept = BytesIO()
+        super().__init__(self.kept, encoding="utf-8", write_through=True)
+
+    @property
+    def text(self) -> str:
+        return self.kept.getvalue().decode("utf-8")
+
+
 def hedon(*arguments: object, cwd: Path | str = ".", **environment: str) -> "CompletedProcess[str]":
     """What `hedon ARGUMENTS` answers in a folder, with variables of the environment set."""
     words = ["hedon", *map(str, arguments)]
-    out, err = (TextIOWrapper(BytesIO(), encoding="utf-8", write_through=True) for _ in range(2))
+    out, err = Captured(), Captured()
     code: object = 0
     with (
         chdir(cwd),
@@ -31,5 +43,4 @@ def hedon(*arguments: object, cwd: Path | str = ".", **environment: str) -> "Com
             main()
         except SystemExit as end:
             code = end.code
-    said, wrong = (stream.buffer.getvalue().decode("utf-8") for stream in (out, err))  # type: ignore[attr-defined]
-    return CompletedProcess(words, code if isinstance(code, int) else int(code is not None), said, wrong)
+    return CompletedProcess(words, code if isinstance(code, int) else int(code is not None), out.text, err.text)

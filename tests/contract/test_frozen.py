@@ -111,7 +111,7 @@ def test_a_run_keeps_its_networks_and_goes_on_with_the_same_bits(learned, tmp_pa
     again = run(plan("again", 192, networks=networks_from(str(tmp_path / "whole" / NETWORKS), config)))
     assert again.records_digest == whole.records_digest
     assert run(plan("new", 192, networks=None)).records_digest != whole.records_digest
-    branched = branch(tmp_path / "half", tmp_path / "branch", ["energy.basic_cost=0.01"], steps=256)
+    branched = branch(tmp_path / "half", tmp_path / "branch", ["species.wise.energy.basic_cost=0.01"], steps=256)
     assert branched.status == "finished"
     for name in ("whole", "half", "branch"):
         assert not check_run(tmp_path / name).findings

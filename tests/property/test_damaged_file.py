@@ -1,6 +1,6 @@
 """Damaged files of a run: whatever is cut or changed in one of them, each command reads on or says so in one sentence.
 
-HEDON_FUZZ=N damages N files for each command and kind of damage, instead of the few of the suite.
+HEDON_DAMAGED=N damages N files for each command and kind of damage, instead of the few of the suite.
 """
 
 import os
@@ -18,7 +18,7 @@ from hedon.config.problem import ConfigError
 from hedon.error import HedonError
 from hedon.record.folder import LOCK, part_paths
 
-TRIALS = int(os.environ.get("HEDON_FUZZ", "3"))
+TRIALS = int(os.environ.get("HEDON_DAMAGED", "3"))
 
 COMMANDS = {
     "check": ("check", "{run}"),

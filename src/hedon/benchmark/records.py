@@ -42,7 +42,8 @@ def _stream(plan: Plan, folder: Path) -> Row:
     rng = np.random.default_rng(1)
     stream = [agent_rows(world, _made_up(lives, deaths, rng)) for _ in range(windows)]
     population = PopulationSampler(world).row()
-    manifest = Manifest(tuple(config.food), config.genome.neutral_count, (world.seed,), windows)
+    steps = windows * config.learning.rollout_steps
+    manifest = Manifest(tuple(config.food), config.genome.neutral_count, (world.seed,), max(steps, world.step))
 
     wall, total, own = time.perf_counter(), time.process_time(), time.thread_time()
     with Writer(folder, dump_toml(config), manifest) as writer:
@@ -53,7 +54,6 @@ def _stream(plan: Plan, folder: Path) -> Row:
     written = open_run(folder)
     require(written.agents().height == windows * deaths, "records: the agents read back are not those written")
     require(written.population().height == windows, "records: the population rows read back are not those written")
-    steps = windows * config.learning.rollout_steps
     return {
         "stream_rows": windows * (deaths + 1),
         "stream_steps": steps,
