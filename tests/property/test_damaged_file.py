@@ -119,7 +119,7 @@ NEVER = {
 """What a file may hold that no run has written."""
 
 
-@pytest.mark.parametrize("name", [*COMMANDS, *SLOW])
+@pytest.mark.parametrize("name", [*COMMANDS, *(pytest.param(name, marks=pytest.mark.long) for name in SLOW)])
 def test_values_that_no_run_has_end_no_command_in_a_traceback(original, tmp_path, name):
     """In its first, its last or a middle row."""
     draw = random.Random(name)
