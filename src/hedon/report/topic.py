@@ -7,7 +7,7 @@ from hedon.analysis.table import ResultTable
 from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
 from hedon.error import HedonError
-from hedon.replication.claim.table import verdict
+from hedon.study.verdict_table import verdict
 
 TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "verdict": verdict,

@@ -12,7 +12,6 @@ import zipfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 from hedon.experiment.plan import Display, Moment, RunPlan
@@ -22,7 +21,6 @@ from hedon.record.folder import LOCK, checkpoint_paths
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
-from hedon.replication.run.work import answer
 from hedon.report.summary import summarize
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
@@ -58,6 +56,15 @@ class Task:
     folder: Path
     checkpoint_seconds: float
 
+    @property
+    def threads(self) -> int:
+        """One: what a sweep gains by more processors is more batches at a time."""
+        return 1
+
+    def make(self, threads: int, display: Display | None) -> str:
+        """Makes the batch; see `make_batch`."""
+        return make_batch(self, threads, display)
+
 
 def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
     """What a process is given to make a batch of a plan; see `Task`."""
@@ -68,11 +75,6 @@ def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
 def result_name(batch: Batch) -> str:
     """Where a batch's result is."""
     return f"{RESULTS}/{batch.name}.json"
-
-
-def work(task: Task, threads: int, link: Connection) -> None:
-    """Makes a batch in a new process; see `hedon.replication.run.work.answer`."""
-    answer(link, lambda display: make_batch(task, threads, display))
 
 
 def make_batch(task: Task, threads: int, display: Display | None) -> str:

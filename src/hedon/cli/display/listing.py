@@ -5,9 +5,9 @@ from rich.text import Text
 
 from hedon.cli.display.run import duration
 from hedon.cli.display.table import PrintedTable
-from hedon.replication.item.item import Item
-from hedon.replication.request import Request
-from hedon.replication.run.cost import RequestCost
+from hedon.study.cost import RequestCost
+from hedon.study.item import Item
+from hedon.study.request import Request
 
 
 def listing(request: Request, cost: RequestCost) -> Group:

@@ -8,7 +8,7 @@ from rich.text import Text
 from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.experiment.plan import Moment
-from hedon.replication.run.work import Outcome
+from hedon.jobs.work import Outcome
 from hedon.sweep.work import Task
 from hedon.text import printable
 
