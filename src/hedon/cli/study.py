@@ -124,7 +124,12 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
 
 
 def count(number: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs"."""
+    """A number of things: "1 run", "2 runs".
+
+    Args:
+        number: How many.
+        noun: In the singular.
+    """
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 

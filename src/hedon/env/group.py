@@ -39,6 +39,13 @@ class Group:
     Each array is allocated once. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
     "The steps" are those of the last call of `Batch.step`, one or `repeat`.
 
+    Args:
+        index: Of the species in the config's order.
+        columns: Names of the entries of an observation.
+        meal_names: What can be eaten.
+        worlds: How many there are.
+        slots: Of the species in each world.
+
     Attributes:
         columns: Names of the entries of an observation.
         meal_names: What can be eaten: the kinds of food, then, where agents eat agents, the species.

@@ -144,6 +144,14 @@ class World:
     """One world of a simulation, read between runs."""
 
     def __init__(self, engine: Any, index: int, config: Config, seed: int) -> None:
+        """A simulation makes its worlds.
+
+        Args:
+            engine: The compiled simulation, with all worlds.
+            index: Of the world in it.
+            config: Of the world.
+            seed: Of the world.
+        """
         self._engine = engine
         self.index = index
         self.config = config
@@ -202,7 +210,7 @@ class World:
         return self.view("living")[: self.alive]
 
     def view(self, path: str) -> NDArray[Any]:
-        """A read-only view of one array of the state, by slot; valid until the next `run`.
+        """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.
 
         Args:
             path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`

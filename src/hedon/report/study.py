@@ -31,6 +31,10 @@ HTML, MARKDOWN, JSON = "reproduction.html", "reproduction.md", "reproduction.jso
 def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[Made]]:
     """Makes every item of a request and writes it into a folder, over what is there.
 
+    Args:
+        gathered: The worlds of a request, by item.
+        folder: Is made if it is missing.
+
     Returns:
         The page in HTML, and the items.
 

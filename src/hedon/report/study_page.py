@@ -32,12 +32,24 @@ class Made:
 
 
 def html_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
-    """The page as HTML that needs no other file."""
+    """The page as HTML that needs no other file.
+
+    Args:
+        gathered: The worlds of a request, by item.
+        made: The items, in the order of the page.
+        overall: Tables about all of them.
+    """
     return render("study.html.j2", _context(gathered, made, overall))
 
 
 def markdown_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
-    """The page as Markdown, with the figures as files beside it."""
+    """The page as Markdown, with the figures as files beside it.
+
+    Args:
+        gathered: The worlds of a request, by item.
+        made: The items, in the order of the page.
+        overall: Tables about all of them.
+    """
     return render("study.md.j2", _context(gathered, made, overall))
 
 

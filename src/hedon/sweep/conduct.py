@@ -29,7 +29,15 @@ def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) 
 def tasks(
     plan: SweepPlan, store: Store, batches: Iterable[Batch], scratch: Path, checkpoint_seconds: float
 ) -> list[Task]:
-    """What a process is given for each batch: runs are made in the sweep's folder, or else in `scratch`."""
+    """What a process is given for each batch: runs are made in the sweep's folder, or else in `scratch`.
+
+    Args:
+        plan: Of the sweep.
+        store: Where the sweep lives.
+        batches: Those that are not done.
+        scratch: A local folder, for a sweep that lives at a URL.
+        checkpoint_seconds: Time between two checkpoints [s].
+    """
     place = scratch if store.folder is None else store.folder.absolute() / WORK
     where = store.location if store.folder is None else str(store.folder.absolute())
     return [make_task(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
@@ -73,7 +81,17 @@ class Silent:
     """A display that shows nothing."""
 
     def update(self, job: Task, moment: Moment) -> None:
-        """Shows nothing."""
+        """Shows nothing.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
 
     def end(self, job: Task, outcome: Outcome) -> None:
-        """Shows nothing."""
+        """Shows nothing.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """

@@ -62,12 +62,25 @@ class Task:
         return 1
 
     def make(self, threads: int, display: Display | None) -> str:
-        """Makes the batch; see `make_batch`."""
+        """Makes the batch; see `make_batch`.
+
+        Args:
+            threads: That the process may use.
+            display: Shows progress.
+        """
         return make_batch(self, threads, display)
 
 
 def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
-    """What a process is given to make a batch of a plan; see `Task`."""
+    """What a process is given to make a batch of a plan; see `Task`.
+
+    Args:
+        location: Of the sweep's store, as a process in another folder finds it.
+        plan: Of the sweep.
+        batch: To make.
+        folder: Where its run is made.
+        checkpoint_seconds: Time between two checkpoints [s].
+    """
     settings = plan.settings[batch.condition]
     return Task(location, batch, settings, plan.steps, plan.keep, folder, checkpoint_seconds)
 
@@ -79,6 +92,11 @@ def result_name(batch: Batch) -> str:
 
 def make_batch(task: Task, threads: int, display: Display | None) -> str:
     """Makes a batch, from where it is, and writes its result.
+
+    Args:
+        task: What to make.
+        threads: That the process may use.
+        display: Shows progress.
 
     Returns:
         "finished", or "interrupted".
@@ -156,7 +174,12 @@ class _Carrying:
 
 
 def newest_checkpoint(store: Store, task: Task) -> str:
-    """The name of the last checkpoint from which a batch would go on; empty where there is none."""
+    """The name of the last checkpoint from which a batch would go on; empty where there is none.
+
+    Args:
+        store: Where the sweep lives.
+        task: Of the batch.
+    """
     if store.folder is not None:
         return _newest(task.folder)
     with suppress(SweepError, zipfile.BadZipFile):

@@ -11,7 +11,12 @@ from hedon.study.request import Request
 
 
 def listing(request: Request, cost: RequestCost) -> Group:
-    """What `hedon reproduce list` prints."""
+    """What `hedon reproduce list` prints.
+
+    Args:
+        request: The items that the user asked for.
+        cost: What their runs take [s].
+    """
     rows = [
         (item.name, item.kind, item.title, _needs(request, item), _time(its.total), _time(its.left))
         for item, its in zip(request.items, cost.items, strict=True)

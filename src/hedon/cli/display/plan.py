@@ -41,7 +41,12 @@ class PlanDisplay(Screen):
         self._seen: deque[tuple[float, int]] = deque()
 
     def update(self, job: RunJob, moment: Moment) -> None:
-        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
+        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
         self._moments[job.folder] = moment
         living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.
@@ -55,7 +60,12 @@ class PlanDisplay(Screen):
         self.show(lambda: f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", self._draw)
 
     def end(self, job: RunJob, outcome: Outcome) -> None:
-        """Notes the end of a run and prints a line that says how it ended."""
+        """Notes the end of a run and prints a line that says how it ended.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """
         moment = self._moments.pop(job.folder, None)
         self._ended += 1
         if outcome.status == "finished":

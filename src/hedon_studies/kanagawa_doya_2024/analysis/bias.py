@@ -78,7 +78,12 @@ class GeneDrift:
 
 
 def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> GeneDrift | None:
-    """Prediction and observation of one gene.
+    """Predicts where mutation alone carries a gene, and compares it with what happened.
+
+    Args:
+        world: a world with its agents.
+        weight: a genome column.
+        rng: source of chance for the walks.
 
     Returns:
         None where no birth is recorded.
@@ -119,7 +124,12 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
 
 
 def compare(drifts: Sequence[GeneDrift], comparison: str) -> Prediction:
-    """One of the `COMPARISONS`, over worlds and genes."""
+    """Correlates what is predicted with what is seen, over worlds and genes.
+
+    Args:
+        drifts: one per world and gene.
+        comparison: a key of `COMPARISONS`.
+    """
     predicted, seen = COMPARISONS[comparison]
     return prediction((getattr(d, predicted) for d in drifts), (getattr(d, seen) for d in drifts))
 
