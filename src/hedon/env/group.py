@@ -133,7 +133,7 @@ class Group:
             world, slot, motor = np.argwhere(~np.isfinite(self.actions))[0]
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]})"
             raise ArgumentError(f"{place} = {self.actions[world, slot, motor]}: must be a finite number")
-        engine.command(self._index, self.actions)
+        engine.set_actions(self._index, self.actions)
 
     def _begin(self) -> None:
         """What follows is counted from here."""
@@ -143,7 +143,7 @@ class Group:
 
     def _look(self, engine: Any) -> None:
         """Reads what there is after the only step since `_begin`."""
-        engine.show(self._index, self.observations, self.rewards, self.ids)
+        engine.read_observations(self._index, self.observations, self.rewards, self.ids)
         self._finish(engine)
 
     def _count(self, engine: Any, *, last: bool) -> None:
@@ -153,9 +153,9 @@ class Group:
         late = self._late = np.zeros_like(self.rewards) if self._late is None else self._late
         acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
         if last:
-            engine.show(self._index, self.observations, paid, self.ids)
+            engine.read_observations(self._index, self.observations, paid, self.ids)
         else:
-            engine.pay(self._index, paid, self.ids)
+            engine.read_rewards(self._index, paid, self.ids)
         old = acting == self.ids_before
         self.rewards[old] += paid[old]
         late[~old] += paid[~old]

@@ -182,12 +182,12 @@ class World:
     def waiting_deaths(self) -> float:
         """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
         head = self._engine.head(self.index)
-        return (head["event_count"] + head["events_lost"]) / len(self.view("event.birth_step"))
+        return (head["death_log_count"] + head["death_log_lost"]) / len(self.view("death_log.birth_step"))
 
     @property
     def lost_deaths(self) -> int:
         """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
-        return self._engine.head(self.index)["events_lost"]
+        return self._engine.head(self.index)["death_log_lost"]
 
     @property
     def counters(self) -> dict[str, Any]:
@@ -248,7 +248,7 @@ class World:
         """
         lost = self.lost_deaths
         if lost and not partial:
-            room = len(self.view("event.birth_step"))
+            room = len(self.view("death_log.birth_step"))
             raise EngineError(
                 f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
                 "call World.deaths more often, or take those that are left with World.deaths(partial=True)"

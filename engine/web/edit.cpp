@@ -1,4 +1,4 @@
-#include "web/hand.h"
+#include "web/edit.h"
 
 #include "world/population.h"
 #include "world/step.h"
@@ -54,11 +54,11 @@ std::string add_food(World& world, int32_t kind, Vec2 position) {
 std::string remove_agent(World& world, int32_t slot) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
-  if (head.event_count >= world.shape->events) return "too many deaths wait to be read";
+  if (head.death_log_count >= world.shape->death_log_rows) return "too many deaths wait to be read";
   world.scratch.starved[slot] = 0;
   if (world.shape->hunting) world.scratch.eaten[slot] = 0;
   kill(world, slot);
-  state.event[head.event_count - 1].death_step = head.step;
+  state.death_log[head.death_log_count - 1].death_step = head.step;
   int32_t kept = 0;
   for (int32_t i = 0; i < head.living_count; ++i) {
     if (state.living[i] != slot) state.living[kept++] = state.living[i];
@@ -87,13 +87,13 @@ std::string settle(World& world, std::string refused) {
 
 }  // namespace
 
-std::string add_by_hand(World& world, int32_t type, Vec2 position) {
+std::string add_thing(World& world, int32_t type, Vec2 position) {
   const int32_t species = world.shape->species;
   if (type < 0 || type >= species + world.shape->kinds) return "there is no such species or food";
   return settle(world, type < species ? add_agent(world, type, position) : add_food(world, type - species, position));
 }
 
-std::string remove_by_hand(World& world, Vec2 position, float slack) {
+std::string remove_thing(World& world, Vec2 position, float slack) {
   Nearest agents(position), foods(position);
   const BodyState& body = world.state.physics.bodies;
   for (int32_t i = 0; i < world.head().living_count; ++i) {

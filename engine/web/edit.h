@@ -14,10 +14,10 @@ namespace hedon {
 
 /// Adds a thing of a type, counted as the senses do: first the species, then the kinds of food. Returns "", or why
 /// there is no room for it; then nothing has changed.
-std::string add_by_hand(World& world, int32_t type, Vec2 position);
+std::string add_thing(World& world, int32_t type, Vec2 position);
 
 /// Takes out the agent whose body is at a place, or else the food there, with `slack` beyond their rims. Returns "", or
 /// what is wrong.
-std::string remove_by_hand(World& world, Vec2 position, float slack);
+std::string remove_thing(World& world, Vec2 position, float slack);
 
 }  // namespace hedon

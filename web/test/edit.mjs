@@ -1,4 +1,4 @@
-// Changes a world by hand in Node, and prints what became of it: node hand.mjs MODULE TEXT [add]
+// Changes a world by hand in Node, and prints what became of it: node edit.mjs MODULE TEXT [add]
 // With `add`, it adds somebody first, and lets a refusal through.
 import { make } from "./make.mjs";
 
@@ -25,7 +25,7 @@ const firstFree = (kind) => {
 if (process.argv[4] === "add") world.add(0, 100, 100);
 world.runWhole(100);
 world.takeDeaths();
-told.untouched = world.byHand;
+told.untouched = world.edited;
 world.keep();
 world.runWhole(200);
 told.first = world.digest();
@@ -40,10 +40,10 @@ told.alive.push(alive());
 told.overlap = refused(() => world.add(0, ...place));
 told.wall = refused(() => world.add(0, -5, 3));
 told.unknown = refused(() => world.add(99, 50, 50));
-told.byHand = world.byHand;
+told.edited = world.edited;
 world.remove(...place, 0);
 told.alive.push(alive());
-told.death = [Number(world.view("event.death_step")[world.number("head.event_count") - 1]), world.number("head.step")];
+told.death = [Number(world.view("death_log.death_step")[world.number("head.death_log_count") - 1]), world.number("head.step")];
 told.foods = [foods()];
 const meal = firstFree(1);
 told.foods.push(foods());

@@ -9,11 +9,11 @@
 namespace hedon {
 
 /// Runs `for_each_claimed` only over the pieces [first, last), and `once` only with the last of all pieces. Calling
-/// `learn_window` with portion after portion does what one call with the team does: its pieces are independent. Each
+/// `learn_window` with slice after slice does what one call with the team does: its pieces are independent. Each
 /// member of the team has its own.
-class Portion {
+class WorkSlice {
  public:
-  Portion(Team& team, int32_t first, int32_t last) : team_(&team), first_(first), last_(last) {}
+  WorkSlice(Team& team, int32_t first, int32_t last) : team_(&team), first_(first), last_(last) {}
 
   int rank() const { return team_->rank(); }
   int size() const { return team_->size(); }
@@ -29,10 +29,10 @@ class Portion {
     if (done()) team_->once(body);
   }
 
-  /// Whether no piece is left after this portion.
+  /// Whether no piece is left after this slice.
   bool done() const { return last_ >= count_; }
 
-  /// Pieces of all portions together.
+  /// Pieces of all slices together.
   int32_t count() const { return count_; }
 
  private:
