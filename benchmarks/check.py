@@ -60,7 +60,7 @@ def check_same_lives(simulations: Iterable[Simulation]) -> None:
     seen: dict[tuple[str, int], tuple[str, int]] = {}
     for simulation in simulations:
         for world in simulation.worlds:
-            key = (simulation.engine.kernel, world.seed)
+            key = (simulation.engine.backend, world.seed)
             digest, threads = seen.setdefault(key, (world.digest(), simulation.engine.threads))
             require(
                 digest == world.digest(),

@@ -26,7 +26,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     for worlds in plan.worlds or ((1, 2) if plan.quick else WORLDS):
         if sum(memory_needed(config, worlds).values()) > memory_present():
             continue
-        simulation = Simulation(config, range(1, worlds + 1), kernel=plan.device)
+        simulation = Simulation(config, range(1, worlds + 1), backend=plan.device)
         go_on_from_peopled(plan, simulation)
         simulation.run(window)
         begun = simulation.engine.device_seconds

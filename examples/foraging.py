@@ -22,12 +22,12 @@ SETTINGS = ("hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0")
 """Nobody is born or dies: what counts is food."""
 
 
-def eaten(worlds: hedon.env.Batch) -> NDArray[np.float64]:
+def eaten(worlds: hedon.env.VectorEnv) -> NDArray[np.float64]:
     """Foods eaten per agent since the beginning, (worlds,)."""
     return np.array([world.agents()["eaten"].sum() / world.alive for world in worlds.simulation.worlds])
 
 
-def forage(worlds: hedon.env.Batch, weights: NDArray[np.float64], seeds: range) -> NDArray[np.float64]:
+def forage(worlds: hedon.env.VectorEnv, weights: NDArray[np.float64], seeds: range) -> NDArray[np.float64]:
     """Lets the agents of each world act by the weights of its row, (worlds, rays + 1); returns `eaten`."""
     worlds.reset(seeds)
     agents = worlds.groups["agent"]
@@ -42,7 +42,7 @@ def forage(worlds: hedon.env.Batch, weights: NDArray[np.float64], seeds: range) 
     return eaten(worlds)
 
 
-def train(worlds: hedon.env.Batch, generations: int, rng: np.random.Generator) -> NDArray[np.float64]:
+def train(worlds: hedon.env.VectorEnv, generations: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """The mean of the candidates after some generations of the cross-entropy method, (rays + 1,)."""
     rays = worlds.config.sensor.ray_count
     mean, sd = np.zeros(rays + 1), np.full(rays + 1, 2.0)
@@ -58,7 +58,7 @@ def train(worlds: hedon.env.Batch, generations: int, rng: np.random.Generator) -
 def compare(generations: int, threads: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Foods per agent in worlds that training did not see: with the trained policy, and with random actions."""
     config = hedon.load_config("baseline", overrides=SETTINGS)
-    worlds = hedon.env.batch(config, range(CANDIDATES), threads=threads)
+    worlds = hedon.env.vector_env(config, range(CANDIDATES), threads=threads)
     weights = train(worlds, generations, np.random.default_rng(1))
     fresh = range(1_000_000, 1_000_000 + CANDIDATES)
     trained = forage(worlds, np.tile(weights, (CANDIDATES, 1)), fresh)

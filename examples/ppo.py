@@ -41,7 +41,7 @@ class Foragers(VecEnv):
 
     def __init__(self, first_seed: int, worlds: int = WORLDS) -> None:
         config = hedon.load_config("baseline", overrides=SETTINGS)
-        self.worlds = hedon.env.batch(config, range(first_seed, first_seed + worlds), threads=1)
+        self.worlds = hedon.env.vector_env(config, range(first_seed, first_seed + worlds), threads=1)
         self.agents = self.worlds.groups["agent"]
         self.next_seed, self.step_count = first_seed, 0
         slots = self.agents.ids.size

@@ -57,7 +57,7 @@ def build(threads: int = THREADS, *, system_threads: bool = False) -> Path:
 
 @pytest.fixture
 def emulated(monkeypatch: pytest.MonkeyPatch) -> str:
-    """The name of the emulated device, ready for `Simulation(kernel=…)`."""
+    """The name of the emulated device, ready for `Simulation(backend=…)`."""
     monkeypatch.setenv(EMULATION_VARIABLE, str(build()))
     return EMULATED
 

@@ -224,9 +224,9 @@ def times(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
 
 
 def commands(trial: Trial, folder: Path) -> dict[str, Any]:
-    """A run by `hedon run --device cuda` that is interrupted, resumed on the processor, and checked."""
+    """A run by `hedon run --backend cuda` that is interrupted, resumed on the processor, and checked."""
     kernel = "cuda-emulated" if trial.emulated else "cuda"
-    environment, device = ({"HEDON_KERNEL": kernel}, ()) if trial.emulated else ({}, ("--device", kernel))
+    environment, device = ({"HEDON_BACKEND": kernel}, ()) if trial.emulated else ({}, ("--backend", kernel))
     if subprocess.run([sys.executable, "-c", "import hedon"], capture_output=True, check=False).returncode != 0:
         return {"skipped": "this Python has no hedon"}
     if trial.emulated:
@@ -262,7 +262,7 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
         for place in (out, whole)
         if (place / "manifest.json").exists()
     ]
-    found["kernels"] = [session["kernel"] for session in digests[0]["sessions"]] if digests else []
+    found["kernels"] = [session["backend"] for session in digests[0]["sessions"]] if digests else []
     same = len(digests) == 2 and all(digests[0][key] == digests[1][key] for key in ("world_digests", "records_digest"))
     return found if same else {**found, "failed": "the interrupted run has other digests than the whole one"}
 

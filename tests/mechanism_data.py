@@ -10,7 +10,7 @@ from hedon.config.config import Config
 from hedon.config.layout import gene_columns, layouts, observation_columns
 from hedon.experiment.simulation import Simulation
 from hedon.record.founder import Founders, make_founders
-from hedon.record.network import Networks, frozen_species
+from hedon.record.network import Networks, fixed_species
 
 
 def founders_of(world: Mixture, config: Config) -> Founders | None:
@@ -26,7 +26,7 @@ def networks_of(world: Mixture, config: Config) -> Networks | None:
     if not world.any("networks"):
         return None
     params, inputs = {}, {}
-    for i, name in enumerate(frozen_species(config)):
+    for i, name in enumerate(fixed_species(config)):
         inputs[name] = observation_columns(config, name)
         draw = np.random.default_rng(i)
         params[name] = draw.normal(0.0, 0.1, (3, _size(config, name))).astype(np.float32)

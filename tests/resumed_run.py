@@ -33,11 +33,11 @@ def small_run(
     frames: int = 0,
     overrides: Iterable[str] = (),
     checkpoint_seconds: float = 1e9,
-    kernel: str = "",
+    backend: str = "",
 ) -> Manifest:
     """Runs a small baseline; with the default interval it keeps a checkpoint at its start and at its end."""
     config = load_config("baseline", overrides=(*SMALL, *overrides))
-    return run(RunPlan(config, seeds, steps, out, 1, frames, checkpoint_seconds, kernel=kernel))
+    return run(RunPlan(config, seeds, steps, out, 1, frames, checkpoint_seconds, backend=backend))
 
 
 def assert_same_run(folder: Path, other: Path) -> None:

@@ -177,7 +177,7 @@ def write_run(
         name=name,
         modified=modified,
         hedon_version="0.1.0",
-        kernel="portable",
+        backend="portable",
         status="finished",
         run_seconds=10.0,
     )

@@ -22,7 +22,7 @@ from hedon.check.run import check_run
 from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
 from hedon.config.load import load_config
-from hedon.env.batch import batch
+from hedon.env.vector import vector_env
 from hedon.error import ArgumentError
 from hedon.experiment.plan import Moment, RunPlan
 from hedon.experiment.replay import replay_run
@@ -297,7 +297,7 @@ RECORDED: dict[str, Callable[[Trial], None]] = {
 def _driven(trial: Trial) -> None:
     """Who drives agents from outside gets the same worlds on any number of threads; a run refuses them."""
     config, repeat = trial.config(), trial.draw.randrange(1, 7)
-    pair = [batch(config, SEEDS, threads=threads) for threads in (1, 2)]
+    pair = [vector_env(config, SEEDS, threads=threads) for threads in (1, 2)]
     for each in pair:
         for _ in range(STEPS // repeat):
             for group in each.groups.values():

@@ -25,10 +25,10 @@ RELEASED = tuple(
 
 
 def make_simulation(
-    *overrides: str, preset: str = "baseline", seeds: Sequence[int] = (1,), threads: int = 1, kernel: str = ""
+    *overrides: str, preset: str = "baseline", seeds: Sequence[int] = (1,), threads: int = 1, backend: str = ""
 ) -> Simulation:
     """A simulation of a preset with overrides, on one thread unless asked otherwise."""
-    return Simulation(load_config(preset, overrides=overrides), seeds, threads, kernel)
+    return Simulation(load_config(preset, overrides=overrides), seeds, threads, backend)
 
 
 def make_engine(

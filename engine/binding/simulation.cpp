@@ -364,7 +364,7 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("device_count", [](S& s) { return s.get().device_count(); })
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })
-      .def_prop_ro("kernel", [](S& s) { return s.get().kernel_name(); })
+      .def_prop_ro("backend", [](S& s) { return s.get().kernel_name(); })
       .def_prop_ro("bytes_per_world", [](S& s) { return s.get().bytes_per_world(); });
 }
 

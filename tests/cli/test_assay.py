@@ -110,9 +110,9 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
 def test_a_start_begins_at_its_point(folder: Path) -> None:
     lively = ("--set", "learning.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
     options = (*lively, "--set", "hazard.kappa=0.1", "--steps", "1024", "--seeds", "1-3", "--out", "start")
-    answer = call(folder, "start", "baseline", "--at", "food=5,action=-4", "--beside", "food=0", *options)
+    answer = call(folder, "stability", "baseline", "--at", "food=5,action=-4", "--beside", "food=0", *options)
     assert answer.returncode == 0, answer.stderr
-    found = json.loads((folder / "start" / "start.json").read_text(encoding="utf-8"))
+    found = json.loads((folder / "start" / "stability.json").read_text(encoding="utf-8"))
     assert [each["point"] for each in found["starts"]] == [
         {"w_normal": 5.0, "w_action": -4.0},
         {"w_normal": 0.0, "w_action": 0.0},
@@ -141,8 +141,8 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
         (("compete", "food=1", "nowhere"), "there is no such file or folder"),
         (("knockout", "whole/run", "acton"), "did you mean action?"),
         (("knockout", "whole/run@99999999", "action"), "has only 3,072 steps"),
-        (("start", "baseline", "--at", "food=50"), "must be one number from -10 to 10"),
-        (("start", "baseline", "--at", "neutral_1=1"), "a neutral marker is the control"),
+        (("stability", "baseline", "--at", "food=50"), "must be one number from -10 to 10"),
+        (("stability", "baseline", "--at", "neutral_1=1"), "a neutral marker is the control"),
     ],
 )
 def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...], message: str) -> None:

@@ -1,4 +1,4 @@
-"""`hedon run --device`: what is said where there is no device, whether its library is built or not."""
+"""`hedon run --backend`: what is said where there is no device, whether its library is built or not."""
 
 import os
 import subprocess
@@ -13,10 +13,10 @@ def call(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize(
-    ("device", "expected"), [("cuda", "cannot be used: "), ("cdua", "--device: 'cdua' is none of: cpu, cuda")]
+    ("backend", "expected"), [("cuda", "cannot be used: "), ("cdua", "--backend 'cdua': is none of ")]
 )
-def test_without_a_device_one_sentence_is_said(tmp_path: Path, device: str, expected: str):
-    answer = call("run", "baseline", "--device", device, "--out", tmp_path / "run")
+def test_without_a_device_one_sentence_is_said(tmp_path: Path, backend: str, expected: str):
+    answer = call("run", "baseline", "--backend", backend, "--out", tmp_path / "run")
     assert answer.returncode == 2
     assert expected in answer.stderr
     assert "Traceback" not in answer.stderr

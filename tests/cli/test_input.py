@@ -68,7 +68,7 @@ def test_values_of_settings_that_are_none(value: str) -> None:
 
 def test_an_output_of_ascii_alone_is_served() -> None:
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    for command in (["demography", "baseline"], ["config", "show", "baseline"]):
+    for command in (["forecast", "baseline"], ["config", "show", "baseline"]):
         answer = subprocess.run(["hedon", *command], capture_output=True, text=True, check=False, env=environment)
         assert (answer.returncode, answer.stderr) == (0, "")
 

@@ -11,7 +11,7 @@ COMMANDS = [
     ("--help",),
     ("--version",),
     ("config", "show", "baseline"),
-    ("demography", "baseline"),
+    ("forecast", "baseline"),
     ("view", "--live", "small", "--export", "{out}"),
     ("run", "small", "--steps", "64", "--out", "{out}", "--threads", "1"),
 ]

@@ -48,13 +48,13 @@ def test_the_manifest_says_how_to_repeat_the_run(finished):
     assert manifest["seeds"] == [3, 5]
     assert manifest["status"] == "finished"
     assert manifest["steps_done"] == [1300, 1300]
-    assert manifest["kernel"] in ("avx512", "avx2", "portable")
+    assert manifest["backend"] in ("avx512", "avx2", "portable")
     assert manifest["fidelity"] == "released"
     assert manifest["name"] == "poison"
     assert manifest["modified"] is True
     config = hedon.load_config(folder / "config.toml")
     assert config.genome.mutation_noise == "frozen"
-    simulation = hedon.Simulation(config, manifest["seeds"], kernel=manifest["kernel"])
+    simulation = hedon.Simulation(config, manifest["seeds"], backend=manifest["backend"])
     simulation.run(1300)
     run = hedon.open_run(folder)
     living = run.agents().filter(pl.col("world") == 1, pl.col("death_step").is_null()).sort("agent_id")
@@ -138,7 +138,7 @@ def test_mistakes_get_one_clear_message(tmp_path, arguments, words):
 
 
 def test_an_unknown_kernel_is_named(tmp_path):
-    answer = answer_of("run", "baseline", "--out", tmp_path / "out", HEDON_KERNEL="sse9")
+    answer = answer_of("run", "baseline", "--out", tmp_path / "out", HEDON_BACKEND="sse9")
     assert answer.returncode == 2
     assert "sse9" in answer.stderr
     assert "portable" in answer.stderr

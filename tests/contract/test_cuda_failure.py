@@ -18,7 +18,7 @@ from hedon.error import EngineError
 from hedon.experiment import device
 from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.resume import resume
-from hedon.experiment.simulation import KERNEL_VARIABLE
+from hedon.experiment.simulation import BACKEND_VARIABLE
 from hedon.record.manifest import load_manifest
 
 pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
@@ -40,13 +40,13 @@ def fails(emulated: str) -> Iterator[Fails]:
 def test_too_little_memory_is_one_sentence_and_leaves_the_device_usable(emulated: str, fails: Fails):
     fails(NEVER, 1_000_000)
     with pytest.raises(EngineError, match="device 'cuda-emulated': the device has too little memory for these"):
-        make_simulation(*QUICK, *FEW, kernel=emulated)
+        make_simulation(*QUICK, *FEW, backend=emulated)
     fails(NEVER, NEVER)
-    make_simulation(*QUICK, *FEW, kernel=emulated).run(3)
+    make_simulation(*QUICK, *FEW, backend=emulated).run(3)
 
 
 def test_a_device_that_is_lost_takes_nothing_with_it_that_the_host_has(emulated: str, fails: Fails):
-    simulation = make_simulation(*QUICK, *FEW, seeds=(1, 2, 3), kernel=emulated)
+    simulation = make_simulation(*QUICK, *FEW, seeds=(1, 2, 3), backend=emulated)
     simulation.run(5)
     alive = [world.alive for world in simulation.worlds]
     fails(1, NEVER)
@@ -64,9 +64,9 @@ def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
 ):
     """And has the bits of a run that lost nothing."""
     whole = small_run(tmp_path / "whole", 6 * WINDOW)
-    assert small_run(tmp_path / "run", 2 * WINDOW, kernel=emulated).status == "finished"
+    assert small_run(tmp_path / "run", 2 * WINDOW, backend=emulated).status == "finished"
     with monkeypatch.context() as asked:
-        asked.setenv(KERNEL_VARIABLE, emulated)
+        asked.setenv(BACKEND_VARIABLE, emulated)
         fails(4, NEVER)
         with pytest.raises(EngineError, match="is lost"):
             resume(tmp_path / "run", 6 * WINDOW)
@@ -87,7 +87,7 @@ def test_the_host_waits_for_a_device_at_the_ends_of_windows_alone(
     monkeypatch.setattr("hedon.experiment.run.PIECE_SECONDS", 1e-9)
     fails(6, NEVER)
     long = ("learning.rollout_steps=128", "hazard.kappa=0.001")
-    assert small_run(tmp_path / "run", 4 * 128, seeds=(1,), overrides=long, kernel=emulated).status == "finished"
+    assert small_run(tmp_path / "run", 4 * 128, seeds=(1,), overrides=long, backend=emulated).status == "finished"
 
 
 def test_a_library_that_is_older_than_the_engine_is_refused(
@@ -104,10 +104,10 @@ def test_a_library_that_is_older_than_the_engine_is_refused(
 
 @pytest.mark.parametrize("worlds", [1, 2, 5])
 def test_worlds_are_dealt_out_to_all_devices(emulated: str, worlds: int):
-    simulation = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), kernel=emulated)
+    simulation = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), backend=emulated)
     assert simulation.engine.device_count == min(worlds, 2)
     simulation.run(70)
-    same = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), kernel="avx2")
+    same = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), backend="avx2")
     same.run(70)
     assert [world.digest() for world in simulation.worlds] == [world.digest() for world in same.worlds]
     seconds = simulation.engine.device_seconds

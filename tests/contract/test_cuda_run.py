@@ -15,9 +15,9 @@ from hedon.check.run import check_run
 from hedon.config.load import load_config
 from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.plan import RunPlan
-from hedon.experiment.resume import hold, resume
+from hedon.experiment.resume import lock, resume
 from hedon.experiment.run import run
-from hedon.experiment.simulation import KERNEL_VARIABLE
+from hedon.experiment.simulation import BACKEND_VARIABLE
 from hedon.record.manifest import load_manifest
 
 pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
@@ -38,21 +38,21 @@ def test_a_run_goes_on_from_device_to_processor_with_the_same_bits(
     config = load_config("baseline", overrides=SETTINGS)
 
     def plan(name: str, steps: int, kernel: str) -> RunPlan:
-        return RunPlan(config, (1, 2), steps, tmp_path / name, 1, kernel=kernel)
+        return RunPlan(config, (1, 2), steps, tmp_path / name, 1, backend=kernel)
 
     run(plan("mixed", 40, emulated))
     with monkeypatch.context() as asked:
-        asked.setenv(KERNEL_VARIABLE, emulated)
+        asked.setenv(BACKEND_VARIABLE, emulated)
         resume(tmp_path / "mixed", 75, 1)
     monkeypatch.delenv(EMULATION_VARIABLE)
-    with hold(tmp_path / "mixed", 100) as found:
+    with lock(tmp_path / "mixed", 100) as found:
         assert any("continuing on the processor, with the same bits" in note for note in found.notes)
     mixed = resume(tmp_path / "mixed", 100, 1)
     whole = run(plan("whole", 100, "avx2"))
     assert mixed.world_digests == whole.world_digests
     assert mixed.records_digest == whole.records_digest
     assert check_run(tmp_path / "mixed").findings == ()
-    kernels = [session.kernel for session in mixed.sessions]
+    kernels = [session.backend for session in mixed.sessions]
     assert kernels[:2] == [emulated, emulated]
     assert kernels[2] in ("avx2", "avx512")
 
@@ -69,7 +69,7 @@ def settings() -> list[str]:
 def test_commands_take_the_device_as_the_processor(emulated: str, tmp_path: Path):
     """run, Ctrl-C, resume without naming the device, branch, and the check of both folders."""
     folder = tmp_path / "run"
-    command = ["hedon", "run", "baseline", "--device", emulated, "--seeds", "1-3", "--steps", "3200", *settings()]
+    command = ["hedon", "run", "baseline", "--backend", emulated, "--seeds", "1-3", "--steps", "3200", *settings()]
     process = subprocess.Popen([*command, "--out", str(folder), "--checkpoint", "0"], stdout=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60
     while len(list(folder.glob("population/*"))) == 0 and process.poll() is None and time.monotonic() < deadline:
@@ -84,7 +84,7 @@ def test_commands_take_the_device_as_the_processor(emulated: str, tmp_path: Path
     (branched,) = tmp_path.glob("run-branch*")
     for place in (folder, branched):
         assert cli("check", place).returncode == 0
-        assert {session.kernel for session in load_manifest(place).sessions} == {emulated}
+        assert {session.backend for session in load_manifest(place).sessions} == {emulated}
 
 
 def test_benchmarks_measure_a_device_and_compare_its_bits(emulated: str, tmp_path: Path):
@@ -103,7 +103,7 @@ def test_a_sweep_on_a_device_gives_the_table_of_the_processor(
 ):
     file = sweep_file(tmp_path, steps=96, seeds=1, worlds=1)
     for place, kernel in (("device", emulated), ("here", "avx2")):
-        monkeypatch.setenv(KERNEL_VARIABLE, kernel)
+        monkeypatch.setenv(BACKEND_VARIABLE, kernel)
         answer = cli("sweep", "run", file, "--workers", 1, "--out", tmp_path / place)
         assert answer.returncode == 0, answer.stderr
     assert_same_table(table_of(str(tmp_path / "device")), table_of(str(tmp_path / "here")))

@@ -23,7 +23,7 @@ FEW = ("population.capacity=24", "population.initial_count=12")
 
 def pair(emulated: str, *overrides: str, preset: str = "baseline", seeds: tuple[int, ...] = (1,)):
     return tuple(
-        make_simulation(*overrides, preset=preset, seeds=seeds, kernel=kernel) for kernel in ("avx2", emulated)
+        make_simulation(*overrides, preset=preset, seeds=seeds, backend=kernel) for kernel in ("avx2", emulated)
     )
 
 
@@ -160,10 +160,10 @@ def test_not_a_number_is_found_where_the_processor_finds_it(emulated: str):
 
 def test_what_a_device_cannot_do_is_refused(emulated: str):
     with pytest.raises(EngineError, match="actions of a program"):
-        make_simulation('learning.policy="external"', kernel=emulated)
+        make_simulation('learning.policy="external"', backend=emulated)
     many = [f"food.kind{i}.energy=1" for i in range(6)]
     with pytest.raises(EngineError, match=r"have \d+ inputs, and device 'cuda-emulated' learns with at most \d+"):
-        make_simulation(*many, "sensor.touch_sectors=14", kernel=emulated)
+        make_simulation(*many, "sensor.touch_sectors=14", backend=emulated)
 
 
 def test_views_and_rows_are_those_of_the_device(emulated: str):

@@ -10,7 +10,7 @@ from resumed_run import WINDOW, assert_same_run, small_run
 
 from hedon import _engine
 from hedon.experiment.branch import branch
-from hedon.experiment.resume import hold, resume
+from hedon.experiment.resume import lock, resume
 from hedon.record.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS, checkpoint_paths, part_path, part_paths
@@ -84,7 +84,7 @@ def test_rows_after_the_checkpoint_are_taken_back(half, whole):
     for table in TABLE_FOLDERS:  # and had written them in many more parts
         shutil.copy(part_paths(half, table)[-1], part_path(half, table, 57))
     rows = open_run(half).population().height
-    with hold(half, STEPS) as found:
+    with lock(half, STEPS) as found:
         assert found.step == 0
         assert checkpoint_paths(half) == [first]
     assert open_run(half).population().height == rows, "looking changes nothing"
@@ -102,7 +102,7 @@ def test_what_is_finished_needs_more_steps(half):
 def test_a_damaged_checkpoint_is_passed_over(half, whole):
     first, last = checkpoint_paths(half)
     last.write_bytes(last.read_bytes()[:-1000])
-    with hold(half, STEPS) as found:
+    with lock(half, STEPS) as found:
         assert found.step == 0
         assert found.notes[0].startswith(f"damaged checkpoint {last}: ")
         assert "continuing from the checkpoint before it" in found.notes[0]
@@ -175,24 +175,24 @@ def test_a_checkpoint_of_another_version_config_or_shape_says_what_differs(half)
 
 
 def test_a_run_keeps_its_instruction_set(tmp_path, monkeypatch):
-    monkeypatch.setenv("HEDON_KERNEL", "portable")
+    monkeypatch.setenv("HEDON_BACKEND", "portable")
     small_run(tmp_path / "a", 200)
     small_run(tmp_path / "b", 100)
-    monkeypatch.delenv("HEDON_KERNEL")
+    monkeypatch.delenv("HEDON_BACKEND")
     resume(tmp_path / "b", steps=200)
     assert_same_run(tmp_path / "a", tmp_path / "b")
-    assert load_manifest(tmp_path / "b").sessions[1].kernel == "portable"
+    assert load_manifest(tmp_path / "b").sessions[1].backend == "portable"
 
 
 @pytest.mark.skipif(len(_engine.kernel.kernel_names()) < 2, reason="this processor has one instruction set")
 def test_other_bits_are_refused_and_the_same_bits_are_not(tmp_path, monkeypatch):
     small_run(tmp_path / "run", 100)
-    monkeypatch.setenv("HEDON_KERNEL", "portable")
-    with pytest.raises(RecordError, match=r"instruction set .* HEDON_KERNEL asks for portable"):
+    monkeypatch.setenv("HEDON_BACKEND", "portable")
+    with pytest.raises(RecordError, match=r"instruction set .* HEDON_BACKEND asks for portable"):
         resume(tmp_path / "run", steps=200)
-    monkeypatch.setenv("HEDON_KERNEL", "avx2")
+    monkeypatch.setenv("HEDON_BACKEND", "avx2")
     resume(tmp_path / "run", steps=200)
-    monkeypatch.delenv("HEDON_KERNEL")
+    monkeypatch.delenv("HEDON_BACKEND")
     small_run(tmp_path / "left alone", 200)
     assert_same_run(tmp_path / "run", tmp_path / "left alone")
 

@@ -16,7 +16,7 @@ from hedon.config.dump import digest, dump_toml
 from hedon.config.load import parse_config
 from hedon.experiment.fault import replay_fault
 from hedon.experiment.replay import replay_run
-from hedon.experiment.resume import hold
+from hedon.experiment.resume import lock
 from hedon.experiment.rule import RuleError
 
 pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
@@ -87,7 +87,7 @@ def test_a_moved_run_goes_on_without_the_file(study, tmp_path, monkeypatch):
     (study / "run").rename(moved)
     shutil.rmtree(study / "rules")
     monkeypatch.chdir("/")
-    with hold(moved, 160) as found:
+    with lock(moved, 160) as found:
         assert not any("own.py" in note for note in found.notes)
     done = resume(moved, 160, 1)
     assert done.world_digests == whole.world_digests
@@ -105,7 +105,7 @@ def test_a_file_that_changed_is_named_and_its_new_text_not_used(study):
     whole = run(plan(study, "whole", 160))
     run(plan(study, "run"))
     (study / "rules" / "own.py").write_text(OTHER)
-    with hold(study / "run", 160) as found:
+    with lock(study / "run", 160) as found:
         (note,) = (note for note in found.notes if "own.py" in note)  # of both rules
     assert note.startswith(f"{study}/rules/own.py has changed since: continuing with the text that the manifest keeps")
     assert resume(study / "run", 160, 1).world_digests == whole.world_digests

@@ -8,7 +8,7 @@ from cuda_emulation import emulated as emulated
 from worlds import QUICK
 
 from hedon import EngineError, Simulation, load_config
-from hedon.env import batch
+from hedon.env import vector_env
 
 SLOTS = 4
 ROOM = 16 * SLOTS
@@ -92,7 +92,7 @@ def test_a_checkpoint_holds_nothing_of_what_was_lost():
 
 
 def test_driven_worlds_never_end():
-    worlds = batch(CONFIG, [1, 2], threads=1)
+    worlds = vector_env(CONFIG, [1, 2], threads=1)
     group = worlds.groups["agent"]
     died = 0
     while died <= 4 * ROOM:

@@ -79,7 +79,7 @@ def test_a_weight_that_is_no_number_comes_out(kernel: str):
 
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_a_world_acts_by_its_own_weights_rounded(kernel: str):
-    simulation = make_simulation(*QUICK, "birth.kappa=0.01", kernel=kernel)
+    simulation = make_simulation(*QUICK, "birth.kappa=0.01", backend=kernel)
     world = simulation.worlds[0]
     simulation.run(200)  # learners, newborns, and slots that were used before
     assert world.counters["births"] > 5

@@ -109,7 +109,7 @@ def test_random_scenes_are_seen_as_they_are(name: str):
 
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_each_kernel_sees_a_full_house(kernel: str):
-    simulation = make_simulation(*ROOM, kernel=kernel)
+    simulation = make_simulation(*ROOM, backend=kernel)
     rng = np.random.default_rng(3)
     body = np.column_stack([random_place(simulation, rng, 300), rng.uniform(0, 2 * math.pi, 300)])
     _, hits = compare(simulation, body.astype(np.float32), random_place(simulation, rng, 300), watched=40)

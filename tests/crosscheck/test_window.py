@@ -82,10 +82,10 @@ def test_a_window_of_learning(case):
         np.testing.assert_array_equal(seen, [*mine["observation"], next_seen[i]])
 
         bootstrap = _engine.learning.forward(
-            simulation.engine.kernel, shape, mine["params"], np.ascontiguousarray(packed[i, -1:]), rounded=True
+            simulation.engine.backend, shape, mine["params"], np.ascontiguousarray(packed[i, -1:]), rounded=True
         )[0, 2]
         expected = _engine.learning.learn(
-            simulation.engine.kernel,
+            simulation.engine.backend,
             shape,
             settings,
             mine["params"],

@@ -8,11 +8,11 @@ import pytest
 from worlds import QUICK
 
 from hedon import ArgumentError, load_config
-from hedon.env import batch
+from hedon.env import vector_env
 
 CONFIG = load_config("baseline", overrides=[*QUICK, "population.capacity=6", "population.initial_count=4"])
 SHAPE = (1, 6, 2)
-make: Any = batch
+make: Any = vector_env
 
 
 def put(name: str, value: Any) -> Callable[[Any], None]:
@@ -58,7 +58,7 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
 
 @pytest.mark.parametrize(("wrong", "says"), WRONG.values(), ids=WRONG)
 def test_what_is_wrong_is_named_and_changes_nothing(wrong, says):
-    worlds = batch(CONFIG, seeds=[1], threads=1)
+    worlds = vector_env(CONFIG, seeds=[1], threads=1)
     held = worlds.groups["agent"].actions
 
     def go_on():
@@ -73,7 +73,7 @@ def test_what_is_wrong_is_named_and_changes_nothing(wrong, says):
 
 
 def test_actions_can_be_written_in_every_way():
-    worlds = batch(CONFIG, seeds=[1], threads=1)
+    worlds = vector_env(CONFIG, seeds=[1], threads=1)
     group = worlds.groups["agent"]
     group.actions += 0.5
     group.actions[...] = np.ones(SHAPE)

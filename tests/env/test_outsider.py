@@ -9,7 +9,7 @@ import pytest
 from worlds import QUICK
 
 from hedon import ArgumentError, load_config
-from hedon.env import batch
+from hedon.env import vector_env
 
 pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
 from gymnasium.spaces import Box
@@ -24,7 +24,7 @@ CROWD = load_config("baseline", overrides=[*QUICK, "birth.kappa=1", "hazard.alph
 
 
 def trace(config, seed, steps=30):
-    worlds = batch(config, [seed, seed + 1], threads=1)
+    worlds = vector_env(config, [seed, seed + 1], threads=1)
     group = worlds.groups["agent"]
     rng = np.random.default_rng(seed)
     for _ in range(steps):
@@ -43,7 +43,7 @@ def test_two_environments_in_two_threads_do_not_disturb_each_other():
 
 
 def test_worlds_that_die_out_stand_still_while_others_go_on():
-    worlds = batch(DOOMED, range(6), threads=1)
+    worlds = vector_env(DOOMED, range(6), threads=1)
     group = worlds.groups["agent"]
     ends = []
     for _ in range(60):
@@ -72,7 +72,7 @@ def test_an_extinct_world_says_so_once_and_then_nothing():
 
 def test_who_takes_the_slot_of_the_dead_is_someone_else():
     """Births come before deaths, so an agent cannot die in the step of its birth; slots are used again."""
-    worlds = batch(CROWD, range(4), threads=1)
+    worlds = vector_env(CROWD, range(4), threads=1)
     group = worlds.groups["agent"]
     seen = [set(row[row >= 0]) for row in group.ids]
     for _ in range(40):
@@ -113,7 +113,7 @@ def test_it_can_be_played_in_turns():
 
 
 @pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])
-@pytest.mark.parametrize("make", [lambda: batch(CONFIG, [1]), lambda: parallel_env(CONFIG)])
+@pytest.mark.parametrize("make", [lambda: vector_env(CONFIG, [1]), lambda: parallel_env(CONFIG)])
 def test_it_cannot_be_copied_and_says_what_to_do(make, copied):
     with pytest.raises(TypeError, match="make a new one from its config"):
         copied(make())
@@ -142,7 +142,7 @@ def test_a_wrong_action_is_named(action, says):
 
 
 def test_actions_of_another_shape_cannot_be_put_in_place():
-    worlds = batch(CONFIG, [1])
+    worlds = vector_env(CONFIG, [1])
     group = worlds.groups["agent"]
     with pytest.raises(ValueError, match="broadcast"):
         group.actions[...] = np.zeros((7, 3))

@@ -7,7 +7,7 @@ import pytest
 from worlds import QUICK
 
 from hedon import load_config
-from hedon.env import Batch, batch
+from hedon.env import VectorEnv, vector_env
 
 CROWD = (
     *QUICK,
@@ -78,7 +78,7 @@ def compare(told: Told, group: Any) -> None:
 @pytest.mark.parametrize("settings", [CROWD, HUNT], ids=["crowd", "hunt"])
 @pytest.mark.parametrize("repeat", [1, 2, 7, 70])
 def test_a_repeat_is_as_many_single_steps(settings, repeat):
-    single, held = (batch(load_config("baseline", overrides=settings), [1, 2], threads=1) for _ in range(2))
+    single, held = (vector_env(load_config("baseline", overrides=settings), [1, 2], threads=1) for _ in range(2))
     rng = np.random.default_rng(repeat)
     short = 0
     for _ in range(max(3, 70 // repeat)):
@@ -102,13 +102,13 @@ def test_a_repeat_is_as_many_single_steps(settings, repeat):
         assert (short > 0) == (repeat > 1), "some are born and die within a repeat"
 
 
-def digests(worlds: Batch) -> list[str]:
+def digests(worlds: VectorEnv) -> list[str]:
     return [world.digest() for world in worlds.simulation.worlds]
 
 
 def test_what_is_told_of_repeats_agrees_with_the_worlds():
     """Over many repeats: all births, deaths, meals, and the rewards of whole lives."""
-    worlds = batch(load_config("baseline", overrides=CROWD), [3], threads=1)
+    worlds = vector_env(load_config("baseline", overrides=CROWD), [3], threads=1)
     group, world = worlds.groups["agent"], worlds.simulation.worlds[0]
     births = deaths = 0
     meals, paid = np.zeros_like(group.meals), 0.0

@@ -185,7 +185,7 @@ OPTIONS = {
     "replay-fault": ["--threads"],
     "report": ["--out"],
     "analyze": ["--only", "--out"],
-    "demography": ["--fidelity", "--set"],
+    "forecast": ["--fidelity", "--set"],
     "presets": [],
     "config show": ["--fidelity", "--set", "--path"],
     "config check": ["--fidelity", "--set"],

@@ -21,9 +21,9 @@ import pytest
 from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
 
 from hedon.sweep.cluster import LOCAL, import_ray, run_on_ray
-from hedon.sweep.conduct import Silent, run_sweep
-from hedon.sweep.loss import TRIES
 from hedon.sweep.plan import load_plan
+from hedon.sweep.retry import TRIES
+from hedon.sweep.run import Silent, run_sweep
 from hedon.sweep.store import open_store
 from hedon.sweep.work import RUNS, make_batch, make_task
 

@@ -15,11 +15,11 @@ from typer.testing import CliRunner
 
 from hedon.cli.main import app
 from hedon.error import HedonError
-from hedon.sweep.conduct import Silent, open_batches, run_sweep
 from hedon.sweep.error import SweepError
 from hedon.sweep.part import parse_part
 from hedon.sweep.plan import load_plan, plan_sweep
 from hedon.sweep.read import read_sweep
+from hedon.sweep.run import Silent, open_batches, run_sweep
 from hedon.sweep.status import sweep_status
 from hedon.sweep.store import open_store
 from hedon.sweep.work import RESULTS, WORK, make_batch, make_task

@@ -70,7 +70,7 @@ def test_paths_may_be_texts_everywhere(tmp_path):
         (lambda: hedon.Simulation(cast(Any, "baseline"), [1]), "config: must be a Config"),
         (lambda: hedon.Simulation(CONFIG, [-1]), "seeds = -1"),
         (lambda: hedon.Simulation(CONFIG, [1], threads=-2), "threads = -2"),
-        (lambda: hedon.Simulation(CONFIG, [1], kernel=cast(Any, 3)), "kernel"),
+        (lambda: hedon.Simulation(CONFIG, [1], backend=cast(Any, 3)), "backend"),
         (lambda: hedon.Simulation(CONFIG, [1], 1).run(cast(Any, 1.5)), "steps = 1.5"),
         (lambda: hedon.Simulation(CONFIG, [1], 1).run(-1), "steps = -1"),
         (lambda: hedon.run(cast(Any, CONFIG)), "plan: must be a RunPlan"),

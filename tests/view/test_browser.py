@@ -113,7 +113,7 @@ def test_the_page_shows_the_digest_of_the_run(run_folder, watch):
 def check_digest(watched, preset, steps):
     fused = watched.get("hedon.source.fused")
     kernel = next((k for k in _engine.kernel.kernel_names() if k != "portable"), "") if fused else "portable"
-    simulation = Simulation(load_config(preset), seeds=[1], kernel=kernel)
+    simulation = Simulation(load_config(preset), seeds=[1], backend=kernel)
     simulation.run(steps)
     assert watched.get("[hedon.source.last, hedon.source.digest()]") == [steps, simulation.worlds[0].digest()]
 
@@ -166,7 +166,7 @@ def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
         watched.get("hedon.seek(hedon.source.last)")
         watched.until("hedon.frame.step === hedon.source.last")
         kernel = "" if watched.get("hedon.source.fused") else "portable"
-        simulation = Simulation(config, seeds=[1], kernel=kernel)
+        simulation = Simulation(config, seeds=[1], backend=kernel)
         simulation.run(300)
         world = simulation.worlds[0]
         columns = observation_columns(config, "agent")
@@ -248,7 +248,7 @@ def test_a_changed_setting_makes_the_world_that_the_command_makes(watch):
         watched.until("!hedon.source.busy && hedon.source.digest() !== ''")
         steps = watched.get("hedon.source.last")
         kernel = "" if watched.get("hedon.source.fused") else "portable"
-        simulation = Simulation(load_config("small", overrides=["food.normal.initial_count=37"]), [1], kernel=kernel)
+        simulation = Simulation(load_config("small", overrides=["food.normal.initial_count=37"]), [1], backend=kernel)
         simulation.run(steps)
         assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
 

@@ -36,7 +36,7 @@ def rest(watched, step):
 
 def native(watched, step):
     kernel = "" if watched.get("hedon.source.fused") else "portable"
-    simulation = Simulation(load_config("small"), seeds=[1], kernel=kernel)
+    simulation = Simulation(load_config("small"), seeds=[1], backend=kernel)
     simulation.run(step)
     return simulation.worlds[0]
 
@@ -134,7 +134,7 @@ def test_the_config_of_the_page_makes_the_same_world(server, watch):
     taken = download(watched, "#save-config")
     assert taken.suggested_filename == "small.toml"
     kernel = "" if watched.get("hedon.source.fused") else "portable"
-    simulation = Simulation(load_config(str(taken.path())), [1], kernel=kernel)
+    simulation = Simulation(load_config(str(taken.path())), [1], backend=kernel)
     simulation.run(watched.get("hedon.source.last"))
     assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
 
@@ -191,7 +191,7 @@ def test_two_worlds_of_one_seed_stay_in_step_and_differ_by_one_setting(world):
     assert abs(first - second) <= 4  # one of them may have done its part of the next picture
     kernel = "" if world.get("hedon.source.fused") else "portable"
     for changes, name, steps in (([], "source", first), (["energy.basic_cost=0.05"], "twin.live", second)):
-        simulation = Simulation(load_config("small", overrides=changes), seeds=[1], kernel=kernel)
+        simulation = Simulation(load_config("small", overrides=changes), seeds=[1], backend=kernel)
         simulation.run(steps)
         assert world.get(f"hedon.{name}.digest()") == simulation.worlds[0].digest()
     captions = [world.page.locator(f"#{name}").inner_text() for name in ("caption", "caption-twin")]

@@ -48,7 +48,7 @@ def in_node(program: str, module: str, text: str, folder: Path, *more: str) -> d
 
 @cache
 def native_digest(preset: str, kernel: str, steps: int, *overrides: str) -> str:
-    simulation = Simulation(load_config(preset, overrides=overrides), seeds=[1], kernel=kernel)
+    simulation = Simulation(load_config(preset, overrides=overrides), seeds=[1], backend=kernel)
     simulation.run(steps)
     return simulation.worlds[0].digest()
 
@@ -99,7 +99,7 @@ def test_a_world_above_2_gigabytes_lives_and_says_where_there_is_no_more_room(tm
     """Addresses above 2 GB are negative as signed numbers, and the allocator gives no such block at once."""
     config = load_config("small", overrides=["population.capacity=7800"])
     told = in_node("large.mjs", "hedon.wasm", engine_text(config, 1), tmp_path, "10")
-    simulation = Simulation(config, seeds=[1], kernel="portable")
+    simulation = Simulation(config, seeds=[1], backend="portable")
     simulation.run(10)
     assert told["needed"] > 2.5e9
     assert told["digest"] == simulation.worlds[0].digest()
@@ -182,7 +182,7 @@ def test_a_world_can_be_changed_by_hand_where_there_is_room(handled):
 
 
 def test_a_world_that_was_kept_goes_on_with_the_same_bits(handled):
-    simulation = Simulation(load_config("small", overrides=SHORT), seeds=[1], kernel="portable")
+    simulation = Simulation(load_config("small", overrides=SHORT), seeds=[1], backend="portable")
     simulation.run(300)
     assert handled["back"] == 100
     assert handled["first"] == handled["second"] == simulation.worlds[0].digest()

@@ -259,7 +259,7 @@ export class App {
     const digest = source.digest();
     const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.edited ? ", changed by hand" : ""}` })] : [];
     if (made.length > 0) made[0]!.id = "digest";
-    const kernel = source instanceof Live ? [element("div", { text: `${source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "kernel portable"}, ${source.threads > 1 ? `${source.threads} threads` : "1 thread"}` })] : [];
+    const kernel = source instanceof Live ? [element("div", { text: `${source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "backend portable"}, ${source.threads > 1 ? `${source.threads} threads` : "1 thread"}` })] : [];
     by("legend").replaceChildren(element("div", { text: this.coloring.label }), bar, element("div", {}, ...foods), ...kernel, ...made);
   }
 

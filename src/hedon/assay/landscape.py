@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.assay.gene_test import GeneEffect, flatness, gene_effects
+from hedon.assay.gene_effect import GeneEffect, flatness, gene_effects
 from hedon.assay.outcome import MEASURES, founder_outcomes
 from hedon.assay.resample import Floats, relative
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms

@@ -150,7 +150,7 @@ def still(config: Config) -> Config:
     return with_genome(config, mutation_scale=0.0, mutation={}, founders="")
 
 
-def start_config(config: Config, point: Mapping[str, float]) -> Config:
+def stability_config(config: Config, point: Mapping[str, float]) -> Config:
     """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
 
     Args:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from hedon.analysis.table import ResultTable
-    from hedon.assay.conduct import Show
+    from hedon.assay.run import Show
     from hedon.experiment.plan import Display, RunPlan
     from hedon.record.manifest import Manifest
     from hedon.record.reader import Run
@@ -109,9 +109,9 @@ def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | N
         plans: Of its runs.
         console: Where it prints.
     """
-    from hedon.assay.conduct import conduct
+    from hedon.assay.run import make_runs
 
-    made = conduct(plans, _shower(console))
+    made = make_runs(plans, _shower(console))
     if made.finished:
         return made.runs
     console.print("Interrupted; all results so far are kept. The same command goes on.")

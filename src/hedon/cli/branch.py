@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import Checkpoint, Threads, conduct
+from hedon.cli.run import Checkpoint, Threads, run_and_report
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
 
@@ -39,7 +39,7 @@ def branch(
       hedon branch runs/baseline --steps 400000 --set food.normal.growth_rate=0.2
       hedon branch runs/baseline --at 102400 --out runs/poorer --set energy.basic_cost=0.001
     """
-    from hedon.experiment.branch import begin_branch, plan_branch
+    from hedon.experiment.branch import plan_branch, start_branch
 
     plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint)
-    conduct(plan.run, lambda display: begin_branch(plan, display), f" from step {plan.parent.step:,}")
+    run_and_report(plan.run, lambda display: start_branch(plan, display), f" from step {plan.parent.step:,}")

@@ -3,17 +3,18 @@
 import errno
 import resource
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, assay_contest, assay_start, config, sweep
+from hedon.cli import assay, assay_contest, assay_stability, config, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
-from hedon.cli.demography import demography
 from hedon.cli.export import export
+from hedon.cli.forecast import forecast
 from hedon.cli.output import OutputError, give_up, guard
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
@@ -33,9 +34,13 @@ ADDRESSES = 2_000_000_000
 """Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
 
 GONE = {
-    "bench": "the benchmarks are no part of the package any more: call `uv run python -m benchmarks` in a checkout",
+    ("bench",): "the benchmarks are no part of the package any more: call `uv run python -m benchmarks` in a checkout",
+    ("demography",): "it is `hedon forecast` now",
+    ("assay", "start"): "it is `hedon assay stability` now",
 }
 """Commands that there were once, with what stands in their place."""
+GONE_OPTIONS = {("run", "--device"): "--backend"}
+"""Options of commands that have another name now."""
 
 
 app = typer.Typer(
@@ -55,13 +60,13 @@ app.command()(video)
 app.command()(report)
 app.command()(reproduce)
 app.command()(analyze)
-app.command()(demography)
+app.command()(forecast)
 app.command()(export)
 app.command()(check)
 app.command()(replay_fault)
 app.command()(config.presets)
 assay_contest.add_to(assay.app)
-assay_start.add_to(assay.app)
+assay_stability.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
 app.add_typer(sweep.app, name="sweep")
 app.add_typer(config.app, name="config")
@@ -104,8 +109,8 @@ def main(command: typer.Typer = app) -> None:
     """Runs a command line; a problem that the user can fix ends in one message and exit code 2."""
     sys.stdout, sys.stderr = guard(sys.stdout), guard(sys.stderr)
     _require_addresses()
-    if command is app and (gone := sys.argv[1:2]) and gone[0] in GONE:
-        fail(f"there is no command {gone[0]!r}: {GONE[gone[0]]}")
+    if command is app:
+        _refuse_gone(sys.argv[1:])
     try:
         try:
             command()
@@ -122,6 +127,16 @@ def main(command: typer.Typer = app) -> None:
         fail(f"{error.filename}: {error.strerror}")
     except MemoryError:
         fail(NO_MEMORY)
+
+
+def _refuse_gone(words: Sequence[str]) -> None:
+    """Ends a command line with a command or an option of an earlier version, by naming what is there now."""
+    for gone, instead in GONE.items():
+        if tuple(words[: len(gone)]) == gone:
+            fail(f"there is no command '{' '.join(gone)}': {instead}")
+    for (command, option), name in GONE_OPTIONS.items():
+        if words[:1] == [command] and any(word.partition("=")[0] == option for word in words):
+            fail(f"there is no option {option}: it is {name} now")
 
 
 def _require_addresses() -> None:

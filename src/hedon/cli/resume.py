@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import Checkpoint, Threads, conduct
+from hedon.cli.run import Checkpoint, Threads, run_and_report
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
 
@@ -29,9 +29,9 @@ def resume(
       hedon resume runs/baseline
       hedon resume runs/baseline --steps 2048000
     """
-    from hedon.experiment.resume import go_on, hold
+    from hedon.experiment.resume import continue_run, lock
 
-    with hold(run, steps, threads, checkpoint) as found:
+    with lock(run, steps, threads, checkpoint) as found:
         for note in found.notes:
             typer.echo(f"hedon: note: {note}", err=True)
-        conduct(found.plan, lambda display: go_on(found, display), f" from step {found.step:,}")
+        run_and_report(found.plan, lambda display: continue_run(found, display), f" from step {found.step:,}")

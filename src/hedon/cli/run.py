@@ -56,7 +56,10 @@ def run(
         str | None,
         typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "frozen" act by: networks of a run.'),
     ] = None,
-    device: Annotated[str, typer.Option(help="What advances the worlds: cpu, or cuda for a CUDA device.")] = "cpu",
+    backend: Annotated[
+        str | None,
+        typer.Option(help="What computes: avx512, avx2, portable or cuda; by default the fastest instruction set."),
+    ] = None,
 ) -> None:
     """Run a condition, then write its report.
 
@@ -71,9 +74,8 @@ def run(
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
-    HEDON_KERNEL forces an instruction set: avx512, avx2 or portable. HEDON_KERNEL=cuda is --device cuda, also for other
-    commands, such as hedon sweep run and hedon reproduce run. hedon resume goes on with the device of the run where it
-    can be used, and else on the processor, with the same bits.
+    The environment variable HEDON_BACKEND does for every command what --backend does for this one. hedon resume goes
+    on with the device of the run where it can be used, and otherwise on the processor, with the same bits.
     """
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from
@@ -82,7 +84,7 @@ def run(
     from hedon.experiment.run import run as run_plan
     from hedon.record.founder_source import read_founders
 
-    kernel = kernel_of(device)
+    require_backend(backend)
     config = load_config(source, fidelity, overrides or ())
     world_seeds = parse_seeds(seeds)
     folder = out or default_folder(config, world_seeds)
@@ -90,11 +92,13 @@ def run(
     begin_with = None if founders is None else read_founders(founders, config)
     act_by = None if networks is None else networks_from(networks, config)
     kept = rules_beside(source)
-    plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, kernel, kept)
-    conduct(plan, lambda display: run_plan(plan, display))
+    plan = RunPlan(
+        config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, backend or "", kept
+    )
+    run_and_report(plan, lambda display: run_plan(plan, display))
 
 
-def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
+def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
     """Prints what will be run, shows progress while it runs, and reports.
 
     Args:
@@ -128,22 +132,25 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
     console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
 
 
-def kernel_of(device: str) -> str:
-    """The kernel for `--device`: empty for the processor.
+def require_backend(backend: str | None) -> None:
+    """Refuses a value of `--backend` that cannot be used here.
 
     Raises:
-        RunError: There is no such device, or it cannot be used here.
+        RunError: There is no such backend, or it cannot be used here.
     """
-    from hedon.experiment.device import DEVICES, EMULATED, device_problem
+    from hedon import _engine
+    from hedon.config.problem import nearest
+    from hedon.experiment.device import DEVICES, EMULATED, device_problem, is_device
 
-    if device == "cpu":
-        return ""
-    if device not in (*DEVICES, EMULATED):
-        raise RunError(f"--device: {brief(repr(device))} is none of: cpu, {', '.join(DEVICES)}")
-    problem = device_problem(device)
-    if problem:
+    if backend is None:
+        return
+    known = (*_engine.kernel.kernel_names(), *DEVICES)
+    if backend not in (*known, EMULATED):
+        near = nearest(backend, known)
+        hint = f"; did you mean {near}?" if near else ""
+        raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(known)}, which this machine has{hint}")
+    if is_device(backend) and (problem := device_problem(backend)):
         raise RunError(problem)
-    return device
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

@@ -90,7 +90,7 @@ def _list(request: "Request", runs: Path, threads: int, console: "Console") -> N
 
 def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
     from hedon.cli.display.plan import PlanDisplay
-    from hedon.jobs.process import conduct
+    from hedon.jobs.process import run_jobs
     from hedon.record.provenance import usable_cpus
     from hedon.report.study import write_items
     from hedon.study.gather import find_runs, gather
@@ -112,7 +112,7 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
         console.print(f"  {verb} {job.folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
     _require_folders(out, *([runs] if jobs else []))
     with PlanDisplay(console, jobs) as display:
-        outcomes = conduct(jobs, threads or usable_cpus(), display)
+        outcomes = run_jobs(jobs, threads or usable_cpus(), display)
     gathered = gather(request, runs)
     for fault in gathered.faults:
         typer.echo(f"hedon: note: left out: {fault}", err=True)

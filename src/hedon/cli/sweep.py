@@ -80,7 +80,7 @@ def run(
 
     asked = read_sweep(file)
     store = open_store(out or str(Path("sweeps") / asked.name))
-    _conduct(write_plan(asked, store), store, workers, ray, part, checkpoint)
+    _run_and_report(write_plan(asked, store), store, workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -101,7 +101,7 @@ def resume(
     from hedon.sweep.store import open_store
 
     store = open_store(place)
-    _conduct(load_plan(store), store, workers, ray, part, checkpoint)
+    _run_and_report(load_plan(store), store, workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -224,15 +224,15 @@ def _say_size(made: "SweepPlan", console: "Console") -> None:
     )
 
 
-def _conduct(
+def _run_and_report(
     made: "SweepPlan", store: "Store", workers: int, ray: str | None, part: str | None, checkpoint: float
 ) -> None:
     """Runs what is open, shows it, and says what to do next. SweepError: a batch failed."""
     from hedon.cli.display.sweep import SweepDisplay
     from hedon.record.provenance import usable_cpus
     from hedon.sweep.cluster import run_on_ray
-    from hedon.sweep.conduct import open_batches, run_sweep
     from hedon.sweep.part import parse_part
+    from hedon.sweep.run import open_batches, run_sweep
 
     console, share = make_console(), parse_part(part)
     _say_size(made, console)

@@ -35,12 +35,12 @@ def video(
     """
     from hedon.cli.console import make_console
     from hedon.cli.display.film import FilmDisplay
-    from hedon.video.make import choose_take, make_video
+    from hedon.video.make import choose_range, make_video
     from hedon.video.moment import open_footage
 
     footage = open_footage(run, world)
-    take = choose_take(footage, first, last, speed, follow)
+    shown = choose_range(footage, first, last, speed, follow)
     console = make_console()
     with FilmDisplay(console, rate) as display:
-        make_video(footage, take, out, width, rate, display.update)
-    console.print(f"wrote {out}: {take.pictures:,} pictures, {out.stat().st_size / 1e6:.1f} MB", markup=False)
+        make_video(footage, shown, out, width, rate, display.update)
+    console.print(f"wrote {out}: {shown.pictures:,} pictures, {out.stat().st_size / 1e6:.1f} MB", markup=False)

@@ -1,22 +1,22 @@
-"""Worlds as environments for other programs' agents: `batch` for many worlds as arrays, `parallel_env` for PettingZoo.
+"""Environments for other programs' agents: `vector_env` for many worlds as arrays, `parallel_env` for PettingZoo.
 
 `parallel_env` needs the optional packages: `pip install "hedon[env]"`.
 """
 
 from typing import TYPE_CHECKING, Any
 
-from hedon.env.batch import Batch, batch
 from hedon.env.group import Group
+from hedon.env.vector import VectorEnv, vector_env
 
 if TYPE_CHECKING:
-    from hedon.env.parallel import World, parallel_env
+    from hedon.env.parallel import ParallelEnv, parallel_env
 
-__all__ = ["Batch", "Group", "World", "batch", "parallel_env"]
+__all__ = ["Group", "ParallelEnv", "VectorEnv", "parallel_env", "vector_env"]
 
 
 def __getattr__(name: str) -> Any:
     # Imported on first use: the arrays need neither PettingZoo nor Gymnasium.
-    if name not in ("World", "parallel_env"):
+    if name not in ("ParallelEnv", "parallel_env"):
         raise AttributeError(f"module 'hedon.env' has no attribute {name!r}")
     try:
         from hedon.env import parallel

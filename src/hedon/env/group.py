@@ -1,4 +1,4 @@
-"""The agents of one species that a caller drives, as arrays, and what becomes of them in a call of `Batch.step`."""
+"""The agents of one species that a caller drives, as arrays, and what becomes of them in a call of `VectorEnv.step`."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ class Group:
     """The agents of one species in all worlds: a row for each slot, in which agents live one after another.
 
     Each array is allocated once. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
-    "The steps" are those of the last call of `Batch.step`, one or `repeat`.
+    "The steps" are those of the last call of `VectorEnv.step`, one or `repeat`.
 
     Args:
         index: Of the species in the config's order.

@@ -4,13 +4,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import pettingzoo
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
-from pettingzoo import ParallelEnv
 
 from hedon.config.config import Config
-from hedon.env.batch import Batch, batch
 from hedon.env.group import ACTIONS, NOBODY, Group
+from hedon.env.vector import VectorEnv, vector_env
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_STEPS, integer
 from hedon.text import brief
@@ -18,7 +18,7 @@ from hedon.text import brief
 Values = dict[str, NDArray[np.float32]]
 
 
-class World(ParallelEnv[str, Any, Any]):
+class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     """A world whose agents the caller drives. An agent's name is its species and its id: `agent_17`.
 
     A newborn comes into `agents` with its first observation and a reward of 0. Who dies is told so once, by
@@ -28,7 +28,7 @@ class World(ParallelEnv[str, Any, Any]):
 
     Args:
         config: Settings of the world.
-        species: As for `hedon.env.batch`.
+        species: As for `hedon.env.vector_env`.
         seed: Seed of the world until `reset` is given one.
         max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
         threads: As in `hedon.Simulation`; one world of usual size is fastest on one.
@@ -45,7 +45,7 @@ class World(ParallelEnv[str, Any, Any]):
         self.metadata = {"name": "hedon_v0", "render_modes": [], "is_parallelizable": True}
         self.render_mode = None
         self.max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
-        self._batch: Batch = batch(config, [seed], species, threads)
+        self._vector: VectorEnv = vector_env(config, [seed], species, threads)
         self.agents: list[str] = []
         self._begun = False
         self._row: dict[str, tuple[Group, int]] = {}
@@ -54,7 +54,7 @@ class World(ParallelEnv[str, Any, Any]):
     @property
     def simulation(self) -> Any:
         """The world itself, for reading: `simulation.worlds[0]`."""
-        return self._batch.simulation
+        return self._vector.simulation
 
     def observation_space(self, agent: str) -> Box:
         """Any numbers, one for each column that `Group.columns` names; the same object for the same agent."""
@@ -76,7 +76,7 @@ class World(ParallelEnv[str, Any, Any]):
         Returns:
             By the names of the founders: observations (entries,), and empty infos.
         """
-        self._batch.reset(None if seed is None else [seed])
+        self._vector.reset(None if seed is None else [seed])
         self._spaces.clear()
         self._begun = True
         self._list_agents()
@@ -104,11 +104,11 @@ class World(ParallelEnv[str, Any, Any]):
             return {}, {}, {}, {}, {}
         self._tell(actions)
         before = dict(self._row)
-        self._batch.step()
+        self._vector.step()
         rewards = {name: float(group.rewards[0, row]) for name, (group, row) in before.items()}
         self._list_agents()
         names = list(dict.fromkeys([*before, *self._row]))
-        done = bool(self.max_steps) and self._batch.simulation.worlds[0].step >= self.max_steps
+        done = bool(self.max_steps) and self._vector.simulation.worlds[0].step >= self.max_steps
         observations = self._observations()
         for name in before.keys() - self._row.keys():
             observations[name] = np.zeros(len(before[name][0].columns), np.float32)
@@ -153,7 +153,7 @@ class World(ParallelEnv[str, Any, Any]):
     def _list_agents(self) -> None:
         living = [
             (int(group.ids[0, row]), species, group, int(row))
-            for species, group in self._batch.groups.items()
+            for species, group in self._vector.groups.items()
             for row in np.flatnonzero(group.ids[0] != NOBODY)
         ]
         living.sort(key=lambda each: each[0])
@@ -166,11 +166,11 @@ class World(ParallelEnv[str, Any, Any]):
     def _spaces_of(self, agent: str) -> tuple[Box, Box]:
         if agent not in self._spaces:
             species, _, identity = str(agent).rpartition("_")
-            if species not in self._batch.groups or not (identity.isascii() and identity.isdigit()):
+            if species not in self._vector.groups or not (identity.isascii() and identity.isdigit()):
                 raise ArgumentError(f"agent {brief(str(agent))!r}: there is no such agent")
-            entries = len(self._batch.groups[species].columns)
+            entries = len(self._vector.groups[species].columns)
             # So that two worlds with one seed draw the same actions, also for those who are born in them.
-            seed = [self._batch.simulation.seeds[0], int(identity)]
+            seed = [self._vector.simulation.seeds[0], int(identity)]
             seeds = np.random.SeedSequence(seed).generate_state(2)
             self._spaces[agent] = (
                 Box(-np.inf, np.inf, (entries,), np.float32, seed=int(seeds[0])),
@@ -185,11 +185,11 @@ def parallel_env(
     seed: int = 0,
     max_steps: int = 0,
     threads: int = 1,
-) -> World:
+) -> ParallelEnv:
     """Makes a world with PettingZoo's Parallel API.
 
     Args:
-        config: As for `World`, like all that follow.
+        config: As for `ParallelEnv`, like all that follow.
         species: Whose agents the caller drives.
         seed: Of the world until `reset` is given one.
         max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
@@ -199,4 +199,4 @@ def parallel_env(
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
     """
-    return World(config, species, seed, max_steps, threads)
+    return ParallelEnv(config, species, seed, max_steps, threads)

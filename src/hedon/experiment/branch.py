@@ -8,11 +8,11 @@ from hedon.config.config import Config
 from hedon.config.dump import diff, digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
-from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.checkpoint import check_head, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan, free_folder
-from hedon.experiment.run import begin
+from hedon.experiment.run import start_run
 from hedon.experiment.session import first_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import Checkpoint
@@ -49,13 +49,13 @@ class BranchPlan:
         run: What to run, with the total steps.
         parent: The run and the step that it starts from.
         checkpoint: The worlds to start from.
-        kernel: Instruction set to use.
+        backend: Instruction set to use.
     """
 
     run: RunPlan
     parent: Parent
     checkpoint: Checkpoint
-    kernel: str
+    backend: str
 
 
 def plan_branch(
@@ -110,10 +110,10 @@ def plan_branch(
     plan = RunPlan(
         changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders, networks, rules=old.rules
     )
-    return BranchPlan(plan, parent, checkpoint, same_kernel(old.kernel))
+    return BranchPlan(plan, parent, checkpoint, same_backend(old.backend))
 
 
-def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
+def start_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
     """Begins a branch that `plan_branch` planned; see `branch`.
 
     Args:
@@ -122,10 +122,10 @@ def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
     """
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
-        simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel, plan.run.rules)
+        simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.backend, plan.run.rules)
         start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}")
         manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
-        return begin(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)
+        return start_run(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)
 
 
 def branch(
@@ -167,7 +167,7 @@ def branch(
         EngineError: A world reports an error.
     """
     plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds)
-    return begin_branch(plan, display)
+    return start_branch(plan, display)
 
 
 def _check_shape(config: Config, changed: Config) -> None:

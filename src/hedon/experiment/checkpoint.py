@@ -11,7 +11,7 @@ from hedon.config.problem import format_value
 from hedon.experiment.device import EMULATED, device_problem, is_device
 from hedon.experiment.recorder import Start
 from hedon.experiment.sample import PopulationSampler
-from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
+from hedon.experiment.simulation import BACKEND_VARIABLE, Simulation
 from hedon.record.checkpoint import Checkpoint, CheckpointHead
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
@@ -55,24 +55,24 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
         raise RecordError(f"{name} is not complete: worlds or tables are missing")
 
 
-def same_kernel(kernel: str | None) -> str:
-    """The kernel to continue with after `kernel`: HEDON_KERNEL's, the same device where it can be used, or the best
+def same_backend(backend: str | None) -> str:
+    """The backend to continue with after `backend`: HEDON_BACKEND's, the same device where it can be used, or the best
     instruction set of this processor with the same bits.
 
     Raises:
-        RecordError: HEDON_KERNEL names one with different bits.
+        RecordError: HEDON_BACKEND names one with different bits.
     """
-    family = next((names for names in SAME_BITS if kernel in names), frozenset({kernel}))
-    asked = os.environ.get(KERNEL_VARIABLE, "")
-    if asked and kernel is not None and asked not in family:
+    family = next((names for names in SAME_BITS if backend in names), frozenset({backend}))
+    asked = os.environ.get(BACKEND_VARIABLE, "")
+    if asked and backend is not None and asked not in family:
         raise RecordError(
-            f"the run was made with the instruction set {kernel}, and {KERNEL_VARIABLE} asks for {asked}, which "
-            f"computes different results: unset {KERNEL_VARIABLE}"
+            f"the run was made with the instruction set {backend}, and {BACKEND_VARIABLE} asks for {asked}, which "
+            f"computes different results: unset {BACKEND_VARIABLE}"
         )
-    if not asked and kernel is not None and is_device(kernel) and not device_problem(kernel):
-        return kernel
+    if not asked and backend is not None and is_device(backend) and not device_problem(backend):
+        return backend
     known = [name for name in _engine.kernel.kernel_names() if name in family]
-    return asked or (known[0] if known else kernel or "")
+    return asked or (known[0] if known else backend or "")
 
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:

@@ -7,7 +7,7 @@ from hedon import _engine
 from hedon.error import EngineError
 
 DEVICES = ("cuda",)
-"""Names of devices, as `hedon run --device` has them; in the manifest they stand where instruction sets do."""
+"""Backends that are devices; the others are instruction sets of the processor."""
 EMULATED = "cuda-emulated"
 """The same kernels on the processor, thread by thread: only for tests, which build its library."""
 EMULATION_VARIABLE = "HEDON_CUDA_EMULATION"
@@ -16,9 +16,9 @@ LIBRARY = "_cuda.so"
 """The library of the device, beside the engine; `make cuda` builds it."""
 
 
-def is_device(kernel: str) -> bool:
+def is_device(backend: str) -> bool:
     """Whether this is the name of a device, not of an instruction set."""
-    return kernel in (*DEVICES, EMULATED)
+    return backend in (*DEVICES, EMULATED)
 
 
 def library_path() -> Path:
@@ -26,24 +26,24 @@ def library_path() -> Path:
     return Path(_engine.__file__).with_name(LIBRARY)
 
 
-def device_problem(kernel: str) -> str:
+def device_problem(backend: str) -> str:
     """Why a device cannot be used here, as a sentence; empty if it can."""
     try:
-        _engine.open_device(device_library(kernel))
+        _engine.open_device(device_library(backend))
     except EngineError as error:
         return str(error)
     return ""
 
 
-def device_library(kernel: str) -> str:
+def device_library(backend: str) -> str:
     """The file of the library for a device; empty for an instruction set.
 
     Raises:
         EngineError: There is no such file, or it is older than the engine.
     """
-    if not is_device(kernel):
+    if not is_device(backend):
         return ""
-    if kernel == EMULATED:
+    if backend == EMULATED:
         path = Path(os.environ.get(EMULATION_VARIABLE, ""))
         if not path.is_file():
             raise EngineError(f"{EMULATED} is for tests: {EMULATION_VARIABLE} must name its library")
@@ -51,12 +51,12 @@ def device_library(kernel: str) -> str:
     path = library_path()
     if not path.is_file():
         raise EngineError(
-            f"device '{kernel}' cannot be used: its library is not built: call `make cuda` (docs/gpu.md), or leave "
-            "--device out"
+            f"device '{backend}' cannot be used: its library is not built: call `make cuda` (docs/gpu.md), or leave "
+            "--backend out"
         )
     if path.stat().st_mtime < Path(_engine.__file__).stat().st_mtime:
         raise EngineError(
-            f"device '{kernel}' cannot be used: its library is older than the engine, so it might compute something "
-            "else: call `make cuda` again, or leave --device out"
+            f"device '{backend}' cannot be used: its library is older than the engine, so it might compute something "
+            "else: call `make cuda` again, or leave --backend out"
         )
     return str(path)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hedon.config.load import load_config
 from hedon.error import EngineError
-from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.checkpoint import check_head, restore, same_backend
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG
@@ -48,7 +48,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
         raise RecordError(f"{folder} recorded no fault: its status is {manifest.status}")
     config = load_config(folder / CONFIG)
     checkpoint, _ = find_checkpoint(folder)
-    simulation = Simulation(config, manifest.seeds, threads, same_kernel(manifest.kernel), manifest.rules)
+    simulation = Simulation(config, manifest.seeds, threads, same_backend(manifest.backend), manifest.rules)
     step = start = 0
     if checkpoint is not None:
         name = f"the checkpoint of {folder}"

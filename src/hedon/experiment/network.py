@@ -10,7 +10,7 @@ from hedon.config.config import Config
 from hedon.config.layout import layouts, observation_columns
 from hedon.config.load import parse_config
 from hedon.record.checkpoint import Checkpoint
-from hedon.record.network import NetworkError, Networks, frozen_species, read_networks
+from hedon.record.network import NetworkError, Networks, fixed_species, read_networks
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 from hedon.text import brief
@@ -31,7 +31,7 @@ def networks_from(text: str, config: Config) -> Networks:
     path = Path(text)
     found = read_networks(path) if path.is_file() else _of_run(path)
     found.require(config, text)
-    wanted = frozen_species(config)
+    wanted = fixed_species(config)
     return Networks({name: found.params[name] for name in wanted}, {name: found.inputs[name] for name in wanted})
 
 

@@ -43,7 +43,7 @@ class RunPlan:
         founders: Genomes that the worlds begin with; None where they are drawn as the config says. The plan's config
             gets the table's digest.
         networks: What agents that never learn begin with; None for new networks. The config gets their digest.
-        kernel: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
+        backend: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
             set.
         rules: The texts of all rules in Python. Given are those that the config is pinned to, such as a manifest's;
             all others are read from their files.
@@ -65,7 +65,7 @@ class RunPlan:
     checkpoint_seconds: float
     founders: Founders | None
     networks: Networks | None
-    kernel: str
+    backend: str
     rules: tuple[RuleSource, ...]
 
     def __init__(
@@ -79,7 +79,7 @@ class RunPlan:
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
         founders: Founders | None = None,
         networks: Networks | None = None,
-        kernel: str = "",
+        backend: str = "",
         rules: Sequence[RuleSource] = (),
     ) -> None:
         config = _without_caller(validated(config))
@@ -94,7 +94,7 @@ class RunPlan:
             "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds, 0.0, MAX_SECONDS),
             "founders": founders,
             "networks": networks,
-            "kernel": kernel,
+            "backend": backend,
             "rules": tuple(rule.source for rule in found),
         }
         for name, value in checked.items():

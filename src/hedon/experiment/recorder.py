@@ -131,7 +131,7 @@ class Recorder:
             step=step,
             config=dump_toml(simulation.config),
             seeds=simulation.seeds,
-            kernel=simulation.engine.kernel,
+            backend=simulation.engine.backend,
             hedon_version=version("hedon"),
             frames=self.frames,
             run_seconds=seconds,

@@ -9,16 +9,16 @@ from pathlib import Path
 from hedon.config.dump import digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
-from hedon.experiment.checkpoint import check_head, restore, same_kernel
+from hedon.experiment.checkpoint import check_head, restore, same_backend
 from hedon.experiment.device import device_problem, is_device
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.recorder import Start
 from hedon.experiment.rule import changed_files
-from hedon.experiment.run import drive, give_beginning, run
+from hedon.experiment.run import advance, run, set_initial_state
 from hedon.experiment.session import next_manifest
-from hedon.experiment.simulation import KERNEL_VARIABLE, Simulation
+from hedon.experiment.simulation import BACKEND_VARIABLE, Simulation
 from hedon.record.checkpoint import Checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CHECKPOINT_SECONDS, CONFIG, holds_run
@@ -56,10 +56,10 @@ class Resumption:
 
 
 @contextmanager
-def hold(
+def lock(
     folder: Path | str, steps: int | None = None, threads: int = 0, checkpoint_seconds: float = CHECKPOINT_SECONDS
 ) -> Iterator[Resumption]:
-    """Locks a run's folder and plans how the run continues. Changes nothing else; see `go_on`.
+    """Locks a run's folder and plans how the run continues. Changes nothing else; see `continue_run`.
 
     Args:
         folder: Of the run.
@@ -125,13 +125,13 @@ def resume(
         The manifest as it was saved at the end.
 
     Raises:
-        RecordError: As `hold`; or the folder cannot be written.
-        ArgumentError: As `hold`.
+        RecordError: As `lock`; or the folder cannot be written.
+        ArgumentError: As `lock`.
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """
-    with hold(folder, steps, threads, checkpoint_seconds) as found:
-        return go_on(found, display)
+    with lock(folder, steps, threads, checkpoint_seconds) as found:
+        return continue_run(found, display)
 
 
 def make(plan: RunPlan, display: Display | None = None) -> Manifest:
@@ -181,11 +181,11 @@ def require_same(plan: RunPlan) -> None:
         )
 
 
-def go_on(found: Resumption, display: Display | None = None) -> Manifest:
-    """Continues a run that `hold` has locked; see `resume`.
+def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
+    """Continues a run that `lock` has locked; see `resume`.
 
     Args:
-        found: From `hold`, while the folder is locked.
+        found: From `lock`, while the folder is locked.
         display: Shows progress.
 
     Returns:
@@ -199,26 +199,26 @@ def go_on(found: Resumption, display: Display | None = None) -> Manifest:
     plan, checkpoint = found.plan, found.checkpoint
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
-        kernel = same_kernel(found.manifest.kernel)
-        simulation = Simulation(plan.config, plan.seeds, plan.threads, kernel, plan.rules)
+        backend = same_backend(found.manifest.backend)
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, backend, plan.rules)
         start = Start()
         if checkpoint is None:
-            give_beginning(simulation, plan)
+            set_initial_state(simulation, plan)
         else:
             start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
         parts = checkpoint.head.parts if checkpoint else {}
         roll_back(plan.out, parts, start.step)
         manifest = next_manifest(found.manifest, plan, simulation, start.step)
         with Writer(plan.out, "", manifest, parts=parts) as writer:
-            return drive(simulation, plan, manifest, writer, start, display, interrupted)
+            return advance(simulation, plan, manifest, writer, start, display, interrupted)
 
 
 def _device_notes(manifest: Manifest) -> list[str]:
     """What is to be known if the run's device cannot go on with it."""
-    kernel = manifest.kernel
-    if kernel is None or not is_device(kernel) or os.environ.get(KERNEL_VARIABLE):
+    backend = manifest.backend
+    if backend is None or not is_device(backend) or os.environ.get(BACKEND_VARIABLE):
         return []
-    problem = device_problem(kernel)
+    problem = device_problem(backend)
     return [f"{problem}: continuing on the processor, with the same bits"] if problem else []
 
 

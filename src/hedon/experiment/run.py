@@ -50,12 +50,12 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
         raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
-        simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.kernel, plan.rules)
-        give_beginning(simulation, plan)
-        return begin(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
+        simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.backend, plan.rules)
+        set_initial_state(simulation, plan)
+        return start_run(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
 
 
-def give_beginning(simulation: Simulation, plan: RunPlan) -> None:
+def set_initial_state(simulation: Simulation, plan: RunPlan) -> None:
     """Gives the founders of a new simulation the genomes and the networks that the plan has for them.
 
     Args:
@@ -72,7 +72,7 @@ def give_beginning(simulation: Simulation, plan: RunPlan) -> None:
         simulation.set_networks(plan.networks)
 
 
-def begin(
+def start_run(
     simulation: Simulation,
     plan: RunPlan,
     manifest: Manifest,
@@ -98,7 +98,7 @@ def begin(
         EngineError: A world reports an error.
     """
     with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, beginning=_beginning(plan)) as writer:
-        return drive(simulation, plan, manifest, writer, start, display, interrupted)
+        return advance(simulation, plan, manifest, writer, start, display, interrupted)
 
 
 def _beginning(plan: RunPlan) -> dict[str, bytes]:
@@ -111,7 +111,7 @@ def _beginning(plan: RunPlan) -> dict[str, bytes]:
     return files
 
 
-def drive(
+def advance(
     simulation: Simulation,
     plan: RunPlan,
     manifest: Manifest,

@@ -31,7 +31,7 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
         name=config.name,
         modified=is_modified(config),
         config_digest=digest(config),
-        kernel=simulation.engine.kernel,
+        backend=simulation.engine.backend,
         threads=simulation.engine.threads,
         steps_done=tuple(world.step for world in simulation.worlds),
         extinct_steps=tuple(None for _ in plan.seeds),
@@ -63,7 +63,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
     """
     here = replace(
         manifest,
-        kernel=simulation.engine.kernel,
+        backend=simulation.engine.backend,
         threads=simulation.engine.threads,
         **collect_provenance(),
     )
@@ -119,7 +119,7 @@ def _session(manifest: Manifest, from_step: int) -> Session:
         started=manifest.started,
         from_step=from_step,
         threads=manifest.threads,
-        kernel=manifest.kernel,
+        backend=manifest.backend,
         hedon_version=manifest.hedon_version,
         git_revision=manifest.git_revision,
         command_line=manifest.command_line,

@@ -17,9 +17,9 @@ from hedon.experiment.native import engine_input
 from hedon.experiment.rule import rules as find_rules
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
-from hedon.record.network import NetworkError, Networks, frozen_species
+from hedon.record.network import NetworkError, Networks, fixed_species
 
-KERNEL_VARIABLE = "HEDON_KERNEL"
+BACKEND_VARIABLE = "HEDON_BACKEND"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
 MAX_WORLD_SEED = 2**64 - 1
 """Largest seed of a world; records of a run hold only the lower half of these."""
@@ -40,8 +40,8 @@ class Simulation:
         config: Settings of the worlds.
         seeds: One world per seed, each in [0, 2^64).
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
-        kernel: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
-            empty for what the environment variable HEDON_KERNEL names, or else the best instruction set.
+        backend: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
+            empty for what the environment variable HEDON_BACKEND names, or else the best instruction set.
         rules: Texts of the rules that the config is pinned to, such as `RunPlan.rules`; all others are read from their
             files.
 
@@ -49,7 +49,7 @@ class Simulation:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
         RuleError: A rule of the config is not there, has changed, or cannot be compiled.
-        EngineError: The kernel is unknown or not for this processor, there is too little memory, or there is no room
+        EngineError: The backend is unknown or not for this processor, there is too little memory, or there is no room
             for the initial agents or foods.
 
     Every method, and every method of its worlds, raises EngineError while the simulation runs in another thread, and
@@ -61,18 +61,18 @@ class Simulation:
         config: Config,
         seeds: Sequence[int],
         threads: int = 0,
-        kernel: str = "",
+        backend: str = "",
         rules: Sequence[RuleSource] = (),
     ) -> None:
         given = engine_input(config)
         self.config = given.config
         self.seeds = seed_list(seeds, MAX_WORLD_SEED)
         threads = integer("threads", threads, 0, MAX_THREADS)
-        if not isinstance(kernel, str):
-            raise ArgumentError(f"kernel: must be the name of an instruction set, not {kernel!r}")
-        kernel = kernel or os.environ.get(KERNEL_VARIABLE, "")
-        device = device_library(kernel)
-        host = "" if device else kernel
+        if not isinstance(backend, str):
+            raise ArgumentError(f"backend: must be the name of an instruction set, not {backend!r}")
+        backend = backend or os.environ.get(BACKEND_VARIABLE, "")
+        device = device_library(backend)
+        host = "" if device else backend
         self.engine = _engine.Simulation(
             given.settings, given.walls, given.outer_walls, list(self.seeds), threads, host, device=device
         )
@@ -126,7 +126,7 @@ class Simulation:
         names = list(self.config.agents)
         for world in self.worlds:
             species = world.agents()["species"]
-            for name in frozen_species(self.config):
+            for name in fixed_species(self.config):
                 i = names.index(name)
                 given = networks.draw(name, world.seed, int((species == i).sum()))
                 try:

@@ -13,9 +13,9 @@ from hedon.figure.trace import draw_zero_line
 LENGTHS = (100, 1000)
 """Numbers of mutations after which weights are shown; as in the paper."""
 _LINES = 10_000  # of descent, that shares are counted over
-_TABLES = 1000  # worlds that these belong to, where noise is frozen
+_TABLES = 1000  # worlds that these belong to, where noise is tabulated
 _EXAMPLES = 8  # lines that are drawn
-_PER_TABLE = 2  # of these in a world, where noise is frozen
+_PER_TABLE = 2  # of these in a world, where noise is tabulated
 _BINS = 40
 _CORNER = 0.1  # of the limit: how far a corner reaches along both axes
 
@@ -31,7 +31,7 @@ def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figur
 
     Args:
         law: of founding and mutation.
-        births: in a window; for frozen noise.
+        births: in a window; for tabulated noise.
         rng: source of chance.
     """
     genes, examples, colors = _sample(law, births, rng)
@@ -42,7 +42,7 @@ def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figur
             _draw_lines(walk, genes[: length + 1], examples[: length + 1], colors)
             _draw_share(share, genes[length], law, length)
             walk.set_ylim(-1.03 * law.limit, 1.03 * law.limit)
-        kept = ", two of a color from one world and its table" if law.frozen else ""
+        kept = ", two of a color from one world and its table" if law.tabulated else ""
         panels[0][0].set_title(f"{_EXAMPLES} lines of descent{kept}")
         panels[-1][1].set_xlabel("lines per bin [%]")
         handles = [*panels[0][0].get_legend_handles_labels()[0], *panels[0][1].get_legend_handles_labels()[0]]
@@ -58,10 +58,10 @@ def draw_walk_ends(law: MutationLaw, births: int, rng: np.random.Generator) -> F
 
     Args:
         law: of founding and mutation.
-        births: in a window; for frozen noise.
+        births: in a window; for tabulated noise.
         rng: source of chance.
     """
-    worlds = _TABLES if law.frozen else _LINES
+    worlds = _TABLES if law.tabulated else _LINES
     genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births, genes=2)
     with styled():
         figure = new_figure(8.6, 4.4)
@@ -114,7 +114,7 @@ def _draw_ends(axes: Axes, ends: Genes, law: MutationLaw) -> None:
 
 def _sample(law: MutationLaw, births: int, rng: np.random.Generator) -> tuple[Genes, Genes, list[str]]:
     """All lines, shape (mutations + 1, lines), then those that are drawn and their colors."""
-    worlds, per_world = (_TABLES, _PER_TABLE) if law.frozen else (_LINES, 1)
+    worlds, per_world = (_TABLES, _PER_TABLE) if law.tabulated else (_LINES, 1)
     genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births)
     examples = genes[:, :: worlds * per_world // _EXAMPLES, :per_world].reshape(len(genes), -1)
     return genes.reshape(len(genes), -1), examples, [seed_color(i // per_world) for i in range(_EXAMPLES)]
@@ -137,7 +137,7 @@ def _draw_share(axes: Axes, ends: Genes, law: MutationLaw, length: int) -> None:
     edges = np.linspace(-law.limit, law.limit, _BINS + 1)
     share = 100 * np.histogram(ends, edges)[0] / len(ends)
     axes.stairs(share, edges, orientation="horizontal", fill=True, color=MUTED, alpha=0.45)
-    if not law.frozen:
+    if not law.tabulated:
         middle = 0.5 * (edges[1:] + edges[:-1])
         unlimited = 100 * unlimited_share(law, length, edges)
         axes.plot(

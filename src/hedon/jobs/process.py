@@ -56,7 +56,7 @@ class Display(Protocol[T_contra]):
         ...
 
 
-def conduct(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
+def run_jobs(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
     """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are

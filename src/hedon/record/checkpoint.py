@@ -41,7 +41,7 @@ class CheckpointHead:
         step: steps completed [step].
         config: the complete config, as TOML.
         seeds: one per world.
-        kernel: instruction set that the engine used.
+        backend: what computed: an instruction set, or a device.
         hedon_version: the version that made it.
         frames: steps between two frames; 0 for none [step].
         run_seconds: time spent on steps so far [s].
@@ -53,7 +53,7 @@ class CheckpointHead:
     step: int
     config: str
     seeds: tuple[int, ...]
-    kernel: str
+    backend: str
     hedon_version: str | None
     frames: int
     run_seconds: float

@@ -31,13 +31,13 @@ class Session:
     Attributes:
         started, ended: ISO 8601, UTC; `ended` is None if the session is still running, or was killed.
         from_step: step at which it began [step].
-        threads, kernel, hedon_version, git_revision, command_line: as in the manifest, at the time.
+        threads, backend, hedon_version, git_revision, command_line: as in the manifest, at the time.
     """
 
     started: str | None
     from_step: int
     threads: int | None = None
-    kernel: str | None = None
+    backend: str | None = None
     hedon_version: str | None = None
     git_revision: str | None = None
     command_line: tuple[str, ...] = ()
@@ -103,7 +103,7 @@ class Manifest:
         name: name of the config: by default the preset, or the file without its ending.
         modified: whether any setting differs from the preset with the fidelity; None in old manifests.
         config_digest: digest of the resolved config.
-        kernel: instruction set that the engine used.
+        backend: what computed: an instruction set, or a device.
         threads: threads that the engine used.
         hedon_version, python, platform, cpu_count, git_revision, git_modified, command_line: the
             provenance; the revision is that of hedon's source checkout, None for an installed package.
@@ -138,7 +138,7 @@ class Manifest:
     name: str | None = None
     modified: bool | None = None
     config_digest: str | None = None
-    kernel: str | None = None
+    backend: str | None = None
     threads: int | None = None
     hedon_version: str | None = None
     python: str | None = None
@@ -235,8 +235,12 @@ def load_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     try:
         content = path.read_bytes()
-        version = json.loads(content)["format_version"]
-        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(content, strict=True)
+        found = json.loads(content)
+        version = found["format_version"]
+        for each in (found, *found.get("sessions", ())):
+            if "kernel" in each:  # its name before 1.0
+                each["backend"] = each.pop("kernel")
+        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(json.dumps(found), strict=True)
     except OSError as error:
         raise RecordError(f"cannot read the manifest {path}: {error}") from error
     except (ValueError, KeyError, TypeError, RecursionError, RecordError) as error:

@@ -85,7 +85,7 @@ class Networks:
         Raises:
             NetworkError: A species has none, or they read something else.
         """
-        fixed = frozen_species(config)
+        fixed = fixed_species(config)
         if not fixed:
             raise NetworkError(f'{brief(origin)}: no species has learning.policy = "frozen", so none would use them')
         for name in fixed:
@@ -103,7 +103,7 @@ class Networks:
                 raise NetworkError(f"{brief(origin)}: networks of {brief(name)} do not fit what it observes: {what}")
 
 
-def frozen_species(config: Config) -> list[str]:
+def fixed_species(config: Config) -> list[str]:
     """The species that act by networks that never learn."""
     return [name for name, species in config.agents.items() if species.learning.policy == "frozen"]
 

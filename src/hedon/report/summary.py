@@ -75,7 +75,7 @@ def summarize(run: Run) -> dict[str, Any]:
         "fidelity": manifest.fidelity,
         "modified": manifest.modified,
         "hedon_version": manifest.hedon_version,
-        "kernel": manifest.kernel,
+        "backend": manifest.backend,
         "status": manifest.status,
         "config_digest": manifest.config_digest,
         "food_kinds": manifest.food_kinds,

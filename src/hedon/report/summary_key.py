@@ -6,7 +6,7 @@ _BEGIN: dict[str, str] = {
     "fidelity": "corrected, released or text, or null",
     "modified": "whether any setting differs from the preset with the fidelity; null where the manifest does not say",
     "hedon_version": "version that made the run",
-    "kernel": "instruction set that the engine used",
+    "backend": "what computed: an instruction set, or a device",
     "status": "running, finished, interrupted or failed",
     "config_digest": "digest of the resolved config",
     "food_kinds": "names, in the order of the config",

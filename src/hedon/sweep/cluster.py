@@ -15,11 +15,11 @@ from typing import Any
 from hedon.experiment.interrupt import count_interrupts
 from hedon.jobs.process import Display
 from hedon.jobs.work import Outcome, attempt
-from hedon.sweep.conduct import open_batches, tasks
 from hedon.sweep.error import SweepError
-from hedon.sweep.hold import hold
-from hedon.sweep.loss import Losses
+from hedon.sweep.lock import lock
 from hedon.sweep.plan import SweepPlan
+from hedon.sweep.retry import RetryLimit
+from hedon.sweep.run import open_batches, tasks
 from hedon.sweep.store import Store
 from hedon.sweep.work import Task
 
@@ -45,7 +45,7 @@ def run_on_ray(
         address: of the cluster, or `LOCAL`.
         display: shows how each batch ends.
         checkpoint_seconds: between two checkpoints of a batch [s].
-        part: which batches, as `hedon.sweep.conduct.open_batches`.
+        part: which batches, as `hedon.sweep.run.open_batches`.
         workers: processors of a local cluster; 0 for all.
 
     Returns:
@@ -68,9 +68,9 @@ def run_on_ray(
     except (ConnectionError, ValueError, RuntimeError) as error:
         raise SweepError(f"--ray = {address!r}: no cluster answers there: {error}") from error
     try:
-        with hold(store, part):
+        with lock(store, part):
             jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
-            return _see_through(ray, jobs, Losses(store), display)
+            return _see_through(ray, jobs, RetryLimit(store), display)
     finally:
         ray.shutdown()
 
@@ -91,7 +91,7 @@ def import_ray() -> Any:
         raise SweepError('--ray needs the optional packages: pip install "hedon[ray]"') from None
 
 
-def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Display[Task]) -> dict[str, Outcome]:
+def _see_through(ray: Any, jobs: Sequence[Task], retries: RetryLimit, display: Display[Task]) -> dict[str, Outcome]:
     """Submits batches and awaits them; those whose process is lost again, as long as that leads further."""
     lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
     # Ray's own tries have no end where memory runs out, and do not see whether a batch gets further.
@@ -108,10 +108,10 @@ def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Displa
                 except ray.exceptions.RayError as error:
                     if interrupted.count:  # it was called off
                         continue
-                    if isinstance(error, lost) and losses.may_go_on(job):
+                    if isinstance(error, lost) and retries.may_go_on(job):
                         waiting[remote.remote(job, 1)] = job
                         continue
-                    outcome = Outcome("failed", losses.reason(job, error) if isinstance(error, lost) else str(error))
+                    outcome = Outcome("failed", retries.reason(job, error) if isinstance(error, lost) else str(error))
                 outcomes[job.batch.name] = outcome
                 display.end(job, outcome)
             if told < interrupted.count:

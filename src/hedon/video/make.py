@@ -16,7 +16,7 @@ Progress = Callable[[int, int, int], None]
 
 
 @dataclass(frozen=True)
-class Take:
+class FrameRange:
     """What of a world a video shows.
 
     Attributes:
@@ -37,7 +37,9 @@ class Take:
         return (self.last - self.first) // self.speed + 1
 
 
-def choose_take(footage: Footage, first: int | None, last: int | None, speed: int, follow: int | None = None) -> Take:
+def choose_range(
+    footage: Footage, first: int | None, last: int | None, speed: int, follow: int | None = None
+) -> FrameRange:
     """What to show; by default all that was recorded, or all of the life of the followed agent.
 
     Args:
@@ -52,21 +54,21 @@ def choose_take(footage: Footage, first: int | None, last: int | None, speed: in
     """
     begin, end = (footage.first, footage.last) if follow is None else footage.lifetime(follow)
     what = "the frames reach" if follow is None else f"agent {follow} is in the frames"
-    take = Take(begin if first is None else first, end if last is None else last, speed, follow)
-    for option, step in (("--from", take.first), ("--to", take.last)):
+    shown = FrameRange(begin if first is None else first, end if last is None else last, speed, follow)
+    for option, step in (("--from", shown.first), ("--to", shown.last)):
         if not begin <= step <= end:
             raise VideoError(f"{option} {step}: {what} from step {begin} to {end}")
-    if take.first > take.last:
-        raise VideoError(f"--from {take.first} is later than --to {take.last}")
-    return take
+    if shown.first > shown.last:
+        raise VideoError(f"--from {shown.first} is later than --to {shown.last}")
+    return shown
 
 
-def make_video(footage: Footage, take: Take, out: Path, width: int, rate: int, progress: Progress) -> None:
+def make_video(footage: Footage, shown: FrameRange, out: Path, width: int, rate: int, progress: Progress) -> None:
     """Writes a video.
 
     Args:
         footage: the world.
-        take: what to show of it.
+        shown: what to show of it.
         out: the new file, .mp4 or .gif.
         width: of a picture [pixel].
         rate: pictures per second.
@@ -77,11 +79,11 @@ def make_video(footage: Footage, take: Take, out: Path, width: int, rate: int, p
     """
     check_target(out)
     find_ffmpeg()
-    moments = footage.moments(take.first, take.last, take.speed)
+    moments = footage.moments(shown.first, shown.last, shown.speed)
     opening = next(moments)
     colors = food_colors(opening.food_kinds, [food.color for food in footage.config.food.values()])
-    film = Film(opening, colors, width, footage.usual_energy(), take.follow)
+    film = Film(opening, colors, width, footage.usual_energy(), shown.follow)
     with Encoder(out, film.width, film.height, rate) as encoder:
         for number, moment in enumerate(chain((opening,), moments), 1):
             encoder.add(film.draw(moment))
-            progress(number, take.pictures, moment.step)
+            progress(number, shown.pictures, moment.step)

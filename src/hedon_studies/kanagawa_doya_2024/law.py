@@ -57,9 +57,9 @@ def _walk(material: Material) -> Iterator[NamedFigure]:
     config = BASELINE.config(material.fidelity)
     law, births = mutation_law(config, gene_of(config, "neutral_1")), window_births(config)
     frozen = ""
-    if law.frozen:
+    if law.tabulated:
         frozen = (
-            f"The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
+            f"The noise is tabulated: a world has one table of noise, an entry per birth of a window, and each mutation "
             f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
             "without energy tries in a window."
         )

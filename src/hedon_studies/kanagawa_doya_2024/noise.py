@@ -1,4 +1,4 @@
-"""Study: where does frozen mutation noise carry the weights?"""
+"""Study: where does tabulated mutation noise carry the weights?"""
 
 from collections.abc import Iterator
 

@@ -28,7 +28,7 @@ def test_courses_are_means_over_the_living(worlds: list[WorldRecord]) -> None:
     np.testing.assert_allclose(course.mean["w_normal"][1:], world.population["w_normal_mean"], rtol=1e-5, atol=1e-6)
     assert course.generations == pytest.approx(world.population["generation_mean"][-1])
     tree = genealogy(world.agents)
-    still = MutationLaw(mean=0.0, sd=1.0, scale=0.0, limit=1e6, frozen=False, window=1024, late=False)
+    still = MutationLaw(mean=0.0, sd=1.0, scale=0.0, limit=1e6, tabulated=False, window=1024, late=False)
     living = [living_at(tree, step) for step in (0, 20_480)]
     walked = neutral_courses(tree, living, still, np.random.default_rng(2), 2000)
     assert walked[:, 0].std() == pytest.approx(1 / np.sqrt(50), rel=0.1)  # founders, each with a gene of its own

@@ -15,7 +15,7 @@ from hedon.config.gene import gene_of
 from hedon.record.reader import open_run
 from hedon.statistic.correction import holm
 
-LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, frozen=False, window=10, late=False)
+LAW = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=1e6, tabulated=False, window=10, late=False)
 
 
 def law_of(fidelity: str) -> MutationLaw:
@@ -61,7 +61,7 @@ def test_founders_and_the_limit() -> None:
 def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     """Two births in a row, each the first of its window: the same noise twice, so that the scale doubles."""
     rng = np.random.default_rng(3)
-    frozen = dataclasses.replace(LAW, frozen=True, late=True)
+    frozen = dataclasses.replace(LAW, tabulated=True, late=True)
     tree = chain([-1, 0, 1], [0, 5, 15])
     values = neutral_means(tree, np.array([1, 2]), frozen, rng, 20_000)
     assert quartile(values) == pytest.approx(0.15, rel=0.05)  # (X + 2·X)/2
@@ -70,7 +70,7 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     for second_birth, equal in ((15, 1.0), (6, 0.5)):
         values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
         assert np.mean(np.abs(values) > 0.5) == pytest.approx(equal, abs=0.03)
-    assert law_of("released").frozen
+    assert law_of("released").tabulated
     assert law_of("corrected") == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024, False)
 
 

@@ -126,7 +126,7 @@ def test_births_are_numbered_within_their_window() -> None:
 
 
 def test_who_died_before_its_window_ended_never_had_a_genome_of_its_own() -> None:
-    law = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=10.0, frozen=False, window=10, late=True)
+    law = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=10.0, tabulated=False, window=10, late=True)
     #                 founder  lives on  dies first  its child  too late to know
     tree = Genealogy(np.array([-1, 0, 0, 2, 1]), np.array([0, 3, 3, 5, 21]), np.array([ALIVE, 30, 10, ALIVE, ALIVE]), 0)
     assert is_mutated(tree, law, last_step=25).tolist() == [False, True, False, False, False]

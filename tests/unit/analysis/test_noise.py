@@ -1,4 +1,4 @@
-"""The table of frozen noise and what it predicts, on records whose table is known."""
+"""The table of tabulated noise and what it predicts, on records whose table is known."""
 
 import dataclasses
 

@@ -5,7 +5,7 @@ import pytest
 from assay_world import birth_death_world
 from scipy import stats
 
-from hedon.assay.gene_test import flatness, gene_effects
+from hedon.assay.gene_effect import flatness, gene_effects
 from hedon.assay.outcome import founder_outcomes
 from hedon.assay.resample import relative, world_interval
 from hedon.assay.surface import fit_quadratic, fit_smooth, quadratic_terms

@@ -161,7 +161,7 @@ def test_mutations_add_up_to_the_closed_form_where_nothing_is_clipped() -> None:
 
 
 def test_lines_begin_with_the_law_of_founders_and_stay_within_the_limit() -> None:
-    law = MutationLaw(mean=2.0, sd=0.5, scale=0.5, limit=3.0, frozen=False, window=1024, late=False)
+    law = MutationLaw(mean=2.0, sd=0.5, scale=0.5, limit=3.0, tabulated=False, window=1024, late=False)
     genes = lineages(law, 30, 4000, 2, np.random.default_rng(4))
     assert genes.shape == (31, 4000, 2, 1)
     assert genes[0].mean() == pytest.approx(2.0, abs=0.03)
@@ -169,7 +169,7 @@ def test_lines_begin_with_the_law_of_founders_and_stay_within_the_limit() -> Non
 
 
 def test_frozen_lines_of_a_world_share_a_table() -> None:
-    frozen = replace(LAW, frozen=True, limit=1e9)
+    frozen = replace(LAW, tabulated=True, limit=1e9)
     genes = lineages(frozen, 200, 3, 50, np.random.default_rng(5), births=4).astype(np.float64)
     steps = np.diff(genes, axis=0)
     for world in range(3):

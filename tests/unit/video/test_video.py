@@ -14,7 +14,7 @@ from hedon.figure.film import Film
 from hedon.record.reader import open_run
 from hedon.video.encoder import Encoder
 from hedon.video.error import VideoError
-from hedon.video.make import choose_take
+from hedon.video.make import choose_range
 from hedon.video.moment import blend, open_footage
 
 imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="needs ffmpeg: uv sync --extra video")
@@ -91,20 +91,20 @@ def test_a_followed_agent_stays_ringed_and_in_sight(folder):
     assert 0 <= row < film.height
     edge, _ = film.pixel(float(moment.x[5]) + float(moment.radius[0]) + 1.5, float(moment.y[5]))
     assert picture[row, edge - 1 : edge + 2, :3].sum(axis=1).min() < 250  # the ring is dark
-    take = choose_take(footage, None, None, 8, agent)
-    assert (take.first, take.last) == footage.lifetime(agent)
+    shown = choose_range(footage, None, None, 8, agent)
+    assert (shown.first, shown.last) == footage.lifetime(agent)
 
 
 def test_a_take_must_have_been_recorded(folder):
     footage = open_footage(folder)
     with pytest.raises(VideoError, match="--from 32: the frames reach from step 64 to 256"):
-        choose_take(footage, 32, None, 8)
+        choose_range(footage, 32, None, 8)
     with pytest.raises(VideoError, match="--to 257"):
-        choose_take(footage, None, 257, 8)
+        choose_range(footage, None, 257, 8)
     with pytest.raises(VideoError, match="--from 200 is later than --to 100"):
-        choose_take(footage, 200, 100, 8)
+        choose_range(footage, 200, 100, 8)
     with pytest.raises(VideoError, match="no frame has this agent"):
-        choose_take(footage, None, None, 8, 10**6)
+        choose_range(footage, None, None, 8, 10**6)
     with pytest.raises(VideoError, match="the run has seeds 1"):
         open_footage(folder, 2)
 

@@ -33,7 +33,7 @@ class MutationLaw:
         probability: that a birth adds any.
         scale: of the noise.
         limit: weights are clipped to ± this.
-        frozen: whether the noise is the same for all births of equal `birth_number`.
+        tabulated: whether the noise is the same for all births of equal `birth_number`.
         window: length of a window [step].
         late: whether genomes are drawn at a window's end, when its number of births is known.
     """
@@ -42,7 +42,7 @@ class MutationLaw:
     sd: float
     scale: float
     limit: float
-    frozen: bool
+    tabulated: bool
     window: int
     late: bool
     noise: str = "cauchy"
@@ -82,7 +82,7 @@ def mutation_law(config: Config, gene: Gene) -> MutationLaw:
         sd=gene.law.initial_sd,
         scale=gene.mutation.scale,
         limit=gene.mutation.limit,
-        frozen=config.genome.mutation_noise == "frozen",
+        tabulated=config.genome.mutation_noise == "frozen",
         window=config.learning.rollout_steps,
         late=config.birth.inheritance == "at_window_end",
         noise=gene.mutation.law,
@@ -159,9 +159,9 @@ def _walked(
         gene = np.empty((len(nodes), count), np.float32)
         founders = rng.normal(law.mean, law.sd, (len(levels[0]), count))
         gene[levels[0]] = np.clip(founders, -law.limit, law.limit)
-        table = law.draw(rng, (int(number.max()) + 1 if law.frozen else 0, count))
+        table = law.draw(rng, (int(number.max()) + 1 if law.tabulated else 0, count))
         for level in levels[1:]:
-            noise = table[number[level]] if law.frozen else law.draw(rng, (len(level), count))
+            noise = table[number[level]] if law.tabulated else law.draw(rng, (len(level), count))
             gene[level] = np.clip(gene[parent[level]] + law.scale * noise, -law.limit, law.limit)
         yield gene
 
@@ -174,10 +174,10 @@ def lineages(
     Args:
         law: of founding and mutation.
         mutations: births in each line.
-        worlds: that the lines belong to; with frozen noise, each has a table of its own.
+        worlds: that the lines belong to; with tabulated noise, each has a table of its own.
         count: lines in each world.
         rng: source of chance.
-        births: with frozen noise, how many births a window has; each birth of a line is any one of them.
+        births: with tabulated noise, how many births a window has; each birth of a line is any one of them.
         genes: that each agent has, each with noise of its own.
 
     Returns:
@@ -186,9 +186,9 @@ def lineages(
     shape = (worlds, count, genes)
     values = np.empty((mutations + 1, *shape), np.float32)
     values[0] = np.clip(rng.normal(law.mean, law.sd, shape), -law.limit, law.limit)
-    table = law.draw(rng, (worlds, births if law.frozen else 0, genes))
+    table = law.draw(rng, (worlds, births if law.tabulated else 0, genes))
     for i in range(mutations):
-        if law.frozen:
+        if law.tabulated:
             noise = np.take_along_axis(table, rng.integers(births, size=(worlds, count))[..., None], axis=1)
         else:
             noise = law.draw(rng, shape)
@@ -216,10 +216,10 @@ def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.
 
 
 def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
-    """Numbers births so that those with equal frozen noise have equal numbers.
+    """Numbers births so that those with equal tabulated noise have equal numbers.
 
-    Frozen noise depends on a birth's index within its window of learning and on a number of births: that of the window
-    itself if genomes are drawn at its end (`late`), else that of the window before.
+    Tabulated noise depends on a birth's index within its window of learning and on a number of births: that of the
+    window itself if genomes are drawn at its end (`late`), else that of the window before.
 
     Args:
         tree: the pedigree.

@@ -39,7 +39,7 @@ def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
 
 
 def forecast_group(config: Config, found: Forecast) -> Group:
-    """What `hedon demography` prints.
+    """What `hedon forecast` prints.
 
     Args:
         config: With the settings of the population.

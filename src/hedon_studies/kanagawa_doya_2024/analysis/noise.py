@@ -1,4 +1,4 @@
-"""The table of frozen mutation noise, read off the records of a world.
+"""The table of tabulated mutation noise, read off the records of a world.
 
 With `genome.mutation_noise = "frozen"` a birth's mutation of a gene depends on the seed, the gene and the number of the
 birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
@@ -55,7 +55,7 @@ class NoiseTable:
         births: of each number, (k,).
         bound: whether the value is such a bound, (k,).
         disagreement: largest difference between births of equal number that were not clipped.
-        is_one: whether they agree to rounding, as with frozen noise.
+        is_one: whether they agree to rounding, as with tabulated noise.
     """
 
     value: Floats

@@ -55,7 +55,7 @@ class WeightCourse:
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
+class Stability:
     """The worlds that began at one point.
 
     Attributes:
@@ -75,7 +75,7 @@ class Start:
     courses: Mapping[str, WeightCourse]
 
 
-def measure_start(run: Run) -> Start:
+def measure_stability(run: Run) -> Stability:
     """Reads a finished run."""
     worlds = read_worlds([run])
     steps = max(run.manifest.steps_done)
@@ -84,7 +84,7 @@ def measure_start(run: Run) -> Start:
     names, config = worlds[0].weight_names, worlds[0].config
     step = np.arange(TIMES + 1) * steps / TIMES
     weights = {name: _weight(name, gene_of(config, name).law.initial_mean, step, courses) for name in names}
-    return Start(
+    return Stability(
         name=run.path.name,
         point={name: gene_of(config, name).law.initial_mean for name in worlds[0].reward_names},
         worlds=len(worlds),

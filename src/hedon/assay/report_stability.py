@@ -7,13 +7,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.table import ResultTable, table
-from hedon.assay.start import VERDICTS, Start
+from hedon.assay.stability import VERDICTS, Stability
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 
 _COLORS = (BLUE, ORANGE)
 
 
-def start_tables(starts: Sequence[Start]) -> list[ResultTable]:
+def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
     """Where each weight ended, and its course."""
     rows, courses = [], []
     for start in starts:
@@ -72,7 +72,7 @@ def start_tables(starts: Sequence[Start]) -> list[ResultTable]:
     ]
 
 
-def start_json(starts: Sequence[Start]) -> dict[str, Any]:
+def stability_json(starts: Sequence[Stability]) -> dict[str, Any]:
     """What the summary holds besides the tables."""
     return {
         "starts": [
@@ -89,7 +89,7 @@ def start_json(starts: Sequence[Start]) -> dict[str, Any]:
     }
 
 
-def draw_starts(starts: Sequence[Start]) -> Figure:
+def draw_stability(starts: Sequence[Stability]) -> Figure:
     """One panel per reward weight: each world, the mean, and the band of neutral genes that begin likewise."""
     genes = list(starts[0].point)
     with styled():

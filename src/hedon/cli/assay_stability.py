@@ -1,4 +1,4 @@
-"""`hedon assay start`: evolution from a claimed end point."""
+"""`hedon assay stability`: evolution from a claimed end point."""
 
 from typing import Annotated
 
@@ -12,7 +12,7 @@ from hedon.record.folder import CHECKPOINT_SECONDS
 Point = Annotated[str, typer.Option("--at", metavar="GENE=VALUE,…", help="Where founders begin: food=5,action=5.")]
 
 
-def start(
+def stability(
     source: Source,
     at: Point,
     beside: Annotated[
@@ -34,30 +34,32 @@ def start(
 
     \b
     Examples:
-      hedon assay start baseline --at food=5,action=5
-      hedon assay start baseline --at food=5,action=-5 --beside food=0,action=0 --steps 1024000
+      hedon assay stability baseline --at food=5,action=5
+      hedon assay stability baseline --at food=5,action=-5 --beside food=0,action=0 --steps 1024000
     """
-    from hedon.assay.option import assay_plan, start_config
+    from hedon.assay.option import assay_plan, stability_config
     from hedon.assay.report import world_line, write_assay
-    from hedon.assay.report_start import draw_starts, start_json, start_tables
-    from hedon.assay.start import measure_start
+    from hedon.assay.report_stability import draw_stability, stability_json, stability_tables
+    from hedon.assay.stability import measure_stability
     from hedon.config.load import load_config
     from hedon.record.founder_source import parse_point
 
     config = load_config(source, fidelity, overrides or ())
     points = {"start": at} | ({} if beside is None else {"beside": beside})
-    configs = {part: start_config(config, parse_point(point, config)) for part, point in points.items()}
-    first = assay_plan("start", configs["start"], parse_seeds(seeds), steps, out, threads, checkpoint, None, "start")
+    configs = {part: stability_config(config, parse_point(point, config)) for part, point in points.items()}
+    first = assay_plan(
+        "stability", configs["start"], parse_seeds(seeds), steps, out, threads, checkpoint, None, "start"
+    )
     plans = [
-        assay_plan("start", each, first.seeds, steps, first.out.parent, threads, checkpoint, None, part)
+        assay_plan("stability", each, first.seeds, steps, first.out.parent, threads, checkpoint, None, part)
         for part, each in configs.items()
     ]
     console = make_console()
     runs = make(plans, console)
     if runs is None:
         return
-    starts = [measure_start(run) for run in runs]
-    tables = start_tables(starts)
+    starts = [measure_stability(run) for run in runs]
+    tables = stability_tables(starts)
     intro = "\n".join(
         [
             f"Evolution from {at}{'' if beside is None else f', and from {beside}'}. {world_line(runs)}",
@@ -68,11 +70,13 @@ def start(
             ),
         ]
     )
-    figure = draw_starts(starts)
-    files = write_assay(first.out.parent, "start", runs, first.config, start_json(starts), tables, intro, figure)
+    figure = draw_stability(starts)
+    files = write_assay(
+        first.out.parent, "stability", runs, first.config, stability_json(starts), tables, intro, figure
+    )
     finish(tables, files, console)
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command to `hedon assay`."""
-    app.command()(start)
+    app.command()(stability)

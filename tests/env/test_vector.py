@@ -10,7 +10,7 @@ from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
 from hedon import ArgumentError, load_config
 from hedon.config.layout import observation_columns
-from hedon.env import batch
+from hedon.env import vector_env
 
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
 PAIR = (
@@ -31,7 +31,7 @@ def act(group, rng):
 
 
 def test_observations_are_those_of_the_world():
-    worlds = batch(config(*LIVELY), seeds=[1, 2], threads=2)
+    worlds = vector_env(config(*LIVELY), seeds=[1, 2], threads=2)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
     for _ in range(80):
@@ -49,7 +49,7 @@ def test_agents_do_what_they_are_told():
     """Told what a learning world did, a driven one goes the same way."""
     settings = (*QUICK, *DEATHLESS, *CHILDLESS)
     learner = make_simulation(*settings, seeds=(5,))
-    worlds = batch(config(*settings), seeds=[5], threads=1)
+    worlds = vector_env(config(*settings), seeds=[5], threads=1)
     agents, world = worlds.groups["agent"], worlds.simulation.worlds[0]
     rewards = np.zeros(agents.rewards.shape)
     for step in range(63):
@@ -63,7 +63,7 @@ def test_agents_do_what_they_are_told():
 
 
 def test_births_and_deaths_come_and_go():
-    worlds = batch(config(*LIVELY), seeds=[3], threads=1)
+    worlds = vector_env(config(*LIVELY), seeds=[3], threads=1)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
     born, died, paid = set(), set(), 0.0
@@ -89,8 +89,8 @@ def test_births_and_deaths_come_and_go():
 
 def test_threads_change_nothing_and_a_reset_begins_again():
     ends = []
-    worlds = batch(config(*PAIR), seeds=[1, 2, 3], species="led", threads=1)
-    for driven in (worlds, worlds, batch(config(*PAIR), seeds=[1, 2, 3], species="led", threads=2)):
+    worlds = vector_env(config(*PAIR), seeds=[1, 2, 3], species="led", threads=1)
+    for driven in (worlds, worlds, vector_env(config(*PAIR), seeds=[1, 2, 3], species="led", threads=2)):
         driven.reset()
         rng = np.random.default_rng(1)
         for _ in range(70):
@@ -103,7 +103,7 @@ def test_threads_change_nothing_and_a_reset_begins_again():
 
 
 def test_others_learn_beside_those_that_are_driven():
-    worlds = batch(config(*PAIR), seeds=[1], species=["led"])
+    worlds = vector_env(config(*PAIR), seeds=[1], species=["led"])
     group = worlds.groups["led"]
     assert list(worlds.groups) == ["led"]
     worlds.step(repeat=128)
@@ -116,7 +116,7 @@ def test_others_learn_beside_those_that_are_driven():
 
 
 def test_columns_say_what_is_where():
-    worlds = batch(config(*QUICK, preset="poison"), seeds=[1])
+    worlds = vector_env(config(*QUICK, preset="poison"), seeds=[1])
     world, group = worlds.simulation.worlds[0], worlds.groups["agent"]
     column = {name: group.observations[0, world.living, i] for i, name in enumerate(group.columns)}
     assert len(group.columns) == 125
@@ -128,7 +128,7 @@ def test_columns_say_what_is_where():
 
 
 def test_sight_is_rewarded():
-    worlds = batch(config(*PAIR, "species.led.reward.action_coef=0"), seeds=[1], species="led")
+    worlds = vector_env(config(*PAIR, "species.led.reward.action_coef=0"), seeds=[1], species="led")
     worlds.step(repeat=20)
     assert (worlds.groups["led"].rewards != 0).any()
 
@@ -142,13 +142,13 @@ NOT_A_CONFIG: Any = "baseline"
         (lambda w: w.groups["agent"].actions.__setitem__((0, 3, 1), np.nan), r"actions\[0, 3, 1\] \(right\) = nan"),
         (lambda w: w.reset([1, 2]), "there must be 1, one per world, not 2"),
         (lambda w: w.step(0), "repeat = 0"),
-        (lambda w: batch(w.config, [1], species="agnt"), "did you mean agent"),
-        (lambda w: batch(NOT_A_CONFIG, [1]), "must be a Config"),
-        (lambda w: batch(w.config, [1], species=[]), "at least one"),
+        (lambda w: vector_env(w.config, [1], species="agnt"), "did you mean agent"),
+        (lambda w: vector_env(NOT_A_CONFIG, [1]), "must be a Config"),
+        (lambda w: vector_env(w.config, [1], species=[]), "at least one"),
     ],
 )
 def test_bad_input_is_named(wrong, says):
-    worlds = batch(config(*QUICK), seeds=[1])
+    worlds = vector_env(config(*QUICK), seeds=[1])
 
     def go_on():
         wrong(worlds)
@@ -159,7 +159,7 @@ def test_bad_input_is_named(wrong, says):
 
 
 def test_the_engine_refuses_arrays_of_another_shape():
-    worlds = batch(config(*QUICK), seeds=[1])
+    worlds = vector_env(config(*QUICK), seeds=[1])
     engine, group = worlds.simulation.engine, worlds.groups["agent"]
     with pytest.raises(ValueError, match="a row for each slot"):
         engine.set_actions(0, group.actions[:, 1:].copy())

@@ -10,7 +10,7 @@ import pytest
 from sweep_case import planned, sweep_file
 
 from hedon.error import HedonError
-from hedon.sweep.hold import hold
+from hedon.sweep.lock import lock
 from hedon.sweep.store import open_store
 from hedon.sweep.work import WORK, make_batch, make_task
 
@@ -38,20 +38,20 @@ def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
     said = " ".join(second.stderr.split())
     assert said.startswith(f"hedon: {place} is being made by another process"), said
     assert said.endswith("wait for it, stop it first, or give each its --part"), said
-    with hold(open_store(str(place)), (1, 1)):
+    with lock(open_store(str(place)), (1, 1)):
         """What a process held, it holds no more when it has ended."""
 
 
 def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
     store = open_store(str(tmp_path / "parts"))
-    with hold(store, (3, 10)):
+    with lock(store, (3, 10)):
         for other in ((4, 10), (2, 2), (4, 20)):
-            with hold(store, other):
+            with lock(store, other):
                 pass
         for other in ((3, 10), (1, 1), (1, 2), (13, 20), (2, 3)):
-            with pytest.raises(HedonError, match="is being made by another process"), hold(store, other):
+            with pytest.raises(HedonError, match="is being made by another process"), lock(store, other):
                 pass
-    with hold(store, (1, 1)):
+    with lock(store, (1, 1)):
         pass
 
 

@@ -1,4 +1,4 @@
-"""The command `hedon demography`."""
+"""The command `hedon forecast`."""
 
 from typing import Annotated
 
@@ -8,7 +8,7 @@ from hedon.cli.config import Fidelity, Overrides, Source
 from hedon.cli.console import make_console
 
 
-def demography(
+def forecast(
     source: Source,
     species: Annotated[
         str | None, typer.Option(help="Of which species, where there are several; by default the first.")
@@ -24,17 +24,17 @@ def demography(
 
     \b
     Examples:
-      hedon demography baseline
-      hedon demography baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
-      hedon demography predator --species predator
-      hedon demography my.toml --fidelity text
+      hedon forecast baseline
+      hedon forecast baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
+      hedon forecast predator --species predator
+      hedon forecast my.toml --fidelity text
     """
     from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config
     from hedon.config.layout import choose_species, of_species
-    from hedon.demography.forecast import forecast
+    from hedon.demography.forecast import forecast as predict
 
     config = load_config(source, fidelity, overrides or ())
     chosen = choose_species(species, config)
     config = config if chosen is None else of_species(config, chosen)
-    make_console().print(forecast_group(config, forecast(config)))
+    make_console().print(forecast_group(config, predict(config)))

@@ -14,7 +14,7 @@ LOCKS = "locks"
 
 
 @contextmanager
-def hold(store: Store, part: tuple[int, int]) -> Iterator[None]:
+def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
     """Holds a part of a sweep while its batches are made; the lock ends with the process.
 
     Two parts have batches in common where their numbers are equal modulo what their counts have in common, so the

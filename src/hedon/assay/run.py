@@ -26,7 +26,7 @@ class AssayRuns:
     finished: bool
 
 
-def conduct(plans: Sequence[RunPlan], show: Show) -> AssayRuns:
+def make_runs(plans: Sequence[RunPlan], show: Show) -> AssayRuns:
     """Makes runs one after the other; stops where one is interrupted.
 
     Args:

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from hedon.experiment.plan import Moment
-from hedon.jobs.process import Display, conduct
+from hedon.jobs.process import Display, run_jobs
 from hedon.jobs.work import Outcome
-from hedon.sweep.hold import hold
+from hedon.sweep.lock import lock
 from hedon.sweep.plan import Batch, SweepPlan
 from hedon.sweep.store import Store
 from hedon.sweep.work import RESULTS, WORK, Task, make_task
@@ -70,9 +70,9 @@ def run_sweep(
     Raises:
         SweepError: another process makes these batches.
     """
-    with hold(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
+    with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
         jobs = tasks(plan, store, open_batches(plan, store, part), Path(scratch), checkpoint_seconds)
-        outcomes = conduct(jobs, workers, display)
+        outcomes = run_jobs(jobs, workers, display)
     names = {job.folder: job.batch.name for job in jobs}
     return {names[folder]: outcome for folder, outcome in outcomes.items()}
 

@@ -18,15 +18,15 @@ from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
 
-class Batch:
+class VectorEnv:
     """Worlds whose agents, all or those of some species, are driven by the caller; the others learn by themselves.
 
     Args:
         config: Settings of the worlds.
         seeds: One world per seed.
-        species: Whose agents the caller drives; None as for `batch`.
+        species: Whose agents the caller drives; None as for `vector_env`.
         threads: As in `hedon.Simulation`.
-        kernel: As in `hedon.Simulation`.
+        backend: As in `hedon.Simulation`.
 
     Attributes:
         config: The config, with the policy `external` for the species that are driven.
@@ -35,7 +35,7 @@ class Batch:
 
     Example:
         >>> import hedon, hedon.env
-        >>> worlds = hedon.env.batch(hedon.load_config("baseline"), seeds=[1, 2])
+        >>> worlds = hedon.env.vector_env(hedon.load_config("baseline"), seeds=[1, 2])
         >>> agents = worlds.groups["agent"]
         >>> agents.actions[...] = 0.5  # or a policy of agents.observations
         >>> worlds.step()
@@ -43,12 +43,12 @@ class Batch:
     """
 
     def __init__(
-        self, config: Config, seeds: Sequence[int], species: str | Sequence[str] | None, threads: int, kernel: str
+        self, config: Config, seeds: Sequence[int], species: str | Sequence[str] | None, threads: int, backend: str
     ) -> None:
         names = driven(config, species)
         self.config = _with_callers(config, names)
-        self._threads, self._kernel = threads, kernel
-        self.simulation = Simulation(self.config, seeds, threads, kernel)
+        self._threads, self._backend = threads, backend
+        self.simulation = Simulation(self.config, seeds, threads, backend)
         every = list(config.agents)
         meals = (*config.food, *every)[: self.simulation.engine.meals(0).shape[1]]
         self.groups = {
@@ -72,7 +72,7 @@ class Batch:
         wanted = self.simulation.seeds if seeds is None else seed_list(seeds, MAX_WORLD_SEED)
         if len(wanted) != len(self.simulation.seeds):
             raise ArgumentError(f"seeds: there must be {len(self.simulation.seeds)}, one per world, not {len(wanted)}")
-        self.simulation = Simulation(self.config, wanted, self._threads, self._kernel)
+        self.simulation = Simulation(self.config, wanted, self._threads, self._backend)
         for group in self.groups.values():
             group._forget()
         self._look()
@@ -112,14 +112,14 @@ class Batch:
             group._look(self.simulation.engine)
 
 
-def batch(
+def vector_env(
     config: Config,
     seeds: Sequence[int],
     species: str | Sequence[str] | None = None,
     threads: int = 0,
-    kernel: str = "",
-) -> Batch:
-    """Worlds that a program drives, as arrays.
+    backend: str = "",
+) -> VectorEnv:
+    """Makes worlds that a program drives, as arrays.
 
     Args:
         config: Settings of the worlds.
@@ -127,14 +127,14 @@ def batch(
         species: Whose agents the caller drives: a name, several, or by default those whose policy is `external`, or
             all where there are none. A config without `[species]` has the species `agent`.
         threads: As in `hedon.Simulation`; changes no result.
-        kernel: As in `hedon.Simulation`.
+        backend: As in `hedon.Simulation`.
 
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
         EngineError: As in `hedon.Simulation`.
     """
-    return Batch(config, seeds, species, threads, kernel)
+    return VectorEnv(config, seeds, species, threads, backend)
 
 
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:

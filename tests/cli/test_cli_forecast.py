@@ -5,7 +5,7 @@ from hedon.config import ConfigError
 
 
 def test_demography_prints_tables_and_warnings() -> None:
-    result = CliRunner().invoke(app, ["demography", "baseline", "--set", "food.normal.growth_rate=1.0"])
+    result = CliRunner().invoke(app, ["forecast", "baseline", "--set", "food.normal.growth_rate=1.0"])
     assert result.exit_code == 0, result.output
     assert "life at constant energy" in result.output
     assert "births that find a place" in result.output
@@ -14,5 +14,5 @@ def test_demography_prints_tables_and_warnings() -> None:
 
 
 def test_a_wrong_setting_is_an_error_of_hedon() -> None:
-    result = CliRunner().invoke(app, ["demography", "baseline", "--set", "hazard.kapa=1.0"])
+    result = CliRunner().invoke(app, ["forecast", "baseline", "--set", "hazard.kapa=1.0"])
     assert isinstance(result.exception, ConfigError)

@@ -11,7 +11,7 @@ TRIES = 5
 
 
 @dataclass
-class Losses:
+class RetryLimit:
     """Counts how often each batch was lost, with its node or alone, without getting further.
 
     Attributes:
