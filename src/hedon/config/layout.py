@@ -165,9 +165,10 @@ RULE_INPUTS = (
 def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, ...]:
     """Names of the fields of the record that a rule of a species gets of each agent, in order.
 
-    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `drive_reduction`.
-    What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth. Where there are
-    other inner states than energy, they stand before it, each as it was at the start of the step and as it is.
+    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or
+    `drive_reduction`. What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
+    Where there are other inner states than energy, they stand before it, each as it was at the start of the step and as
+    it is.
     """
     layout, memory = layout_of(config, config.agents[name]), config.agents[name].reward.memory
     inner = inner_states(config, config.agents[name])[1:]

@@ -56,19 +56,19 @@ def _birth(material: Material) -> Iterator[NamedFigure]:
 def _walk(material: Material) -> Iterator[NamedFigure]:
     config = BASELINE.config(material.fidelity)
     law, births = mutation_law(config, gene_of(config, "neutral_1")), window_births(config)
-    frozen = ""
+    noise = ""
     if law.tabulated:
-        frozen = (
-            f"The noise is tabulated: a world has one table of noise, an entry per birth of a window, and each mutation "
-            f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
-            "without energy tries in a window."
+        noise = (
+            "The noise is tabulated: a world has one table of noise, an entry per birth of a window, and each "
+            f"mutation of a line is any of its entries. The tables here have {births} entries, the births that a full "
+            "arena without energy tries in a window."
         )
     for name, question, draw, caption in (
         ("walk", "Where do mutations alone carry weights that nothing selects?", draw_walk_ends, _ENDS),
         ("walk_lines", "How does a weight get there?", draw_walks, _LINES),
     ):
         figure = draw(law, births, np.random.default_rng(SEED))
-        yield NamedFigure(name, question, figure, sentences(caption, frozen))
+        yield NamedFigure(name, question, figure, sentences(caption, noise))
 
 
 LAWS: tuple[Item, ...] = (
