@@ -70,6 +70,8 @@ class Simulation:
         threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
             raise ArgumentError(f"backend: must be the name of an instruction set, not {backend!r}")
+        if os.environ.get("HEDON_KERNEL"):
+            raise ArgumentError(f"HEDON_KERNEL: this variable is {BACKEND_VARIABLE} now")
         backend = backend or os.environ.get(BACKEND_VARIABLE, "")
         device = device_library(backend)
         host = "" if device else backend

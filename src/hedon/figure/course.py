@@ -1,4 +1,4 @@
-"""How do the worlds of several arms fare over time, side by side?"""
+"""How do the worlds of several conditions fare over time, side by side?"""
 
 from collections.abc import Mapping
 
@@ -10,10 +10,10 @@ from hedon.figure.trace import draw_time_axis, draw_traces, last_step
 
 
 def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str]) -> Figure:
-    """A panel per quantity, a color per arm: thick the mean over its worlds, with its interval, thin the worlds.
+    """A panel per quantity, a color per condition: thick the mean over its worlds, with its interval, thin the worlds.
 
     Args:
-        histories: per arm, of `population.history`, with intervals of equal length; at least one.
+        histories: per condition, of `population.history`, with intervals of equal length; at least one.
         panels: columns of the histories, with the title of each.
     """
     end = max(last_step(rows) for rows in histories.values())

@@ -17,10 +17,10 @@ from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
 from hedon.report.page import FigureFile
-from hedon.report.study_page import Made, html_page, markdown_page
+from hedon.report.study_page import BuiltItem, html_page, markdown_page
 from hedon.report.summary import plain
 from hedon.study.gather import Gathered
-from hedon.study.item import Item, Material
+from hedon.study.item import Item, ItemInputs
 from hedon.study.verdict_table import verdict
 
 TABLES = "tables"
@@ -28,7 +28,7 @@ TABLES = "tables"
 HTML, MARKDOWN, JSON = "reproduction.html", "reproduction.md", "reproduction.json"
 
 
-def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[Made]]:
+def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
     """Makes every item of a request and writes it into a folder, over what is there.
 
     Args:
@@ -49,7 +49,7 @@ def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[Made]]:
     return folder / HTML, made
 
 
-def _write_items(gathered: Gathered, folder: Path) -> list[Made]:
+def _write_items(gathered: Gathered, folder: Path) -> list[BuiltItem]:
     for name in (FIGURES, TABLES):
         (folder / name).mkdir(exist_ok=True)
     made = [_make(item, gathered, folder) for item in gathered.request.items]
@@ -71,24 +71,27 @@ def _write(path: Path, content: bytes) -> None:
     write_atomically(path, lambda file: file.write(content))
 
 
-def _make(item: Item, gathered: Gathered, folder: Path) -> Made:
-    material = gathered.material(item)
+def _make(item: Item, gathered: Gathered, folder: Path) -> BuiltItem:
+    inputs = gathered.inputs(item)
     parts: list[FigureFile | ResultTable] = []
-    for part in item.make(material):
+    for part in item.make(inputs):
         if isinstance(part, NamedFigure):
             path = save_figure(part.figure, folder / FIGURES / f"{part.name}.png").relative_to(folder)
             parts.append(FigureFile(item.title, part.question, path.as_posix(), svg_bytes(part.figure), part.caption))
         else:
             parts.append(part)
-    return Made(item, _worlds_table(item, material, gathered), tuple(parts))
+    return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts))
 
 
-def _worlds_table(item: Item, material: Material, gathered: Gathered) -> ResultTable | None:
+def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultTable | None:
     """What an item was made of, beside what was asked for; None for one that needs no world, or only its picture."""
-    if not item.arms or item.pictures:
+    if not item.conditions or item.pictures:
         return None
     scale = gathered.request.scale(item)
-    rows = [_worlds_row(arm.label, material.worlds.get(arm.label, ()), len(scale.seeds)) for arm in item.arms]
+    rows = [
+        _worlds_row(condition.label, inputs.worlds.get(condition.label, ()), len(scale.seeds))
+        for condition in item.conditions
+    ]
     count = len(scale.seeds)
     note = f"Asked for: {count} world{'s' if count > 1 else ''} of {scale.steps:,} steps"
     if item.kind in ("figure", "table"):
@@ -106,7 +109,7 @@ def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mappin
     }
 
 
-def _json(gathered: Gathered, made: Sequence[Made], tables: Sequence[ResultTable]) -> dict[str, Any]:
+def _json(gathered: Gathered, made: Sequence[BuiltItem], tables: Sequence[ResultTable]) -> dict[str, Any]:
     request = gathered.request
     return plain(
         {

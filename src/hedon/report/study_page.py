@@ -12,12 +12,12 @@ from hedon.study.item import Item
 
 
 @dataclass(frozen=True)
-class Made:
+class BuiltItem:
     """An item as it was made.
 
     Attributes:
         item: what it is.
-        worlds: that it was made of: a row for each arm.
+        worlds: that it was made of: a row for each condition.
         parts: its figures and tables, in order.
     """
 
@@ -31,7 +31,7 @@ class Made:
         return [part for part in self.parts if isinstance(part, ResultTable)]
 
 
-def html_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
+def html_page(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> str:
     """The page as HTML that needs no other file.
 
     Args:
@@ -42,7 +42,7 @@ def html_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[Result
     return render("study.html.j2", _context(gathered, made, overall))
 
 
-def markdown_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> str:
+def markdown_page(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> str:
     """The page as Markdown, with the figures as files beside it.
 
     Args:
@@ -53,7 +53,7 @@ def markdown_page(gathered: Gathered, made: Sequence[Made], overall: Sequence[Re
     return render("study.md.j2", _context(gathered, made, overall))
 
 
-def _context(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultTable]) -> dict[str, Any]:
+def _context(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> dict[str, Any]:
     return {
         "title": "Evolution of rewards, reproduced",
         "fidelity": gathered.request.fidelity,
@@ -65,7 +65,7 @@ def _context(gathered: Gathered, made: Sequence[Made], overall: Sequence[ResultT
     }
 
 
-def _item_context(one: Made) -> dict[str, Any]:
+def _item_context(one: BuiltItem) -> dict[str, Any]:
     parts: list[dict[str, Any]] = []
     for part in one.parts:
         if isinstance(part, FigureFile):

@@ -1,24 +1,24 @@
-"""Which worlds is an item made from? What a reader must know of them, and how worlds of several arms are joined."""
+"""Which worlds is an item made from? What must a reader know of them? Worlds of several conditions are joined here."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
 import polars as pl
 
 from hedon.analysis.world.record import WorldRecord
-from hedon.study.item import Arm, Material
+from hedon.study.item import Condition, ItemInputs
 
 _NAMED = 3  # at most this many seeds that died out are named
 
 
-def present(arms: Iterable[Arm], material: Material) -> dict[str, Sequence[WorldRecord]]:
-    """The worlds of each arm that has any, by label and in the order of the arms."""
-    found = {arm.label: material.worlds.get(arm.label, ()) for arm in arms}
+def present(conditions: Iterable[Condition], inputs: ItemInputs) -> dict[str, Sequence[WorldRecord]]:
+    """The worlds of each condition that has any, by label and in the order of the conditions."""
+    found = {condition.label: inputs.worlds.get(condition.label, ()) for condition in conditions}
     return {label: worlds for label, worlds in found.items() if worlds}
 
 
-def missing(arms: Iterable[Arm], material: Material) -> str:
-    """A sentence that names the arms without worlds; empty where there is none."""
-    absent = [arm.label for arm in arms if not material.worlds.get(arm.label)]
+def missing(conditions: Iterable[Condition], inputs: ItemInputs) -> str:
+    """A sentence that names the conditions without worlds; empty where there is none."""
+    absent = [condition.label for condition in conditions if not inputs.worlds.get(condition.label)]
     return f"Not run yet: {'; '.join(absent)}." if absent else ""
 
 
@@ -38,7 +38,7 @@ def steps_reached(worlds: Iterable[WorldRecord]) -> int:
 
 
 def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
-    """What a title says of one arm's worlds: how many and how long, and which of them died out."""
+    """What a title says of one condition's worlds: how many and how long, and which of them died out."""
     living = [world.last_step for world in worlds if world.extinct_step is None]
     count = f"{len(worlds)} world{'s' if len(worlds) > 1 else ''}"
     if not living:
@@ -49,7 +49,7 @@ def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
 
 
 def world_indices(groups: Iterable[Sequence[WorldRecord]]) -> dict[int, int]:
-    """An index per seed, from 0 on: the same seed has the same color in each arm."""
+    """An index per seed, from 0 on: the same seed has the same color in each condition."""
     seeds = sorted({world.seed for worlds in groups for world in worlds})
     return {seed: index for index, seed in enumerate(seeds)}
 

@@ -1,4 +1,4 @@
-"""What the studies share: figures of all worlds of their arms, and a note of what is missing."""
+"""What the studies share: figures of all worlds of their conditions, and a note of what is missing."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -6,22 +6,29 @@ from typing import Any
 from hedon.analysis.response import Response, common_to, figures
 from hedon.statistic.interval import SHOWN_FROM, Interval, mean_interval
 from hedon.study.census import missing, sentences
-from hedon.study.item import Arm, Material, Scale
+from hedon.study.item import Condition, ItemInputs, Scale
 
 
-def world_rows(material: Material, arms: Sequence[Arm], responses: Sequence[Response]) -> list[dict[str, Any]]:
-    """One row per world, in the order of the arms.
+def world_rows(
+    inputs: ItemInputs, conditions: Sequence[Condition], responses: Sequence[Response]
+) -> list[dict[str, Any]]:
+    """One row per world, in the order of the conditions.
 
     Columns: arm, seed, steps, died_out, one per response, and until, the age up to which lifetimes are averaged where
     the living are counted [step].
     """
-    common = common_to(world for arm in arms for world in material.worlds.get(arm.label, ()))
+    common = common_to(world for condition in conditions for world in inputs.worlds.get(condition.label, ()))
     return [
-        {"arm": arm.label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
+        {
+            "arm": condition.label,
+            "seed": world.seed,
+            "steps": world.last_step,
+            "died_out": world.extinct_step is not None,
+        }
         | figures(world, common, responses)
         | {"until": common.until}
-        for arm in arms
-        for world in material.worlds.get(arm.label, ())
+        for condition in conditions
+        for world in inputs.worlds.get(condition.label, ())
     ]
 
 
@@ -53,13 +60,13 @@ def read_change(before: str, after: str) -> str:
 
 
 def change(rows: Sequence[dict[str, Any]], response: Response, before: str, after: str) -> Iterator[dict[str, Any]]:
-    """One response of two arms and its change seed by seed, where both arms or one of them have it.
+    """One response of two conditions and its change seed by seed, where both conditions or one of them have it.
 
     Args:
         rows: of `world_rows`.
         response: one of those that the rows hold.
-        before: label of the arm that the change is against.
-        after: label of the arm that is changed.
+        before: label of the condition that the change is against.
+        after: label of the condition that is changed.
     """
     by_arm = {
         label: {row["seed"]: row[response.name] for row in rows if row["arm"] == label} for label in (before, after)
@@ -80,10 +87,10 @@ def change(rows: Sequence[dict[str, Any]], response: Response, before: str, afte
     yield head | {name: response.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
 
 
-def missing_note(material: Material, arms: Sequence[Arm], scale: Scale) -> str:
-    """Names the arms without worlds, the worlds that reach less far than the study's scale, and those that died out."""
-    parts = [missing(arms, material)]
-    worlds = [(arm.label, world) for arm in arms for world in material.worlds.get(arm.label, ())]
+def missing_note(inputs: ItemInputs, conditions: Sequence[Condition], scale: Scale) -> str:
+    """Names conditions without worlds, worlds that reach less far than the study's scale, and those that died out."""
+    parts = [missing(conditions, inputs)]
+    worlds = [(condition.label, world) for condition in conditions for world in inputs.worlds.get(condition.label, ())]
     short = [world.last_step for _, world in worlds if world.extinct_step is None and world.last_step < scale.steps]
     if short:
         reach = f"{min(short):,} to {max(short):,}" if min(short) < max(short) else f"{min(short):,}"

@@ -12,8 +12,8 @@ from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, MANIFEST
 from hedon.record.reader import Run, open_run
 from hedon.record.snapshot import Snapshot, load_snapshot
-from hedon.study.item import Item, Material
-from hedon.study.request import Need, Request, needs, setting_name
+from hedon.study.item import Item, ItemInputs
+from hedon.study.request import Request, RunRequirement, needs, setting_name
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,15 @@ class Gathered:
     snapshots: dict[str, Snapshot]
     faults: tuple[str, ...]
 
-    def material(self, item: Item) -> Material:
+    def inputs(self, item: Item) -> ItemInputs:
         """What one item is made from."""
         scale, fidelity = self.request.scale(item), self.request.fidelity
-        configs = {arm.label: arm.config(fidelity) for arm in item.arms}
+        configs = {condition.label: condition.config(fidelity) for condition in item.conditions}
         digests = {label: digest(config) for label, config in configs.items()}
-        shown = {arm.label: arm.species or next(iter(configs[arm.label].agents)) for arm in item.arms}
+        shown = {
+            condition.label: condition.species or next(iter(configs[condition.label].agents))
+            for condition in item.conditions
+        }
         worlds = {
             label: [
                 self.worlds[key, seed, shown[label]].until(scale.steps)
@@ -57,7 +60,7 @@ class Gathered:
             for label, key in digests.items()
             if item.frames
         }
-        return Material(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
+        return ItemInputs(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
 
     def demanded(self) -> list[WorldRecord]:
         """Every world once, as long as the most demanding item asks for."""
@@ -70,7 +73,7 @@ class Gathered:
         ]
 
 
-def find_runs(folder: Path, wanted: Iterable[Need]) -> tuple[list[Run], list[str]]:
+def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run], list[str]]:
     """The runs in a folder that hold worlds of the settings that are needed, from their beginning on.
 
     Returns:
@@ -114,7 +117,7 @@ def gather(request: Request, folder: Path) -> Gathered:
     return Gathered(request, shown, kept, _frames(needed, shown), snapshots, tuple(faults))
 
 
-def _frames(needed: Mapping[str, Need], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
+def _frames(needed: Mapping[str, RunRequirement], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
     """The positions of each world that an item needs, from the run that goes furthest."""
     found: dict[tuple[str, int], pl.LazyFrame] = {}
     for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
@@ -127,7 +130,12 @@ def _frames(needed: Mapping[str, Need], runs: Iterable[Run]) -> dict[tuple[str, 
 
 def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
     """Per setting that is to be pictured the first state found in which somebody lives, or else any."""
-    wanted = {digest(arm.config(request.fidelity)) for item in request.items if item.pictures for arm in item.arms}
+    wanted = {
+        digest(condition.config(request.fidelity))
+        for item in request.items
+        if item.pictures
+        for condition in item.conditions
+    }
     found: dict[str, Snapshot] = {}
     for run in runs:
         key = run.manifest.config_digest or ""

@@ -15,11 +15,11 @@ from hedon.record.snapshot import Snapshot
 
 
 @dataclass(frozen=True)
-class Arm:
+class Condition:
     """A setting that an item shows or compares.
 
     Attributes:
-        label: what the item calls it; no other arm of the item has it.
+        label: what the item calls it; no other condition of the item has it.
         preset: that it starts from.
         overrides: what it changes, as for `--set`.
         fidelity: its own; None for that of the reproduction.
@@ -44,7 +44,7 @@ def _config(preset: str, fidelity: str, overrides: tuple[str, ...]) -> Config:
 
 @dataclass(frozen=True)
 class Scale:
-    """How much is run of each arm.
+    """How much is run of each condition.
 
     Attributes:
         seeds: one world each.
@@ -56,13 +56,14 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Material:
+class ItemInputs:
     """What an item is made from.
 
     Attributes:
         fidelity: of the reproduction.
-        worlds: per label of an arm the worlds that there are, up to the steps asked for; none for an arm without.
-        snapshots: per label the last state of a world of that arm, where there is one.
+        worlds: per label of a condition the worlds that there are, up to the steps asked for; none where
+            there are none.
+        snapshots: per label the last state of a world of that condition, where there is one.
         frames: per label the positions of all species in each world, a table `frames` of one world each, as far as they
             were recorded.
     """
@@ -84,9 +85,9 @@ class Item:
             paper's sequel on predators and prey.
         paper: what the paper, or its sequel, shows or says there; for a study, what it asks.
         make: makes its figures and tables, in the order in which they are shown.
-        arms: the settings that it needs worlds of; none where settings alone are enough.
-        scale: how much is run of each arm unless asked otherwise; for an item of the paper, the paper's.
-        pictures: whether it only shows the last state of a world of each arm, for which any run is long enough.
+        conditions: the settings that it needs worlds of; none where settings alone are enough.
+        scale: how much is run of each condition unless asked otherwise; for an item of the paper, the paper's.
+        pictures: whether it only shows the last state of a world of each condition, for which any run is long enough.
         frames: steps between two records of all positions that it needs; 0 if it needs none.
     """
 
@@ -94,8 +95,8 @@ class Item:
     title: str
     kind: Literal["figure", "table", "study", "sequel"]
     paper: str
-    make: Callable[[Material], Iterable[NamedFigure | ResultTable]]
-    arms: tuple[Arm, ...] = ()
+    make: Callable[[ItemInputs], Iterable[NamedFigure | ResultTable]]
+    conditions: tuple[Condition, ...] = ()
     scale: Scale = Scale((), 0)
     pictures: bool = False
     frames: int = 0

@@ -10,13 +10,13 @@ from hedon.config import Config, digest
 from hedon.experiment.plan import RunPlan, free_folder, seed_span
 from hedon.jobs.run import RunJob
 from hedon.record.reader import Run
-from hedon.study.request import Need, setting_name
+from hedon.study.request import RunRequirement, setting_name
 
 LONGEST_NAME = 150
 """Most characters of a setting in the name of a run's folder."""
 
 
-def plan_jobs(wanted: Iterable[Need], runs: Sequence[Run], folder: Path) -> list[RunJob]:
+def plan_jobs(wanted: Iterable[RunRequirement], runs: Sequence[Run], folder: Path) -> list[RunJob]:
     """The runs that are missing or too short, the longest first.
 
     A world that died out has all the steps that it can have. It counts, and no other world replaces it.

@@ -16,7 +16,7 @@ class Request:
 
     Attributes:
         items: in the order in which they are shown.
-        fidelity: of the arms that have none of their own.
+        fidelity: of the conditions that have none of their own.
         seeds: one world each, in the place of the items' own; None for those.
         steps: of each world, in the place of the items' own [step]; None for those.
     """
@@ -27,14 +27,14 @@ class Request:
     steps: int | None = None
 
     def scale(self, item: Item) -> Scale:
-        """How much is run of each arm of an item. A picture needs no more than it says itself."""
+        """How much is run of each condition of an item. A picture needs no more than it says itself."""
         if item.pictures:
             return item.scale
         return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
 
 
 @dataclass
-class Need:
+class RunRequirement:
     """A setting that worlds are needed of, by one item or several.
 
     Attributes:
@@ -55,12 +55,12 @@ class Need:
         return self.frames == 0 or (every > 0 and self.frames % every == 0)
 
 
-def needs(request: Request) -> list[Need]:
+def needs(request: Request) -> list[RunRequirement]:
     """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
-    found: dict[str, Need] = {}
+    found: dict[str, RunRequirement] = {}
     for item, config in _settings(request):
         key = digest(config)
-        need = found.setdefault(key, Need(config, key))
+        need = found.setdefault(key, RunRequirement(config, key))
         scale = request.scale(item)
         need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
         for seed in scale.seeds:
@@ -77,5 +77,5 @@ def setting_name(config: Config) -> str:
 
 def _settings(request: Request) -> Iterator[tuple[Item, Config]]:
     for item in request.items:
-        for arm in item.arms:
-            yield item, arm.config(request.fidelity)
+        for condition in item.conditions:
+            yield item, condition.config(request.fidelity)

@@ -17,7 +17,7 @@ from hedon.figure.hunt import SMOOTH, draw_causes, draw_company, draw_numbers
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import draw_message
 from hedon.study.census import missing, present, stack, world_indices
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.drift import make_drift
 from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
 from hedon_studies.kanagawa_doya_2024.weight_history import draw_courses
@@ -28,22 +28,26 @@ FRAMES = 1024
 """Steps between two records of all positions."""
 PREY, PREDATOR = "prey", "predator"
 
-MAIN = Arm("prey", "predator")
-HUNTERS = Arm("predators", "predator", species=PREDATOR)
-SQUARE = Arm("prey, square arena", "predator-square")
+MAIN = Condition("prey", "predator")
+HUNTERS = Condition("predators", "predator", species=PREDATOR)
+SQUARE = Condition("prey, square arena", "predator-square")
 MOUTHS = (
-    Arm("mouths of 40°", "predator-small-mouth"),
-    Arm("mouths of 60°", "predator"),
-    Arm("mouths of 80°", "predator-large-mouth"),
+    Condition("mouths of 40°", "predator-small-mouth"),
+    Condition("mouths of 60°", "predator"),
+    Condition("mouths of 80°", "predator-large-mouth"),
 )
-FOOD = (Arm("as usual", "predator"), Arm("less food", "predator-less-food"), Arm("no predators", "prey-alone"))
-FROZEN = (Arm("predators evolve", "predator"), Arm("predators do not mutate", "predator-frozen"))
+FOOD = (
+    Condition("as usual", "predator"),
+    Condition("less food", "predator-less-food"),
+    Condition("no predators", "prey-alone"),
+)
+FROZEN = (Condition("predators evolve", "predator"), Condition("predators do not mutate", "predator-frozen"))
 _READS = ("reward.see.obstacle.reads=normal",)
 PITFALLS = (
-    Arm("damage 10", "pitfall"),
-    Arm("damage 1", "pitfall-weak"),
-    Arm("damage 10, food's rays", "pitfall", _READS),
-    Arm("damage 1, food's rays", "pitfall-weak", _READS),
+    Condition("damage 10", "pitfall"),
+    Condition("damage 1", "pitfall-weak"),
+    Condition("damage 10, food's rays", "pitfall", _READS),
+    Condition("damage 1, food's rays", "pitfall-weak", _READS),
 )
 _SOCIAL = (("w_see_predator", "w_see_prey"),)
 _REWARDS = {
@@ -53,17 +57,17 @@ _REWARDS = {
 }
 
 
-def _courses(material: Material) -> Iterator[NamedFigure]:
-    arms = {PREY: (MAIN, SQUARE), PREDATOR: (HUNTERS,)}
-    for name, mine in arms.items():
-        yield from draw_courses(f"sequel-history-{name}", f"How do the rewards of {name} evolve?", mine, material)
+def _courses(inputs: ItemInputs) -> Iterator[NamedFigure]:
+    conditions = {PREY: (MAIN, SQUARE), PREDATOR: (HUNTERS,)}
+    for name, mine in conditions.items():
+        yield from draw_courses(f"sequel-history-{name}", f"How do the rewards of {name} evolve?", mine, inputs)
 
 
-def _numbers(material: Material) -> Iterator[NamedFigure]:
+def _numbers(inputs: ItemInputs) -> Iterator[NamedFigure]:
     name, question = "sequel-numbers", "How many prey and predators live together?"
-    worlds = present((MAIN, HUNTERS), material)
+    worlds = present((MAIN, HUNTERS), inputs)
     if len(worlds) < 2:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), material))
+        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
         return
     indices = world_indices(worlds.values())
     histories = {label: history(stack(group, "population", indices), ()) for label, group in worlds.items()}
@@ -74,11 +78,11 @@ def _numbers(material: Material) -> Iterator[NamedFigure]:
     yield NamedFigure(name, question, draw_numbers(histories), caption)
 
 
-def _deaths(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def _deaths(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     name, question = "sequel-deaths", "Of what do prey and predators die?"
-    worlds = present((MAIN, HUNTERS), material)
+    worlds = present((MAIN, HUNTERS), inputs)
     if not worlds:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), material))
+        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
         return
     indices = world_indices(worlds.values())
     rates = {label: death_rates(stack(group, "population", indices)) for label, group in worlds.items()}
@@ -93,11 +97,11 @@ def _deaths(material: Material) -> Iterator[NamedFigure | ResultTable]:
     yield table("sequel_deaths", "Deaths by cause", rows)
 
 
-def _company(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     name, question = "sequel-groups", "Do prey keep together, and away from predators?"
-    frames, worlds = material.frames.get(MAIN.label, ()), material.worlds.get(MAIN.label, ())
+    frames, worlds = inputs.frames.get(MAIN.label, ()), inputs.worlds.get(MAIN.label, ())
     if not frames or len(frames) != len(worlds):
-        yield NamedFigure(name, question, draw_message("no positions were recorded"), missing((MAIN,), material))
+        yield NamedFigure(name, question, draw_message("no positions were recorded"), missing((MAIN,), inputs))
         return
     found = {
         world.seed: company(world, rows, hunters(world.config, world.species))
@@ -114,12 +118,14 @@ def _company(material: Material) -> Iterator[NamedFigure | ResultTable]:
     yield table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
 
 
-def _item(name: str, title: str, says: str, make: partial, *arms: Arm, frames: int = 0) -> Item:
-    return Item(name, title, "sequel", says, make, arms, SCALE, frames=frames)
+def _item(name: str, title: str, says: str, make: partial, *conditions: Condition, frames: int = 0) -> Item:
+    return Item(name, title, "sequel", says, make, conditions, SCALE, frames=frames)
 
 
-def _last(name: str, question: str, arms: tuple[Arm, ...], panels: tuple[tuple[str, str], ...] = _SOCIAL) -> partial:
-    return partial(draw_last, name, question, arms, panels)
+def _last(
+    name: str, question: str, conditions: tuple[Condition, ...], panels: tuple[tuple[str, str], ...] = _SOCIAL
+) -> partial:
+    return partial(draw_last, name, question, conditions, panels)
 
 
 SEQUEL: tuple[Item, ...] = (

@@ -1,6 +1,6 @@
 """Study: does it matter that agents act by weights of 16 bits?
 
-What would matter, as it was fixed before both arms were compared: a lifetime or a rate of food that differs by a tenth,
+What would matter, as it was fixed before both were compared: a lifetime or a rate of food that differs by a tenth,
 ten agents alive, or a weight that differs by 1, a twentieth of the range. An interval that lies within these bounds
 says that it does not matter; one that reaches beyond leaves it open.
 """
@@ -14,11 +14,12 @@ from hedon.figure.course import draw_courses
 from hedon.figure.named import NamedFigure
 from hedon.study.census import present, sentences, stack, steps_reached, world_indices
 from hedon.study.change import change, missing_note, read_change, world_rows
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 
 FULL, HALF = "float32", "bfloat16"
-ARMS = tuple(
-    Arm(weights, overrides=(f'learning.acting_weights="{weights}"',), fidelity="corrected") for weights in (FULL, HALF)
+CONDITIONS = tuple(
+    Condition(weights, overrides=(f'learning.acting_weights="{weights}"',), fidelity="corrected")
+    for weights in (FULL, HALF)
 )
 SCALE = Scale(tuple(range(1, 11)), 512_000)
 _PANELS = {
@@ -28,16 +29,16 @@ _PANELS = {
 }
 
 _DRAWN = (
-    "Thin lines are worlds, the thick line is the mean over the worlds of an arm, and the band is its 95 % interval, "
-    "from three worlds on. Where the bands overlap throughout, nothing is seen of the weights' precision."
+    "Thin lines are worlds, the thick line is the mean over the worlds of a condition, and the band is its 95 % "
+    "interval, from three worlds on. Where the bands overlap throughout, nothing is seen of the weights' precision."
 )
 
 
-def make_acting(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
-    missing = missing_note(material, ARMS, SCALE)
-    worlds = present(ARMS, material)
-    rows = world_rows(material, ARMS, RESPONSES)
+    missing = missing_note(inputs, CONDITIONS, SCALE)
+    worlds = present(CONDITIONS, inputs)
+    rows = world_rows(inputs, CONDITIONS, RESPONSES)
     if worlds:
         indices, end = world_indices(worlds.values()), max(steps_reached(found) for found in worlds.values())
         courses = {
@@ -63,7 +64,7 @@ ACTING: tuple[Item, ...] = (
         "Agents act by weights that are rounded to 16 bits, for speed. Do they live, eat and breed as those that act "
         "by weights of 32 bits?",
         make_acting,
-        ARMS,
+        CONDITIONS,
         SCALE,
     ),
 )

@@ -14,10 +14,10 @@ from hedon.figure.named import NamedFigure
 from hedon.statistic.interval import SHOWN_FROM
 from hedon.study.census import present, sentences
 from hedon.study.change import missing_note
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
-ARMS = (*SIZES, *PLACES[1:], POOR, POISON)
+CONDITIONS = (*SIZES, *PLACES[1:], POOR, POISON)
 REWARDS = {"w_normal": "weight of food", "w_action": "weight of action"}
 """The weights that all conditions have."""
 MARKER = {"neutral_1": "neutral marker"}
@@ -42,24 +42,24 @@ _DRAWN = (
 )
 
 Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
-"""Per arm and seed, the drift of each weight; worlds without a whole pedigree are left out."""
+"""Per condition and seed, the drift of each weight; worlds without a whole pedigree are left out."""
 
 
 def make_drift(
-    arms: Sequence[Arm], rewards: Mapping[str, str], scale: Scale, name: str, material: Material
+    conditions: Sequence[Condition], rewards: Mapping[str, str], scale: Scale, name: str, inputs: ItemInputs
 ) -> Iterator[NamedFigure | ResultTable]:
     """The figure and the tables of scores against drift.
 
     Args:
-        arms: whose worlds are read.
-        rewards: the weights that are asked about and that all arms have, with what they are called.
+        conditions: whose worlds are read.
+        rewards: the weights that are asked about and that all conditions have, with what they are called.
         scale: how much was asked for.
         name: of the figure; begins the names of the tables.
-        material: what there is.
+        inputs: what there is.
     """
-    worlds = present(arms, material)
+    worlds = present(conditions, inputs)
     scores = {label: {w.seed: found for w in group if (found := standard_drift(w))} for label, group in worlds.items()}
-    note = missing_note(material, arms, scale)
+    note = missing_note(inputs, conditions, scale)
     groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
     groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}
     tests = {label: list(_test_rows(label, group, rewards)) for label, group in groups.items()}
@@ -98,7 +98,7 @@ def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:
 
 
 def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
-    """Per arm and seed the score of each weight."""
+    """Per condition and seed the score of each weight."""
     return {
         label: {seed: {found.weight: found.score for found in drifts} for seed, drifts in by_seed.items()}
         for label, by_seed in scores.items()
@@ -112,8 +112,8 @@ DRIFT: tuple[Item, ...] = (
         "study",
         "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
         "the weights of food and of action?",
-        partial(make_drift, ARMS, REWARDS, PAPER_SCALE, "drift"),
-        ARMS,
+        partial(make_drift, CONDITIONS, REWARDS, PAPER_SCALE, "drift"),
+        CONDITIONS,
         PAPER_SCALE,
     ),
 )

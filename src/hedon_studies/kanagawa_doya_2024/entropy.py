@@ -11,14 +11,14 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.figure.named import NamedFigure
 from hedon.study.census import present, sentences, stack, world_indices
 from hedon.study.change import change, missing_note, read_change, world_rows
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import WINDOWS, appetite, half_way_weight
 from hedon_studies.kanagawa_doya_2024.figure.appetite import draw_appetite
 
 WITH, WITHOUT = "entropy 0.001", "entropy 0"
-ARMS = (
-    Arm(WITH, fidelity="corrected"),
-    Arm(WITHOUT, overrides=("learning.entropy_coef=0.0",), fidelity="corrected"),
+CONDITIONS = (
+    Condition(WITH, fidelity="corrected"),
+    Condition(WITHOUT, overrides=("learning.entropy_coef=0.0",), fidelity="corrected"),
 )
 SCALE = Scale((1, 2), 1_024_000)
 _HALF_WAY = Response(
@@ -40,17 +40,17 @@ _APPETITE = (
 _DRAWN = (
     f"Left, foods eaten by agents of like weight of food, over lives of at least {WINDOWS} windows of learning: the "
     "further left a curve rises, the smaller a weight is enough. Right, the mean weight of food of the living over "
-    "time. Thin lines are worlds, thick lines are means over the worlds of an arm, at the left where more than half of "
-    "them have such agents; the band is a 95 % interval, from three worlds on."
+    "time. Thin lines are worlds, thick lines are means over the worlds of a condition, at the left where more than "
+    "half of them have such agents; the band is a 95 % interval, from three worlds on."
 )
 
 
-def make_entropy(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
-    missing = missing_note(material, ARMS, SCALE)
-    worlds = present(ARMS, material)
+    missing = missing_note(inputs, CONDITIONS, SCALE)
+    worlds = present(CONDITIONS, inputs)
     bins = {label: [appetite(world) for world in found] for label, found in worlds.items()}
-    rows = world_rows(material, ARMS, _ASKED)
+    rows = world_rows(inputs, CONDITIONS, _ASKED)
     if worlds:
         courses = {label: _course(found) for label, found in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
@@ -84,7 +84,7 @@ ENTROPY: tuple[Item, ...] = (
         "The paper prints an entropy coefficient of 0, its program had 0.001. A reward must outweigh that bonus before "
         "an agent learns to seek it: does it set how large the weight of food must be?",
         make_entropy,
-        ARMS,
+        CONDITIONS,
         SCALE,
     ),
 )

@@ -8,7 +8,7 @@ from hedon.figure.named import NamedFigure
 from hedon.figure.style import draw_message
 from hedon.figure.weight import WeightGroup, against_action, draw_weight_groups
 from hedon.study.census import describe, missing, present, sentences, stack, world_indices
-from hedon.study.item import Arm, Item, Material
+from hedon.study.item import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
 _READ = (
@@ -20,11 +20,11 @@ _AGAINST_ACTION = tuple(against_action(("w_normal",)))
 
 
 def draw_last(
-    name: str, question: str, arms: Sequence[Arm], panels: Sequence[tuple[str, str]], material: Material
+    name: str, question: str, conditions: Sequence[Condition], panels: Sequence[tuple[str, str]], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The weights of those born last in the worlds of some arms: the panels of each arm side by side."""
-    worlds = present(arms, material)
-    caption = sentences(_READ, missing(arms, material))
+    """The weights of those born last in the worlds of some conditions: the panels of each condition side by side."""
+    worlds = present(conditions, inputs)
+    caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:
         yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
         return
@@ -38,9 +38,16 @@ def draw_last(
 
 
 def _item(
-    name: str, title: str, paper: str, question: str, *arms: Arm, panels: Sequence[tuple[str, str]] = _AGAINST_ACTION
+    name: str,
+    title: str,
+    paper: str,
+    question: str,
+    *conditions: Condition,
+    panels: Sequence[tuple[str, str]] = _AGAINST_ACTION,
 ) -> Item:
-    return Item(name, title, "figure", paper, partial(draw_last, name, question, arms, panels), arms, PAPER_SCALE)
+    return Item(
+        name, title, "figure", paper, partial(draw_last, name, question, conditions, panels), conditions, PAPER_SCALE
+    )
 
 
 WEIGHTS: tuple[Item, ...] = (

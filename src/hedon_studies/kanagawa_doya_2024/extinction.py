@@ -13,7 +13,7 @@ from hedon.statistic.contrast import fisher_mid_p
 from hedon.statistic.interval import mean_interval
 from hedon.statistic.survival import survival_curve
 from hedon.study.census import missing, present, sentences
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP
 
 _READ = (
@@ -26,26 +26,30 @@ _READ = (
 )
 
 
-def _arm(basic_cost: float, action_cost: float) -> Arm:
+def _condition(basic_cost: float, action_cost: float) -> Condition:
     overrides = (f"energy.basic_cost={basic_cost!r}", f"energy.action_cost={action_cost!r}")
-    return Arm(f"{basic_cost:g}, {action_cost:.0e}".replace("e-0", "e-"), overrides=overrides)
+    return Condition(f"{basic_cost:g}, {action_cost:.0e}".replace("e-0", "e-"), overrides=overrides)
 
 
-ARMS = {_arm(*costs): share for costs, share in EXTINCTION.items()}
+CONDITIONS = {_condition(*costs): share for costs, share in EXTINCTION.items()}
 """The paper's settings, with the share of worlds that it reports extinct."""
 
 
-def _make(material: Material) -> Iterator[ResultTable]:
-    worlds = present(ARMS, material)
+def _make(inputs: ItemInputs) -> Iterator[ResultTable]:
+    worlds = present(CONDITIONS, inputs)
     cut = {label: [world.until(EXTINCTION_STEP) for world in group] for label, group in worlds.items()}
     title = "Extinction by the costs of living and of action"
-    rows = [_row(arm, cut[arm.label], share) for arm, share in ARMS.items() if arm.label in cut]
-    yield table("extinction", title, rows, sentences(_READ, missing(ARMS, material)))
+    rows = [
+        _row(condition, cut[condition.label], share)
+        for condition, share in CONDITIONS.items()
+        if condition.label in cut
+    ]
+    yield table("extinction", title, rows, sentences(_READ, missing(CONDITIONS, inputs)))
     by_world = [_world_row(label, world) for label, group in cut.items() for world in group]
     yield table("extinction-world", f"{title}, world by world", by_world, shown=False)
 
 
-def _row(arm: Arm, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any]:
+def _row(condition: Condition, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any]:
     found = world_extinction(worlds, _furthest_step(worlds))
     whole = all(world.extinct_step is not None or world.last_step >= EXTINCTION_STEP for world in worlds)
     paper_count = round(paper * EXTINCTION_SEEDS)
@@ -54,7 +58,7 @@ def _row(arm: Arm, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any
     median, _, _ = survival_curve(lasted.astype(np.float64), died).quantile()
     living = [run_tail(world.population) for world in worlds if world.extinct_step is None]
     return {
-        "costs": arm.label,
+        "costs": condition.label,
         "extinct": found.extinct,
         "worlds": len(worlds),
         "share": found.share,
@@ -94,7 +98,7 @@ EXTINCTIONS: tuple[Item, ...] = (
         "Of ten worlds per setting none dies out at the costs of the baseline. A half more for living lets 30 % die "
         "out, twice as much 90 %; a half more for action 50 %, twice as much all.",
         _make,
-        tuple(ARMS),
+        tuple(CONDITIONS),
         Scale(tuple(range(1, 11)), EXTINCTION_STEP),
     ),
 )

@@ -9,7 +9,7 @@ from hedon.figure.named import NamedFigure
 from hedon.statistic.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
 from hedon.study.census import sentences
 from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_effects
 
 FACTORS = {
@@ -62,18 +62,18 @@ CELLS = {cell_label(cell): cell for cell in _in_order()}
 """All combinations, by label."""
 
 
-def _arm(label: str, cell: Cell) -> Arm:
+def _condition(label: str, cell: Cell) -> Condition:
     overrides = tuple(setting for setting, is_there in zip(FACTORS.values(), cell, strict=True) if is_there)
-    return Arm(label, "baseline", overrides, fidelity="corrected")
+    return Condition(label, "baseline", overrides, fidelity="corrected")
 
 
-ARMS = tuple(_arm(label, cell) for label, cell in CELLS.items())
+CONDITIONS = tuple(_condition(label, cell) for label, cell in CELLS.items())
 
 
-def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figures and tables of the study."""
-    rows = world_rows(material, ARMS, RESPONSES)
-    missing = missing_note(material, ARMS, SCALE)
+    rows = world_rows(inputs, CONDITIONS, RESPONSES)
+    missing = missing_note(inputs, CONDITIONS, SCALE)
     fits = {response.name: _fit(rows, response) for response in RESPONSES}
     rows_of_effects = {response.name: list(_effect_rows(response, fits[response.name])) for response in RESPONSES}
     effects = table(
@@ -86,7 +86,7 @@ def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
     until = max((row["until"] for row in rows), default=0.0)
     told = set(effects.rows["effect"]) if effects.rows.height else set()
     if rows:
-        there = [label for label in CELLS if material.worlds.get(label)]
+        there = [label for label in CELLS if inputs.worlds.get(label)]
         cells = draw_cells(worlds.rows, there, _SHOWN)
         yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells, _CELLS_DRAWN)
     if told:
@@ -167,7 +167,7 @@ FAULTS: tuple[Item, ...] = (
         "The paper's program grew food faster than it was set to, repeated the same mutations, trained its critic "
         "towards the mean of a batch, and let bodies overlap. What does each do, and what do they do together?",
         make_faults,
-        ARMS,
+        CONDITIONS,
         SCALE,
     ),
 )

@@ -13,7 +13,7 @@ from hedon.figure.law import draw_birth, draw_hazard
 from hedon.figure.named import NamedFigure
 from hedon.figure.walk import draw_walk_ends, draw_walks
 from hedon.study.census import sentences
-from hedon.study.item import Item, Material
+from hedon.study.item import Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
 _ENDS = (
@@ -33,8 +33,8 @@ def window_births(config: Config) -> int:
     return max(round(config.population.capacity * chance * config.learning.rollout_steps), 1)
 
 
-def _hazard(material: Material) -> Iterator[NamedFigure]:
-    config = BASELINE.config(material.fidelity)
+def _hazard(inputs: ItemInputs) -> Iterator[NamedFigure]:
+    config = BASELINE.config(inputs.fidelity)
     poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
     caption = (
         f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
@@ -43,8 +43,8 @@ def _hazard(material: Material) -> Iterator[NamedFigure]:
     yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(config.hazard), caption)
 
 
-def _birth(material: Material) -> Iterator[NamedFigure]:
-    config = BASELINE.config(material.fidelity)
+def _birth(inputs: ItemInputs) -> Iterator[NamedFigure]:
+    config = BASELINE.config(inputs.fidelity)
     children = float(reproduction_number(config.hazard, config.birth, 0.0))
     caption = (
         f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
@@ -53,8 +53,8 @@ def _birth(material: Material) -> Iterator[NamedFigure]:
     yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(config), caption)
 
 
-def _walk(material: Material) -> Iterator[NamedFigure]:
-    config = BASELINE.config(material.fidelity)
+def _walk(inputs: ItemInputs) -> Iterator[NamedFigure]:
+    config = BASELINE.config(inputs.fidelity)
     law, births = mutation_law(config, gene_of(config, "neutral_1")), window_births(config)
     noise = ""
     if law.tabulated:

@@ -13,7 +13,7 @@ from hedon.analysis.topic.life import lifetime
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.interval import mean_interval
 from hedon.study.census import count_extinct, missing, present, sentences, steps_reached
-from hedon.study.item import Arm, Item, Material
+from hedon.study.item import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, SIZES
 from hedon_studies.kanagawa_doya_2024.paper import paper_figures
 
@@ -34,11 +34,16 @@ _READ = (
 )
 
 
-def _make(name: str, title: str, arms: Sequence[Arm], material: Material) -> Iterator[ResultTable]:
-    worlds = present(arms, material)
+def _make(name: str, title: str, conditions: Sequence[Condition], inputs: ItemInputs) -> Iterator[ResultTable]:
+    worlds = present(conditions, inputs)
     by_world = table(f"{name}-world", f"{title}, world by world", _world_rows(worlds), shown=False)
-    rows = [row for arm in arms if arm.label in worlds for row in _rows(arm, worlds[arm.label], by_world.rows)]
-    note = sentences(f"{_READ}{_ages(by_world.rows)}.", missing(arms, material))
+    rows = [
+        row
+        for condition in conditions
+        if condition.label in worlds
+        for row in _rows(condition, worlds[condition.label], by_world.rows)
+    ]
+    note = sentences(f"{_READ}{_ages(by_world.rows)}.", missing(conditions, inputs))
     yield table(name, title, rows, note)
     yield by_world
 
@@ -47,9 +52,9 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
     named = {label: [replace(world, condition=label) for world in group] for label, group in worlds.items()}
     lives = next(result for result in lifetime(named) if result.name == "lifetime_world").rows.iter_rows(named=True)
     for life, world in zip(lives, (world for group in named.values() for world in group), strict=True):
-        arm, agents = life.pop("condition"), life["agents"]
+        condition, agents = life.pop("condition"), life["agents"]
         yield {
-            "arm": arm,
+            "arm": condition,
             "seed": life.pop("seed"),
             "steps": world.last_step,
             "extinct_step": world.extinct_step,
@@ -60,13 +65,13 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
         }
 
 
-def _rows(arm: Arm, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> Iterator[dict[str, Any]]:
-    mine, paper = by_world.filter(pl.col("arm") == arm.label), paper_figures(arm.preset)
+def _rows(condition: Condition, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> Iterator[dict[str, Any]]:
+    mine, paper = by_world.filter(pl.col("arm") == condition.label), paper_figures(condition.preset)
     for column, (quantity, reported) in _QUANTITIES.items():
         interval = mean_interval(mine[column])
         figure = getattr(paper, reported) if reported else None
         yield {
-            "arm": arm.label,
+            "arm": condition.label,
             "quantity": quantity,
             "mean": interval.mean,
             "low": interval.low,
@@ -81,15 +86,15 @@ def _rows(arm: Arm, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> It
 
 
 def _ages(by_world: pl.DataFrame) -> str:
-    """Up to which age the restricted means go, arm by arm."""
+    """Up to which age the restricted means go, condition by condition."""
     if by_world.is_empty():
         return ""
     ages = by_world.group_by("arm", maintain_order=True).agg(pl.col("until").first())
-    return " (" + ", ".join(f"{arm}: {until:,.0f} steps" for arm, until in ages.iter_rows()) + ")"
+    return " (" + ", ".join(f"{condition}: {until:,.0f} steps" for condition, until in ages.iter_rows()) + ")"
 
 
-def _item(name: str, title: str, paper: str, arms: tuple[Arm, ...]) -> Item:
-    return Item(name, title, "table", paper, partial(_make, name, title, arms), arms, PAPER_SCALE)
+def _item(name: str, title: str, paper: str, conditions: tuple[Condition, ...]) -> Item:
+    return Item(name, title, "table", paper, partial(_make, name, title, conditions), conditions, PAPER_SCALE)
 
 
 LIVES: tuple[Item, ...] = (

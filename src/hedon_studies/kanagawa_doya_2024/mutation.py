@@ -8,7 +8,7 @@ from hedon.analysis.world.record import generator
 from hedon.figure.named import NamedFigure
 from hedon.statistic.interval import SHOWN_FROM
 from hedon.study.census import sentences
-from hedon.study.item import Arm, Material
+from hedon.study.item import Condition, ItemInputs
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift, compare, gene_drift
 from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
 
@@ -37,19 +37,19 @@ _GENE = (
 _BRIEF = ("weight", "numbers", "bias", "slope", "displacement", "generations", "line_mean", "end")
 
 Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
-"""Per arm, the seed of each world and the drift of each of its genes."""
+"""Per condition, the seed of each world and the drift of each of its genes."""
 
 
-def arm_drifts(material: Material, arms: Sequence[Arm]) -> Drifts:
-    """All genes of all worlds of some arms."""
+def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Drifts:
+    """All genes of all worlds of some conditions."""
     return {
-        arm.label: [
+        condition.label: [
             (world.seed, found)
-            for world in material.worlds.get(arm.label, ())
+            for world in inputs.worlds.get(condition.label, ())
             for weight in GENES
             if weight in world.weight_names and (found := gene_drift(world, weight, generator(world))) is not None
         ]
-        for arm in arms
+        for condition in conditions
     }
 
 
@@ -58,7 +58,7 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
 
     Args:
         name: that the parts' names begin with.
-        drifts: of `arm_drifts`.
+        drifts: of `condition_drifts`.
         note: on the worlds.
     """
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}

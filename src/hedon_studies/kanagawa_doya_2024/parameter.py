@@ -10,7 +10,7 @@ from hedon.config.dump import flatten
 from hedon.config.field import leaves
 from hedon.config.load import PAPER_PRESETS, describe_preset
 from hedon.config.problem import format_value
-from hedon.study.item import Arm, Item, Material
+from hedon.study.item import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
 CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -30,8 +30,8 @@ _ORIGIN = (
 Row = dict[str, Any]
 
 
-def _parameters(material: Material) -> Iterator[ResultTable]:
-    fidelity = material.fidelity
+def _parameters(inputs: ItemInputs) -> Iterator[ResultTable]:
+    fidelity = inputs.fidelity
     rows = list(_settings(fidelity))
     explained = f"{_ORIGIN} "
     for name, (title, sections) in CONCERNS.items():
@@ -65,7 +65,7 @@ def _conditions(fidelity: str) -> Iterator[Row]:
     baseline = BASELINE.config(fidelity)
     base, first = flatten(baseline), next(iter(baseline.food))
     for preset in PAPER_PRESETS:
-        config = Arm(preset, preset).config(fidelity)
+        config = Condition(preset, preset).config(fidelity)
         like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
         for path, setting, value in leaves(config):
             kind = ".".join(path.split(".")[:2])

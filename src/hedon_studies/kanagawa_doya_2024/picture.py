@@ -7,7 +7,7 @@ from hedon.figure.named import NamedFigure
 from hedon.figure.style import food_colors
 from hedon.figure.world import draw_world, telling_agent
 from hedon.record.snapshot import Snapshot
-from hedon.study.item import Item, Material, Scale
+from hedon.study.item import Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PLACES, POISON, POOR, SIZES
 from hedon_studies.kanagawa_doya_2024.figure.arena import ArenaPanel, draw_arenas
 
@@ -20,16 +20,16 @@ _BODY = (
 )
 
 
-def _body(material: Material) -> Iterator[NamedFigure]:
+def _body(inputs: ItemInputs) -> Iterator[NamedFigure]:
     question = "What does an agent sense, and how does it move and eat?"
-    yield NamedFigure("body", question, draw_body(BASELINE.config(material.fidelity)), _BODY)
+    yield NamedFigure("body", question, draw_body(BASELINE.config(inputs.fidelity)), _BODY)
 
 
-def _arena(material: Material) -> Iterator[NamedFigure]:
-    snapshot = material.snapshots.get(BASELINE.label)
+def _arena(inputs: ItemInputs) -> Iterator[NamedFigure]:
+    snapshot = inputs.snapshots.get(BASELINE.label)
     if snapshot is None:
         return
-    config = BASELINE.config(material.fidelity)
+    config = BASELINE.config(inputs.fidelity)
     colors = food_colors(tuple(config.food), [food.color for food in config.food.values()])
     agent = telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
@@ -37,10 +37,13 @@ def _arena(material: Material) -> Iterator[NamedFigure]:
     yield NamedFigure("arena", "What does a world look like?", figure, f"World of {_when(snapshot)}.")
 
 
-def _arenas(material: Material) -> Iterator[NamedFigure]:
+def _arenas(inputs: ItemInputs) -> Iterator[NamedFigure]:
     rows = [
-        [ArenaPanel(arm.label, arm.config(material.fidelity), material.snapshots.get(arm.label)) for arm in arms]
-        for arms in (SIZES, _FOODS)
+        [
+            ArenaPanel(condition.label, condition.config(inputs.fidelity), inputs.snapshots.get(condition.label))
+            for condition in conditions
+        ]
+        for conditions in (SIZES, _FOODS)
     ]
     caption = "Above each, of every kind of food, its energy and how much there can be."
     shown = [f"{panel.label} {_when(panel.snapshot)}" for row in rows for panel in row if panel.snapshot is not None]

@@ -12,14 +12,14 @@ from hedon.figure.named import NamedFigure
 from hedon.figure.weight import draw_weights
 from hedon.statistic.interval import share_interval
 from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
 from hedon_studies.kanagawa_doya_2024.figure.fate import draw_fates
-from hedon_studies.kanagawa_doya_2024.mutation import Drifts, arm_drifts, drift_parts
+from hedon_studies.kanagawa_doya_2024.mutation import Drifts, condition_drifts, drift_parts
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, PAPER
 
 LABEL = "released"
-ARMS = (Arm(LABEL, fidelity="released"),)
+CONDITIONS = (Condition(LABEL, fidelity="released"),)
 SCALE = Scale(tuple(range(1, 13)), 1_024_000)
 
 _PAPER_COSTS = (0.001, 2e-5)
@@ -44,13 +44,13 @@ _SURVIVOR = (
 )
 
 
-def make_released(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figures and tables of the study."""
-    worlds = list(material.worlds.get(LABEL, ()))
-    missing = missing_note(material, ARMS, SCALE)
+    worlds = list(inputs.worlds.get(LABEL, ()))
+    missing = missing_note(inputs, CONDITIONS, SCALE)
     fates = [fate(world) for world in worlds]
-    rows = [row | vars(found) for row, found in zip(world_rows(material, ARMS, RESPONSES), fates, strict=True)]
-    drifts = arm_drifts(material, ARMS)
+    rows = [row | vars(found) for row, found in zip(world_rows(inputs, CONDITIONS, RESPONSES), fates, strict=True)]
+    drifts = condition_drifts(inputs, CONDITIONS)
     if worlds:
         yield NamedFigure(
             "released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates), _DRAWN
@@ -128,7 +128,7 @@ RELEASED: tuple[Item, ...] = (
         "extinction, does the weight of food follow the bias of the seed's mutations, and do survivors alone give the "
         "paper's picture?",
         make_released,
-        ARMS,
+        CONDITIONS,
         SCALE,
     ),
 )

@@ -12,7 +12,7 @@ from hedon.config import Config
 from hedon.figure.named import NamedFigure
 from hedon.study.census import sentences
 from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Arm, Item, Material, Scale
+from hedon.study.item import Condition, Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.figure.supply import Eater, draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
@@ -23,14 +23,14 @@ CORRECTED, GROWTH, RELEASED = "corrected", "growth", "released"
 SCALE = Scale((1, 2), 1_024_000)
 
 
-def _arms(preset: str) -> Iterator[Arm]:
-    yield Arm(f"{preset}, {CORRECTED}", preset, fidelity="corrected")
-    yield Arm(f"{preset}, {GROWTH}", preset, (FACTORS["growth"],), fidelity="corrected")
-    yield Arm(f"{preset}, {RELEASED}", preset, fidelity="released")
+def _arms(preset: str) -> Iterator[Condition]:
+    yield Condition(f"{preset}, {CORRECTED}", preset, fidelity="corrected")
+    yield Condition(f"{preset}, {GROWTH}", preset, (FACTORS["growth"],), fidelity="corrected")
+    yield Condition(f"{preset}, {RELEASED}", preset, fidelity="released")
 
 
 RULES = (CORRECTED, GROWTH, RELEASED)
-ARMS = tuple(arm for preset in CONDITIONS for arm in _arms(preset))
+CONDITIONS = tuple(condition for preset in CONDITIONS for condition in _arms(preset))
 
 _NOTE = (
     "grows: food that grows per step; eaten_share: how much of it was eaten; eaten: foods per step lived; both in the "
@@ -45,24 +45,28 @@ _DRAWN = (
 )
 
 
-def make_supply(material: Material) -> Iterator[NamedFigure | ResultTable]:
+def make_supply(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and the tables of the study."""
-    missing = missing_note(material, ARMS, SCALE)
-    rows = world_rows(material, ARMS, _ASKED)
+    missing = missing_note(inputs, CONDITIONS, SCALE)
+    rows = world_rows(inputs, CONDITIONS, _ASKED)
     if rows:
         question = "Could agents eat what the paper reports of the food that grows?"
-        yield NamedFigure("supply", question, draw_supply(_eaters(rows), RULES, _rates(), _supplies(material)), _DRAWN)
-    found = [_arm_row(arm, material, mine) for arm in ARMS if (mine := [r for r in rows if r["arm"] == arm.label])]
+        yield NamedFigure("supply", question, draw_supply(_eaters(rows), RULES, _rates(), _supplies(inputs)), _DRAWN)
+    found = [
+        _condition_row(condition, inputs, mine)
+        for condition in CONDITIONS
+        if (mine := [r for r in rows if r["arm"] == condition.label])
+    ]
     yield table("supply", "Food that grows, and food that is eaten", found, sentences(_NOTE, missing))
     yield table("supply_worlds", "The worlds of the study of supply", rows, missing, shown=False)
 
 
-def _arm_row(arm: Arm, material: Material, rows: list[dict[str, Any]]) -> dict[str, Any]:
-    grows, paper = growth(arm.config(material.fidelity)), PAPER[arm.preset]
+def _condition_row(condition: Condition, inputs: ItemInputs, rows: list[dict[str, Any]]) -> dict[str, Any]:
+    grows, paper = growth(condition.config(inputs.fidelity)), PAPER[condition.preset]
     means = {asked.name: shown_interval([row[asked.name] for row in rows], asked).mean for asked in _ASKED}
     feeds = grows / paper.food_per_step if paper.food_per_step else None
     known = {"paper_food": paper.food_per_step, "feeds": feeds, "paper_lifetime": paper.mean_lifetime}
-    return {"arm": arm.label, "worlds": len(rows), "grows": grows} | means | known
+    return {"arm": condition.label, "worlds": len(rows), "grows": grows} | means | known
 
 
 def growth(config: Config) -> float:
@@ -84,8 +88,8 @@ def _rates() -> dict[str, float | None]:
     return {preset: PAPER[preset].food_per_step for preset in CONDITIONS}
 
 
-def _supplies(material: Material) -> list[float]:
-    return sorted({growth(arm.config(material.fidelity)) for arm in ARMS})
+def _supplies(inputs: ItemInputs) -> list[float]:
+    return sorted({growth(condition.config(inputs.fidelity)) for condition in CONDITIONS})
 
 
 def _eaten(world: WorldRecord, _common: Common) -> float | None:
@@ -119,7 +123,7 @@ SUPPLY: tuple[Item, ...] = (
         "baseline and live for 100,000 steps. Does enough food grow for that, as it is set to, five times as fast, or "
         "in the released program?",
         make_supply,
-        ARMS,
+        CONDITIONS,
         SCALE,
     ),
 )

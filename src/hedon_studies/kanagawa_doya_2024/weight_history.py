@@ -7,7 +7,7 @@ from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import draw_message, meal_colors
 from hedon.study.census import describe, missing, present, sentences, stack, world_indices
-from hedon.study.item import Arm, Item, Material
+from hedon.study.item import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 
 _READ = (
@@ -16,10 +16,12 @@ _READ = (
 )
 
 
-def draw_courses(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
-    """The mean weights of the worlds of some arms, which must have the same genes, over time: a row per arm."""
-    worlds = present(arms, material)
-    caption = sentences(_READ, missing(arms, material))
+def draw_courses(
+    name: str, question: str, conditions: Sequence[Condition], inputs: ItemInputs
+) -> Iterator[NamedFigure]:
+    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each."""
+    worlds = present(conditions, inputs)
+    caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:
         yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
         return
@@ -38,8 +40,10 @@ def draw_courses(name: str, question: str, arms: Sequence[Arm], material: Materi
     yield NamedFigure(name, question, draw_histories(rows, first.reward_names, first.neutral_names, colors), caption)
 
 
-def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
-    return Item(name, title, "figure", paper, partial(draw_courses, name, question, arms), arms, PAPER_SCALE)
+def _item(name: str, title: str, paper: str, question: str, *conditions: Condition) -> Item:
+    return Item(
+        name, title, "figure", paper, partial(draw_courses, name, question, conditions), conditions, PAPER_SCALE
+    )
 
 
 HISTORIES: tuple[Item, ...] = (

@@ -11,8 +11,8 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import digest, load_config
 from hedon.record.reader import open_run
 from hedon.statistic.contrast import fisher_mid_p
-from hedon.study.item import Material
-from hedon_studies.kanagawa_doya_2024.extinction import ARMS, EXTINCTIONS
+from hedon.study.item import ItemInputs
+from hedon_studies.kanagawa_doya_2024.extinction import CONDITIONS, EXTINCTIONS
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, EXTINCTION_STEP
 
 (ITEM,) = EXTINCTIONS
@@ -29,7 +29,7 @@ def ten(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def make(worlds: dict[str, Sequence[WorldRecord]]) -> tuple[ResultTable, ResultTable]:
-    first, second = ITEM.make(Material("corrected", worlds))
+    first, second = ITEM.make(ItemInputs("corrected", worlds))
     assert isinstance(first, ResultTable)
     assert isinstance(second, ResultTable)
     return first, second
@@ -42,17 +42,26 @@ def died(worlds: Sequence[WorldRecord], *steps: int) -> list[WorldRecord]:
 
 
 def test_the_arms_are_the_papers_settings() -> None:
-    costs = [(arm.config("corrected").energy.basic_cost, arm.config("corrected").energy.action_cost) for arm in ARMS]
-    assert dict(zip(costs, ARMS.values(), strict=True)) == EXTINCTION
-    assert [arm.label for arm in ITEM.arms] == [DEAR, "0.0015, 2e-5", "0.001, 4e-5", "0.001, 3e-5", OWN]
+    costs = [
+        (condition.config("corrected").energy.basic_cost, condition.config("corrected").energy.action_cost)
+        for condition in CONDITIONS
+    ]
+    assert dict(zip(costs, CONDITIONS.values(), strict=True)) == EXTINCTION
+    assert [condition.label for condition in ITEM.conditions] == [
+        DEAR,
+        "0.0015, 2e-5",
+        "0.001, 4e-5",
+        "0.001, 3e-5",
+        OWN,
+    ]
     assert (ITEM.scale.seeds, ITEM.scale.steps) == (tuple(range(1, 11)), EXTINCTION_STEP)
 
 
 @pytest.mark.parametrize("fidelity", ["corrected", "released"])
 def test_the_arm_of_the_baseline_shares_its_runs(fidelity: str) -> None:
-    digests = {arm.label: digest(arm.config(fidelity)) for arm in ARMS}
+    digests = {condition.label: digest(condition.config(fidelity)) for condition in CONDITIONS}
     assert digests[OWN] == digest(load_config("baseline", fidelity))
-    assert len(set(digests.values())) == len(ARMS)
+    assert len(set(digests.values())) == len(CONDITIONS)
 
 
 def test_the_share_of_extinct_worlds_with_its_interval(ten: list[WorldRecord]) -> None:

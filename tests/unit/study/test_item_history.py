@@ -14,7 +14,7 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
 from hedon.record.reader import open_run
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 from hedon_studies.kanagawa_doya_2024.weight_history import HISTORIES
 
@@ -28,7 +28,7 @@ def five(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def draw(name: str, **worlds: Sequence[WorldRecord]) -> tuple[str, Figure]:
-    (made,) = ITEMS[name].make(Material("corrected", worlds))
+    (made,) = ITEMS[name].make(ItemInputs("corrected", worlds))
     assert isinstance(made, NamedFigure)
     assert made.name == name
     return made.caption, made.figure

@@ -15,7 +15,7 @@ from hedon.config.gene import gene_of
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import svg_bytes
 from hedon.figure.walk import LENGTHS, draw_walks, unlimited_share
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.law import LAWS, window_births
 
 CONFIG = load_config("baseline")
@@ -25,7 +25,7 @@ LAW = mutation_law(CONFIG, gene_of(CONFIG, "neutral_1"))
 @cache
 def item_made(name: str, fidelity: str) -> list[object]:
     """All that an item is made of; figures of thousands of walks are drawn once."""
-    return list({item.name: item for item in LAWS}[name].make(Material(fidelity)))
+    return list({item.name: item for item in LAWS}[name].make(ItemInputs(fidelity)))
 
 
 def make(name: str, fidelity: str = "corrected") -> NamedFigure:

@@ -12,7 +12,7 @@ from hedon.analysis.table import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.record.reader import open_run
 from hedon.report.table import cells
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.life import LIVES
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
@@ -32,15 +32,15 @@ def five(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def make(name: str, **worlds: Sequence[WorldRecord]) -> tuple[ResultTable, ResultTable]:
-    first, second = ITEMS[name].make(Material("corrected", worlds))
+    first, second = ITEMS[name].make(ItemInputs("corrected", worlds))
     assert isinstance(first, ResultTable)
     assert isinstance(second, ResultTable)
     assert (first.name, second.name, first.shown, second.shown) == (name, f"{name}-world", True, False)
     return first, second
 
 
-def row(result: ResultTable, arm: str, quantity: str) -> dict[str, Any]:
-    return result.rows.row(by_predicate=(pl.col("arm") == arm) & (pl.col("quantity") == quantity), named=True)
+def row(result: ResultTable, condition: str, quantity: str) -> dict[str, Any]:
+    return result.rows.row(by_predicate=(pl.col("arm") == condition) & (pl.col("quantity") == quantity), named=True)
 
 
 def lives(world: WorldRecord) -> tuple[np.ndarray, np.ndarray]:
@@ -73,17 +73,17 @@ def test_the_items_are_those_of_the_paper_at_its_scale() -> None:
 
 def test_lifetimes_are_means_over_worlds_beside_the_papers(five: list[WorldRecord]) -> None:
     found, _ = make("life-sizes", small=five[:2], baseline=five, large=five[3:])
-    for arm, worlds, paper in (("small", five[:2], 120668), ("baseline", five, 6310), ("large", five[3:], 5718)):
+    for condition, worlds, paper in (("small", five[:2], 120668), ("baseline", five, 6310), ("large", five[3:], 5718)):
         means = [float(length[whole].mean()) for length, whole in map(lives, worlds)]
-        life = row(found, arm, LIFE)
+        life = row(found, condition, LIFE)
         assert life["mean"] == pytest.approx(np.mean(means))
         assert (life["paper"], life["ratio"]) == (paper, pytest.approx(np.mean(means) / paper))
         half = stats.t.ppf(0.975, len(means) - 1) * stats.sem(means)
         assert (life["low"], life["high"]) == (pytest.approx(life["mean"] - half), pytest.approx(life["mean"] + half))
         assert (life["worlds"], life["of"], life["steps"]) == (len(worlds), len(worlds), 40 * 1024)
         censored = np.mean([np.mean(~whole) for _, whole in map(lives, worlds)])
-        assert row(found, arm, "share of lives censored")["mean"] == pytest.approx(censored)
-    assert [row(found, arm, LIFE)["extinct"] for arm in ("small", "baseline", "large")] == [0, 1, 0]
+        assert row(found, condition, "share of lives censored")["mean"] == pytest.approx(censored)
+    assert [row(found, condition, LIFE)["extinct"] for condition in ("small", "baseline", "large")] == [0, 1, 0]
 
 
 def test_censored_lives_count_in_the_restricted_mean_and_the_median(five: list[WorldRecord]) -> None:

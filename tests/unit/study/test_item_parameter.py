@@ -7,13 +7,13 @@ from hedon.analysis.table import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
 from hedon.config.field import sections
 from hedon.report.table import cells
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.parameter import CONCERNS, PARAMETERS
 
 
 def tables(fidelity: str) -> dict[str, ResultTable]:
     [item] = PARAMETERS
-    return {each.name: each for each in item.make(Material(fidelity)) if isinstance(each, ResultTable)}
+    return {each.name: each for each in item.make(ItemInputs(fidelity)) if isinstance(each, ResultTable)}
 
 
 def settings(fidelity: str) -> list[dict]:

@@ -16,7 +16,7 @@ from hedon.figure.body import draw_body, ray_directions
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
 from hedon.record.snapshot import Snapshot
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.picture import PICTURES
 
 ITEMS = {item.name: item for item in PICTURES}
@@ -24,7 +24,7 @@ CONFIG = load_config("baseline")
 
 
 def make(name: str, **snapshots: Snapshot) -> list[NamedFigure]:
-    return [each for each in ITEMS[name].make(Material("corrected", {}, snapshots)) if isinstance(each, NamedFigure)]
+    return [each for each in ITEMS[name].make(ItemInputs("corrected", {}, snapshots)) if isinstance(each, NamedFigure)]
 
 
 def panels(figure: Figure) -> dict[str, Axes]:
@@ -75,7 +75,7 @@ def test_the_body_follows_its_settings() -> None:
 
 def test_without_a_snapshot_there_is_no_arena() -> None:
     assert make("arena") == []
-    assert [arm.preset for arm in ITEMS["arena"].arms] == ["baseline"]
+    assert [condition.preset for condition in ITEMS["arena"].conditions] == ["baseline"]
 
 
 def test_the_arena_shows_all_and_the_rays_of_one(tmp_path: Path) -> None:
@@ -103,7 +103,9 @@ def test_captions_say_which_world_is_shown_and_when() -> None:
 def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
     [named] = make("arenas")
     shown = panels(named.figure)
-    assert sorted(shown) == sorted(PAPER_PRESETS) == sorted(arm.preset for arm in ITEMS["arenas"].arms)
+    assert (
+        sorted(shown) == sorted(PAPER_PRESETS) == sorted(condition.preset for condition in ITEMS["arenas"].conditions)
+    )
     size = named.figure.get_size_inches()
     for preset, axes in shown.items():
         arena = load_config(preset).arena

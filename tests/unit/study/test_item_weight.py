@@ -13,7 +13,7 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure
 from hedon.record.reader import open_run
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.evolved_weight import WEIGHTS
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
@@ -27,7 +27,7 @@ def five(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def draw(name: str, **worlds: Sequence[WorldRecord]) -> tuple[str, Figure]:
-    (made,) = ITEMS[name].make(Material("corrected", worlds))
+    (made,) = ITEMS[name].make(ItemInputs("corrected", worlds))
     assert isinstance(made, NamedFigure)
     assert made.name == name
     return made.caption, made.figure
@@ -45,7 +45,7 @@ def test_the_items_are_those_of_the_paper_at_its_scale() -> None:
     assert list(ITEMS) == ["weights-baseline", "weights-sizes", "weights-places", "weights-poor", "weights-poison"]
     assert {item.scale.seeds for item in WEIGHTS} == {(1, 2, 3, 4, 5)}
     assert {item.scale.steps for item in WEIGHTS} == {STEPS}
-    presets = {item.name: [arm.preset for arm in item.arms] for item in WEIGHTS}
+    presets = {item.name: [condition.preset for condition in item.conditions] for item in WEIGHTS}
     assert presets["weights-sizes"] == ["small", "baseline", "large"]
     assert presets["weights-places"] == ["baseline", "centered", "relocation"]
 

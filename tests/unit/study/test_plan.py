@@ -15,16 +15,18 @@ from hedon.jobs.run import RunJob
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.study.choice import ChoiceError, choose_items
 from hedon.study.gather import find_runs, gather
-from hedon.study.item import Arm, Item, Scale
+from hedon.study.item import Condition, Item, Scale
 from hedon.study.plan import folder_name, plan_jobs
 from hedon.study.request import Request, needs, setting_name
 
-BASE = Arm("base", overrides=SMALL)
-FAST = Arm("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))
+BASE = Condition("base", overrides=SMALL)
+FAST = Condition("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))
 
 
-def an_item(name: str, *arms: Arm, seeds: tuple[int, ...] = (1, 2), steps: int = 256, pictures: bool = False) -> Item:
-    return Item(name, name, "figure", "", lambda material: [], arms, Scale(seeds, steps), pictures)
+def an_item(
+    name: str, *conditions: Condition, seeds: tuple[int, ...] = (1, 2), steps: int = 256, pictures: bool = False
+) -> Item:
+    return Item(name, name, "figure", "", lambda inputs: [], conditions, Scale(seeds, steps), pictures)
 
 
 def planned(request: Request, folder: Path) -> list[RunJob]:
@@ -33,7 +35,7 @@ def planned(request: Request, folder: Path) -> list[RunJob]:
 
 
 def test_items_share_the_worlds_of_equal_settings_and_the_most_demanding_decides() -> None:
-    same = Arm("the same by other words", overrides=(*SMALL, "food.normal.growth_rate=0.2"))
+    same = Condition("the same by other words", overrides=(*SMALL, "food.normal.growth_rate=0.2"))
     items = (an_item("a", BASE, FAST), an_item("b", same, seeds=(2, 3), steps=512))
     base, fast = needs(Request(items, "corrected"))
     assert base.steps == {1: 256, 2: 512, 3: 512}
@@ -48,7 +50,7 @@ def test_a_request_overrules_the_scale_of_all_but_pictures() -> None:
 
 
 def test_an_arm_has_its_own_fidelity_or_that_of_the_request() -> None:
-    items = (an_item("a", Arm("asked"), Arm("own", fidelity="text")),)
+    items = (an_item("a", Condition("asked"), Condition("own", fidelity="text")),)
     asked, own = needs(Request(items, "released"))
     assert asked.config.food["normal"].growth_rate == 1.0
     assert own.config.fidelity == "text"
@@ -84,13 +86,13 @@ def test_a_run_that_was_killed_is_as_long_as_its_records(tmp_path: Path) -> None
 
 
 def test_worlds_that_died_out_are_not_made_again(tmp_path: Path) -> None:
-    deadly = Arm("deadly", overrides=(*SMALL, "hazard.kappa=1.0", "hazard.alpha_energy=100.0", "birth.kappa=0.0"))
+    deadly = Condition("deadly", overrides=(*SMALL, "hazard.kappa=1.0", "hazard.alpha_energy=100.0", "birth.kappa=0.0"))
     small_run(tmp_path / "mine", 512, overrides=deadly.overrides[len(SMALL) :])
     assert None not in load_manifest(tmp_path / "mine").extinct_steps
     request = Request((an_item("a", deadly, steps=100_000),), "corrected")
     assert planned(request, tmp_path) == []
-    material = gather(request, tmp_path).material(request.items[0])
-    assert [world.extinct_step is not None for world in material.worlds["deadly"]] == [True, True]
+    inputs = gather(request, tmp_path).inputs(request.items[0])
+    assert [world.extinct_step is not None for world in inputs.worlds["deadly"]] == [True, True]
 
 
 def test_branches_and_other_settings_are_left_alone_and_damage_is_named(tmp_path: Path) -> None:
@@ -111,7 +113,7 @@ def test_a_longer_world_is_read_as_if_it_had_ended_where_it_was_asked_to(tmp_pat
     small_run(tmp_path / "short" / "run", 256)
     request = Request((an_item("a", BASE),), "corrected")
     cut, whole = (
-        gather(request, tmp_path / name).material(request.items[0]).worlds["base"] for name in ("long", "short")
+        gather(request, tmp_path / name).inputs(request.items[0]).worlds["base"] for name in ("long", "short")
     )
     for a, b in zip(cut, whole, strict=True):
         assert a.population.equals(b.population)
@@ -129,19 +131,19 @@ def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -
     small_run(tmp_path / "mine", 256)
     resume(tmp_path / "mine", 512, 1)
     request = Request((an_item("a", BASE, steps=512),), "corrected")
-    assert [world.last_step for world in gather(request, tmp_path).material(request.items[0]).worlds["base"]] == [
-        512
-    ] * 2
+    assert [world.last_step for world in gather(request, tmp_path).inputs(request.items[0]).worlds["base"]] == [512] * 2
 
 
 def test_names_of_runs_tell_settings_apart() -> None:
-    assert folder_name(Arm("x").config("corrected")) == "baseline-corrected"
-    changed = Arm("x", "small", ("energy.basic_cost=0.002", "genome.mutation_noise=frozen"))
+    assert folder_name(Condition("x").config("corrected")) == "baseline-corrected"
+    changed = Condition("x", "small", ("energy.basic_cost=0.002", "genome.mutation_noise=frozen"))
     assert folder_name(changed.config("text")) == "small-text-energy.basic_cost-0.002-genome.mutation_noise-frozen"
-    long = [folder_name(arm.config("corrected")) for arm in (BASE, FAST)]
+    long = [folder_name(condition.config("corrected")) for condition in (BASE, FAST)]
     assert max(map(len, long)) < 100
     assert long[0] != long[1]
-    kinds = [Arm("x", "poor", (f"food.{kind}.growth_rate=0.7",)).config("corrected") for kind in ("normal", "poor")]
+    kinds = [
+        Condition("x", "poor", (f"food.{kind}.growth_rate=0.7",)).config("corrected") for kind in ("normal", "poor")
+    ]
     assert setting_name(kinds[0]) != setting_name(kinds[1])
 
 
@@ -151,7 +153,7 @@ def test_equal_settings_written_in_two_ways_are_one_condition(tmp_path: Path) ->
     small_run(tmp_path / "a", 64, seeds=(1,), overrides=faults)
     config = load_config("baseline", "released", SMALL)
     run(RunPlan(config, (2,), 64, tmp_path / "b", 1))
-    item = an_item("a", Arm("released", overrides=SMALL, fidelity="released"), steps=64)
+    item = an_item("a", Condition("released", overrides=SMALL, fidelity="released"), steps=64)
     worlds = gather(Request((item,), "corrected"), tmp_path).demanded()
     assert [world.seed for world in worlds] == [1, 2]
     assert len({world.condition for world in worlds}) == 1
@@ -175,7 +177,7 @@ def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Pa
     shutil.copy(tmp_path / "short" / "run" / "agents" / "living.parquet", tmp_path / "run" / "agents")
     save_manifest(tmp_path / "run", replace(load_manifest(tmp_path / "run"), status="running", steps_done=(0, 0)))
     request = Request((an_item("a", BASE, steps=512),), "corrected")
-    worlds = gather(request, tmp_path).material(request.items[0]).worlds["base"]
+    worlds = gather(request, tmp_path).inputs(request.items[0]).worlds["base"]
     assert all(256 <= world.last_step < 512 for world in worlds)
     for world in worlds:
         assert world.agents["death_step"].null_count() == world.population["alive"][-1]

@@ -11,7 +11,7 @@ from hedon.analysis.world.population import death_rates
 from hedon.figure.named import NamedFigure
 from hedon.study.choice import choose_items
 from hedon.study.gather import Gathered, find_runs, gather
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon.study.plan import plan_jobs
 from hedon.study.request import Request, needs
 from hedon_studies.fear.item import FRAMES, SEQUEL
@@ -38,12 +38,12 @@ def gathered(request_: tuple[Request, Path]) -> Gathered:
 
 def made(gathered: Gathered, name: str) -> list[NamedFigure | ResultTable]:
     (item,) = choose_items([name])
-    return list(item.make(gathered.material(item)))
+    return list(item.make(gathered.inputs(item)))
 
 
 def test_a_run_of_two_species_is_found_and_serves_each_of_them(gathered: Gathered) -> None:
     (item,) = choose_items(["sequel-numbers"])
-    worlds = gathered.material(item).worlds
+    worlds = gathered.inputs(item).worlds
     assert {label: [(world.species, world.seed) for world in group] for label, group in worlds.items()} == {
         "prey": [("prey", 3)],
         "predators": [("predator", 3)],
@@ -122,7 +122,7 @@ def test_groups_come_from_the_recorded_positions(gathered: Gathered) -> None:
 
 @pytest.mark.parametrize("item", SEQUEL, ids=lambda item: item.name)
 def test_without_worlds_each_item_says_what_is_missing(item) -> None:
-    parts = list(item.make(Material("corrected")))
+    parts = list(item.make(ItemInputs("corrected")))
     captions = [part.caption for part in parts if isinstance(part, NamedFigure)]
     notes = [part.note for part in parts if isinstance(part, ResultTable)]
     assert any("Not run yet" in text for text in (*captions, *notes))

@@ -15,7 +15,7 @@ from hedon.config import diff, digest, load_config
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
 from hedon.report.table import cells
-from hedon.study.item import Item, Material
+from hedon.study.item import Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024 import acting, entropy, fault, noise, released, supply
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, HEADING, STANDING, fate
@@ -31,7 +31,7 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def made(item: Item, worlds: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTable], list[NamedFigure]]:
-    parts = list(item.make(Material("corrected", worlds)))
+    parts = list(item.make(ItemInputs("corrected", worlds)))
     tables = {part.name: part for part in parts if isinstance(part, ResultTable)}
     drawn = [part for part in parts if isinstance(part, NamedFigure)]
     assert len(tables) + len(drawn) == len(parts)
@@ -40,7 +40,7 @@ def made(item: Item, worlds: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[
 
 @pytest.mark.parametrize("item", ITEMS, ids=lambda item: item.name)
 def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[WorldRecord]) -> None:
-    labels = [arm.label for arm in item.arms]
+    labels = [condition.label for condition in item.conditions]
     assert item.kind == "study"
     assert len(set(labels)) == len(labels)
     tables, _ = made(item, {})
@@ -62,7 +62,7 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
 def test_arms_share_runs_with_other_items() -> None:
     """All faults are settings of the released program, and no fault is the corrected baseline, whatever is
     reproduced."""
-    faults = {arm.label: arm.config("text") for arm in fault.ARMS}
+    faults = {condition.label: condition.config("text") for condition in fault.CONDITIONS}
     assert list(faults) == list(fault.CELLS)
     assert len({digest(config) for config in faults.values()}) == 16
     released_digest = digest(load_config("baseline", "released"))
@@ -78,14 +78,14 @@ def test_arms_share_runs_with_other_items() -> None:
         path: value for path, _, value in diff(load_config("baseline"), load_config("baseline", "released"))
     }
     assert all(released_has[path] == value for path, _, value in changes)
-    assert released_digest == digest(released.ARMS[0].config("text"))
+    assert released_digest == digest(released.CONDITIONS[0].config("text"))
     assert digest(faults["none"]) == corrected_digest
-    assert [digest(arm.config("text")) for arm in noise.ARMS] == [
+    assert [digest(condition.config("text")) for condition in noise.CONDITIONS] == [
         digest(faults["noise"]),
         released_digest,
         corrected_digest,
     ]
-    with_bonus, without = (arm.config("text") for arm in entropy.ARMS)
+    with_bonus, without = (condition.config("text") for condition in entropy.CONDITIONS)
     assert digest(with_bonus) == corrected_digest
     assert (with_bonus.learning.entropy_coef, without.learning.entropy_coef) == (0.001, 0.0)
 
@@ -222,7 +222,7 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
     assert rows["food_step"]["change"] == pytest.approx(0.5)
     assert (rows["lifetime"]["change"], rows["lifetime"]["low"]) == pytest.approx((1.0, 1.0))
-    precisions = [arm.config("text").learning.acting_weights for arm in acting.ARMS]
+    precisions = [condition.config("text").learning.acting_weights for condition in acting.CONDITIONS]
     assert precisions == [acting.FULL, acting.HALF]
 
 

@@ -13,8 +13,8 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config.load import PAPER_PRESETS
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
-from hedon.study.item import Material
-from hedon_studies.kanagawa_doya_2024.drift import ALL, ARMS, DRIFT
+from hedon.study.item import ItemInputs
+from hedon_studies.kanagawa_doya_2024.drift import ALL, CONDITIONS, DRIFT
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 (ITEM,) = DRIFT
@@ -28,14 +28,14 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def make(found: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTable], list[NamedFigure]]:
-    parts = list(ITEM.make(Material("corrected", found)))
+    parts = list(ITEM.make(ItemInputs("corrected", found)))
     tables = {part.name: part for part in parts if isinstance(part, ResultTable)}
     return tables, [part for part in parts if isinstance(part, NamedFigure)]
 
 
 def test_the_arms_are_the_papers_conditions() -> None:
-    assert sorted(arm.preset for arm in ARMS) == sorted(PAPER_PRESETS)
-    assert all(arm.overrides == () for arm in ARMS)
+    assert sorted(condition.preset for condition in CONDITIONS) == sorted(PAPER_PRESETS)
+    assert all(condition.overrides == () for condition in CONDITIONS)
     assert (len(ITEM.scale.seeds), ITEM.scale.steps) == (5, STEPS)
 
 

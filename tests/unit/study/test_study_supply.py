@@ -9,10 +9,10 @@ from hedon.analysis.table import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
-from hedon.study.item import Material
+from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.figure.supply import draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
-from hedon_studies.kanagawa_doya_2024.supply import ARMS, SUPPLY, growth
+from hedon_studies.kanagawa_doya_2024.supply import CONDITIONS, SUPPLY, growth
 
 (ITEM,) = SUPPLY
 
@@ -24,13 +24,13 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def make(found: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTable], list[NamedFigure]]:
-    parts = list(ITEM.make(Material("corrected", found)))
+    parts = list(ITEM.make(ItemInputs("corrected", found)))
     tables = {part.name: part for part in parts if isinstance(part, ResultTable)}
     return tables, [part for part in parts if isinstance(part, NamedFigure)]
 
 
 def test_five_times_as_much_grows_with_the_fault_and_in_the_released_program() -> None:
-    grows = {arm.label: growth(arm.config("corrected")) for arm in ARMS}
+    grows = {condition.label: growth(condition.config("corrected")) for condition in CONDITIONS}
     assert len(grows) == 9
     for label, value in grows.items():
         assert value == (0.2 if label.endswith("corrected") else 1.0), label
@@ -47,14 +47,14 @@ def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -
         assert row["eaten"] == pytest.approx(eaten / int(tail["agent_steps"].sum()))
         # The point of a world lies on the line of what it eats: so many agents, so much each.
         assert row["eaten"] * row["alive"] == pytest.approx(0.2 * row["eaten_share"])
-    [arm] = tables["supply"].rows.rows(named=True)
-    assert (arm["arm"], arm["worlds"], arm["grows"]) == ("small, corrected", 2, 0.2)
-    assert arm["eaten_share"] == pytest.approx(rows["eaten_share"].to_numpy().mean())
-    assert arm["eaten"] == pytest.approx(np.exp(np.log(rows["eaten"].to_numpy()).mean()))
+    [condition] = tables["supply"].rows.rows(named=True)
+    assert (condition["arm"], condition["worlds"], condition["grows"]) == ("small, corrected", 2, 0.2)
+    assert condition["eaten_share"] == pytest.approx(rows["eaten_share"].to_numpy().mean())
+    assert condition["eaten"] == pytest.approx(np.exp(np.log(rows["eaten"].to_numpy()).mean()))
 
 
 def test_the_papers_rate_feeds_so_many(worlds: list[WorldRecord]) -> None:
-    rows = make(dict.fromkeys((arm.label for arm in ARMS), worlds))[0]["supply"].rows
+    rows = make(dict.fromkeys((condition.label for condition in CONDITIONS), worlds))[0]["supply"].rows
     feeds = dict(zip(rows["arm"], rows["feeds"], strict=True))
     assert feeds["small, corrected"] == pytest.approx(0.2 / 0.0045)
     assert feeds["centered, growth"] == pytest.approx(1 / 0.0039)

@@ -35,10 +35,10 @@ def listing(request: Request, cost: RequestCost) -> Group:
 
 
 def _needs(request: Request, item: Item) -> str:
-    if not item.arms:
+    if not item.conditions:
         return "only settings"
     scale = request.scale(item)
-    settings, worlds = len(item.arms), len(scale.seeds)
+    settings, worlds = len(item.conditions), len(scale.seeds)
     parts = [f"{settings} setting{'s' if settings > 1 else ''}", f"{worlds} world{'s' if worlds > 1 else ''}"]
     return ", ".join([*parts, f"{scale.steps:,} steps"])
 

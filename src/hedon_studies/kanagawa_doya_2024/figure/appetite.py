@@ -16,13 +16,13 @@ _TICKS = (-10, -1, -0.1, 0, 0.1, 1, 10)
 
 
 def draw_appetite(bins: Mapping[str, Sequence[Sequence[AppetiteBin]]], histories: Mapping[str, pl.DataFrame]) -> Figure:
-    """Left: foods per 1000 steps against the weight of food, by arm; right: its mean over time.
+    """Left: foods per 1000 steps against the weight of food, by condition; right: its mean over time.
 
     Thin lines are worlds; thick lines are means over the worlds, where more than half of them have the bin.
 
     Args:
-        bins: per arm and world.
-        histories: per arm, of `population.history`.
+        bins: per condition and world.
+        histories: per condition, of `population.history`.
     """
     with styled():
         figure = new_figure(9.0, 3.5)

@@ -20,21 +20,21 @@ _REACH = 2.0  # widths of the estimates' own range beyond which intervals are cu
 _WIDE = 4.0  # an axis of ratios is logarithmic where the largest value is this many times the least, or more
 
 
-def draw_cells(worlds: pl.DataFrame, arms: Sequence[str], responses: Sequence[Response]) -> Figure:
+def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], responses: Sequence[Response]) -> Figure:
     """A panel per response, a line per cell: a point per world, a bar for their mean.
 
     Means of responses that are compared as ratios are geometric. Hollow points are worlds that died out.
 
     Args:
         worlds: one row per world: arm, seed, died_out and a column per response.
-        arms: in the order of the lines.
+        conditions: in the order of the lines.
         responses: that are drawn.
     """
     with styled():
-        figure, panels = _panels(responses, arms)
+        figure, panels = _panels(responses, conditions)
         for axes, response in zip(panels, responses, strict=True):
-            for line, arm in enumerate(arms):
-                rows = worlds.filter((pl.col("arm") == arm) & pl.col(response.name).is_not_null()).sort("seed")
+            for line, condition in enumerate(conditions):
+                rows = worlds.filter((pl.col("arm") == condition) & pl.col(response.name).is_not_null()).sort("seed")
                 if rows.height:
                     _draw_cell(axes, line, rows, response)
             known = worlds[response.name].drop_nulls().to_numpy().astype(np.float64)

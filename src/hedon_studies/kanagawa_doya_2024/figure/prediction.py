@@ -21,15 +21,15 @@ _LINEAR = 0.003
 """Below this an axis of mutations is linear; above, logarithmic, since Cauchy numbers span orders of magnitude."""
 
 
-def draw_predictions(arms: Mapping[str, Sequence[GeneDrift]], titles: Mapping[str, str]) -> Figure:
-    """A panel per comparison; a color per arm, a mark per gene. The line is where both are equal.
+def draw_predictions(conditions: Mapping[str, Sequence[GeneDrift]], titles: Mapping[str, str]) -> Figure:
+    """A panel per comparison; a color per condition, a mark per gene. The line is where both are equal.
 
     Args:
-        arms: per label, all genes of all its worlds.
+        conditions: per label, all genes of all its worlds.
         titles: per genome column.
     """
-    colors = dict(zip(arms, _COLORS, strict=False))
-    shown = {label: drifts for label, drifts in arms.items() if drifts}
+    colors = dict(zip(conditions, _COLORS, strict=False))
+    shown = {label: drifts for label, drifts in conditions.items() if drifts}
     with styled():
         figure = new_figure(9.0, 3.5)
         panels = figure.subplots(1, len(COMPARISONS))
