@@ -7,7 +7,7 @@ import typer
 
 from hedon.cli.console import make_console
 from hedon.cli.main import main
-from hedon.cli.run import kernel_of
+from hedon.cli.run import require_backend
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -37,7 +37,7 @@ def bench(
     ] = "",
     kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
     windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
-    device: Annotated[str, typer.Option(help="Measure the part device on this: cuda.")] = "cpu",
+    device: Annotated[str | None, typer.Option(help="Measure the part device on this: cuda.")] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Tiny sizes, to see that everything works; the numbers have no meaning.")
     ] = False,
@@ -74,10 +74,17 @@ def bench(
     from benchmarks.machine import drifts
     from benchmarks.plan import make_plan
 
-    on = kernel_of(device)
+    require_backend(device)
     chosen = choose(parts or (), on)
     plan = make_plan(
-        preset, threads=threads, worlds=worlds, slots=slots, kernel=kernel, windows=windows, quick=quick, device=on
+        preset,
+        threads=threads,
+        worlds=worlds,
+        slots=slots,
+        kernel=kernel,
+        windows=windows,
+        quick=quick,
+        device=device or "",
     )
     if json_file is not None:
         need_writable(json_file)
