@@ -28,7 +28,7 @@ class ResultTable:
     shown: bool = True
 
 
-def table(
+def make_table(
     name: str, title: str, rows: Iterable[Mapping[str, Any]], note: str = "", *, shown: bool = True
 ) -> ResultTable:
     """Makes a table from one mapping per row; NaN becomes null. A table without rows has no columns either.

@@ -145,7 +145,7 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
     return next((str(folder / CONFIG) for folder in folders if (folder / CONFIG).is_file()), "baseline")
 
 
-def still(config: Config) -> Config:
+def without_mutation(config: Config) -> Config:
     """A config without mutation, whose founders are not those of another run."""
     return with_genome(config, mutation_scale=0.0, mutation={}, founders="")
 

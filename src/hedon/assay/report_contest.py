@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.assay.contest import Contest
 from hedon.assay.report import estimate_row
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
@@ -46,9 +46,9 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
         for lines in contest.lines
     ]
     return [
-        table("contest", f"{first} against {second}", rows, note),
-        table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
-        table("contest_world", "Living at the end, by world", worlds, shown=False),
+        make_table("contest", f"{first} against {second}", rows, note),
+        make_table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
+        make_table("contest_world", "Living at the end, by world", worlds, shown=False),
     ]
 
 

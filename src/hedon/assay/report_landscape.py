@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape
@@ -117,7 +117,7 @@ def _surfaces(landscape: Landscape) -> ResultTable:
     note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
     flat = ", ".join(f"{name} {found.flat_p:.3g}" for name, found in landscape.surfaces.items())
     note += f"Chance that two genes explain so much if they do nothing (permutation within worlds): {flat}."
-    return table("surface", "Fitness over two genes", rows, note)
+    return make_table("surface", "Fitness over two genes", rows, note)
 
 
 def _effects(landscape: Landscape) -> ResultTable:
@@ -158,7 +158,7 @@ def _effects(landscape: Landscape) -> ResultTable:
         "p: fitness exchanged among the founders of a world. z: by the spread of the neutral genes' values. In the "
         "rows of the neutral genes stands the share with p below 0.05: about 0.05 if all is well."
     )
-    return table("gene", "Fitness and each gene by itself", rows, note)
+    return make_table("gene", "Fitness and each gene by itself", rows, note)
 
 
 def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
@@ -176,7 +176,7 @@ def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
             row = estimate_row({"fitness": measure, "end": end.source, **genes}, estimate)
             rows.append(row | {"of the highest": estimate.value / top if top > 0 else None})
     note = "Relative fitness on the smooth surface; ends beyond its range count as at its edge."
-    return [table("end", "Fitness where evolution ended", rows, note)]
+    return [make_table("end", "Fitness where evolution ended", rows, note)]
 
 
 def _score(value: float, neutral: np.ndarray) -> float | None:

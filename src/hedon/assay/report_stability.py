@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.assay.stability import VERDICTS, Stability
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 
@@ -67,8 +67,8 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
         f"likewise and mutate along the same pedigrees. {meanings} (p below 0.05)."
     )
     return [
-        table("start", "Where the weights went", rows, note),
-        table("course", "Mean weights over time", courses, shown=False),
+        make_table("start", "Where the weights went", rows, note),
+        make_table("course", "Mean weights over time", courses, shown=False),
     ]
 
 

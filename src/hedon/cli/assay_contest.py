@@ -114,10 +114,10 @@ def add_to(app: typer.Typer) -> None:
 
 
 def _config(source: str, fidelity: str | None, overrides: list[str] | None) -> "Config":
-    from hedon.assay.option import still
+    from hedon.assay.option import without_mutation
     from hedon.config.load import load_config
 
-    return still(load_config(source, fidelity, overrides or ()))
+    return without_mutation(load_config(source, fidelity, overrides or ()))
 
 
 def _contest(

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
@@ -96,7 +96,7 @@ def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultT
     note = f"Asked for: {count} world{'s' if count > 1 else ''} of {scale.steps:,} steps"
     if item.kind in ("figure", "table"):
         note += f"; the paper has {len(item.scale.seeds)} of {item.scale.steps:,}"
-    return table(f"{item.name}-worlds", "Made of", rows, note + ".")
+    return make_table(f"{item.name}-worlds", "Made of", rows, note + ".")
 
 
 def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mapping[str, Any]:

@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import Conditions
 from hedon.study.verdict import verdicts
 
@@ -18,4 +18,4 @@ def verdict(conditions: Conditions) -> list[ResultTable]:
         "difference is shown does not mean that there is none. Means cannot be compared, since the paper gives no "
         "spread. Lifetimes and food are read as unweighted means over agents; the paper does not say."
     )
-    return [table("verdict", "The paper's claims", rows, note)]
+    return [make_table("verdict", "The paper's claims", rows, note)]

@@ -9,7 +9,7 @@ from functools import partial
 
 import polars as pl
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.group import REACH, company
 from hedon.analysis.world.population import death_rates, history
 from hedon.config.layout import hunters
@@ -94,7 +94,7 @@ def _deaths(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         for label, group in worlds.items()
         for world in group
     ]
-    yield table("sequel_deaths", "Deaths by cause", rows)
+    yield make_table("sequel_deaths", "Deaths by cause", rows)
 
 
 def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
@@ -115,7 +115,7 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     means = [
         {"seed": seed, **rows.select(pl.exclude("step").mean()).row(0, named=True)} for seed, rows in found.items()
     ]
-    yield table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
+    yield make_table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
 
 
 def _item(name: str, title: str, says: str, make: partial, *conditions: Condition, frames: int = 0) -> Item:

@@ -8,7 +8,7 @@ says that it does not matter; one that reaches beyond leaves it open.
 from collections.abc import Iterator
 
 from hedon.analysis.response import RESPONSES
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.population import history
 from hedon.figure.course import draw_courses
 from hedon.figure.named import NamedFigure
@@ -47,13 +47,13 @@ def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         }
         question = "Do worlds fare alike, whichever weights their agents act by?"
         yield NamedFigure("acting_courses", question, draw_courses(courses, _PANELS), _DRAWN)
-    yield table(
+    yield make_table(
         "acting",
         "Acting by weights of 32 and of 16 bits",
         [row for response in RESPONSES for row in change(rows, response, FULL, HALF)],
         sentences(read_change(FULL, HALF), missing),
     )
-    yield table("acting_worlds", "The worlds of the study of acting", rows, missing, shown=False)
+    yield make_table("acting_worlds", "The worlds of the study of acting", rows, missing, shown=False)
 
 
 ACTING: tuple[Item, ...] = (

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hedon.analysis.gene.drift import WorldDrift, drift_tests, standard_drift
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import SEED
 from hedon.figure.drift import draw_scores
 from hedon.figure.named import NamedFigure
@@ -67,12 +67,12 @@ def make_drift(
     if groups[ALL]:
         means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
         yield NamedFigure(name, question, draw_scores(_points(scores), {**rewards, **MARKER}, means), _DRAWN)
-    yield table(
+    yield make_table(
         f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
     )
     by_condition = [row for rows in tests.values() for row in rows if row["test"] == "direction"]
-    yield table(f"{name}_condition", "Weights against drift, by condition", by_condition, _TESTS)
-    yield table(f"{name}_world", "Weights against drift, world by world", _world_rows(scores))
+    yield make_table(f"{name}_condition", "Weights against drift, by condition", by_condition, _TESTS)
+    yield make_table(f"{name}_world", "Weights against drift, world by world", _world_rows(scores))
 
 
 def _test_rows(

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.population import history
 from hedon.analysis.world.record import WorldRecord
 from hedon.figure.named import NamedFigure
@@ -55,7 +55,7 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         courses = {label: _course(found) for label, found in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
         yield NamedFigure("entropy_appetite", question, draw_appetite(bins, courses), _DRAWN)
-    yield table(
+    yield make_table(
         "entropy",
         "With and without the bonus for entropy",
         [row for response in _ASKED for row in change(rows, response, WITH, WITHOUT)],
@@ -67,8 +67,8 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         for world, world_bins in zip(found, bins[label], strict=True)
         for part in world_bins
     ]
-    yield table("entropy_appetite", "Food eaten, by weight of food", eaten, _APPETITE, shown=False)
-    yield table("entropy_worlds", "The worlds of the study of entropy", rows, missing, shown=False)
+    yield make_table("entropy_appetite", "Food eaten, by weight of food", eaten, _APPETITE, shown=False)
+    yield make_table("entropy_worlds", "The worlds of the study of entropy", rows, missing, shown=False)
 
 
 def _course(worlds: Sequence[WorldRecord]) -> pl.DataFrame:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.extinction import world_extinction
 from hedon.analysis.world.population import mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import WorldRecord
@@ -44,9 +44,9 @@ def _make(inputs: ItemInputs) -> Iterator[ResultTable]:
         for condition, share in CONDITIONS.items()
         if condition.label in cut
     ]
-    yield table("extinction", title, rows, sentences(_READ, missing(CONDITIONS, inputs)))
+    yield make_table("extinction", title, rows, sentences(_READ, missing(CONDITIONS, inputs)))
     by_world = [_world_row(label, world) for label, group in cut.items() for world in group]
-    yield table("extinction-world", f"{title}, world by world", by_world, shown=False)
+    yield make_table("extinction-world", f"{title}, world by world", by_world, shown=False)
 
 
 def _row(condition: Condition, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.figure.named import NamedFigure
 from hedon.statistic.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
 from hedon.study.census import sentences
@@ -76,13 +76,13 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     missing = missing_note(inputs, CONDITIONS, SCALE)
     fits = {response.name: _fit(rows, response) for response in RESPONSES}
     rows_of_effects = {response.name: list(_effect_rows(response, fits[response.name])) for response in RESPONSES}
-    effects = table(
+    effects = make_table(
         "fault_effects",
         "Effects of the released code's faults",
         [row for response in _SHOWN for row in rows_of_effects[response.name]],
         sentences(_EFFECT, _missing_effects(fits), missing),
     )
-    worlds = table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
+    worlds = make_table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
     until = max((row["until"] for row in rows), default=0.0)
     told = set(effects.rows["effect"]) if effects.rows.height else set()
     if rows:
@@ -94,14 +94,14 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         drawn = draw_effects(effects.rows, names, _SHOWN)
         yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn, _DRAWN)
     yield effects
-    yield table(
+    yield make_table(
         "fault_cells",
         "Worlds with and without the faults",
         _cell_rows(rows),
         sentences(_CELL.format(until=until), missing),
     )
     everything = [row for found in rows_of_effects.values() for row in found]
-    yield table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
+    yield make_table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
     yield worlds
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.topic.life import lifetime
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.interval import mean_interval
@@ -36,7 +36,7 @@ _READ = (
 
 def _make(name: str, title: str, conditions: Sequence[Condition], inputs: ItemInputs) -> Iterator[ResultTable]:
     worlds = present(conditions, inputs)
-    by_world = table(f"{name}-world", f"{title}, world by world", _world_rows(worlds), shown=False)
+    by_world = make_table(f"{name}-world", f"{title}, world by world", _world_rows(worlds), shown=False)
     rows = [
         row
         for condition in conditions
@@ -44,7 +44,7 @@ def _make(name: str, title: str, conditions: Sequence[Condition], inputs: ItemIn
         for row in _rows(condition, worlds[condition.label], by_world.rows)
     ]
     note = sentences(f"{_READ}{_ages(by_world.rows)}.", missing(conditions, inputs))
-    yield table(name, title, rows, note)
+    yield make_table(name, title, rows, note)
     yield by_world
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import generator
 from hedon.figure.named import NamedFigure
 from hedon.statistic.interval import SHOWN_FROM
@@ -64,7 +64,7 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
     question = "Do weights go where mutations push them?"
     yield NamedFigure(f"{name}_prediction", question, draw_predictions(shown, GENES), _DRAWN)
-    yield table(
+    yield make_table(
         f"{name}_prediction",
         "Mutations: predicted and seen",
         [row for label, found in drifts.items() for row in _prediction_rows(label, shown[label], _world_count(found))],
@@ -72,8 +72,8 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
     )
     rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
     brief = [{column: row[column] for column in ("arm", "seed", *_BRIEF)} for row in rows]
-    yield table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
-    yield table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
+    yield make_table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
+    yield make_table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
 
 def _world_count(found: Sequence[tuple[int, GeneDrift]]) -> int:

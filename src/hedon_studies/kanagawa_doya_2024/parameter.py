@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.config import FIDELITIES
 from hedon.config.config import PROVENANCE
 from hedon.config.dump import flatten
@@ -36,11 +36,13 @@ def _parameters(inputs: ItemInputs) -> Iterator[ResultTable]:
     explained = f"{_ORIGIN} "
     for name, (title, sections) in CONCERNS.items():
         mine = [row for row in rows if row["setting"].split(".")[0] in sections]
-        yield table(name, f"{title} (baseline, {fidelity})", _without_empty(mine), explained + _differences(mine))
+        yield make_table(name, f"{title} (baseline, {fidelity})", _without_empty(mine), explained + _differences(mine))
         explained = ""
     presets = " ".join(f"{preset}: {describe_preset(preset)}" for preset in PAPER_PRESETS)
     note = f"A kind of food that is added is compared with the first kind of the baseline. {presets}"
-    yield table("parameters_condition", f"What the other conditions change ({fidelity})", _conditions(fidelity), note)
+    yield make_table(
+        "parameters_condition", f"What the other conditions change ({fidelity})", _conditions(fidelity), note
+    )
 
 
 def _settings(fidelity: str) -> Iterator[Row]:

@@ -6,7 +6,7 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.response import RESPONSES
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import WorldRecord
 from hedon.figure.named import NamedFigure
 from hedon.figure.weight import draw_weights
@@ -56,10 +56,14 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
             "released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates), _DRAWN
         )
         yield from _weight_figures(worlds, fates)
-    yield table("released_fate", "Worlds that head for extinction", _fate_rows(fates), f"{_FATE} {missing}".strip())
-    yield table("released_survivors", "All worlds, and those that last", _survivor_rows(rows), _SURVIVOR)
+    yield make_table(
+        "released_fate", "Worlds that head for extinction", _fate_rows(fates), f"{_FATE} {missing}".strip()
+    )
+    yield make_table("released_survivors", "All worlds, and those that last", _survivor_rows(rows), _SURVIVOR)
     yield from drift_parts("released", drifts, missing)
-    yield table("released_worlds", "The worlds of the released program", _with_bias(rows, drifts), missing, shown=False)
+    yield make_table(
+        "released_worlds", "The worlds of the released program", _with_bias(rows, drifts), missing, shown=False
+    )
 
 
 def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Iterator[NamedFigure]:

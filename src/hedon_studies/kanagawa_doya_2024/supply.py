@@ -5,7 +5,7 @@ from typing import Any
 
 from hedon.analysis.agent.food import food_per_agent_step
 from hedon.analysis.response import RESPONSES, Common, Response
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.population import run_tail
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config
@@ -57,8 +57,8 @@ def make_supply(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         for condition in CONDITIONS
         if (mine := [r for r in rows if r["arm"] == condition.label])
     ]
-    yield table("supply", "Food that grows, and food that is eaten", found, sentences(_NOTE, missing))
-    yield table("supply_worlds", "The worlds of the study of supply", rows, missing, shown=False)
+    yield make_table("supply", "Food that grows, and food that is eaten", found, sentences(_NOTE, missing))
+    yield make_table("supply_worlds", "The worlds of the study of supply", rows, missing, shown=False)
 
 
 def _condition_row(condition: Condition, inputs: ItemInputs, rows: list[dict[str, Any]]) -> dict[str, Any]:

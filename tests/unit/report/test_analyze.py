@@ -10,7 +10,7 @@ from rich.console import Console
 from synthetic_run import write_run
 
 from hedon.analysis.agent.lifetime import mean_lifetime
-from hedon.analysis.table import table
+from hedon.analysis.table import make_table
 from hedon.cli.display.analysis import analysis_group
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze, write_analysis
@@ -102,7 +102,7 @@ def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -
         {"condition": "b", "quantity": "x", "mean": 2e-17, "low": 0.5, "high": 1.5, "worlds": 3},
         {"condition": "b", "quantity": "y", "mean": float("nan"), "low": None, "high": None, "worlds": 0},
     ]
-    headers, shown = cells(table("t", "T", rows))
+    headers, shown = cells(make_table("t", "T", rows))
     assert headers == ["condition", "quantity", "mean", "95 % interval", "worlds"]
     assert shown == [["a", "x", "1.00", "", "2"], ["b", "x", "0", "0.500 … 1.50", "3"], ["b", "y", "", "", "0"]]
     assert escape_markdown("w_normal [step], 95 % > 0.5") == "w_normal \\[step\\], 95 % \\> 0.5"
@@ -111,9 +111,9 @@ def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -
 
 def test_columns_without_a_value_are_left_out() -> None:
     rows = [{"quantity": "x", "mean": 1.0, "low": None, "high": None, "p": None, "worlds": 1}]
-    assert cells(table("t", "T", rows)) == (["quantity", "mean", "worlds"], [["x", "1.00", "1"]])
+    assert cells(make_table("t", "T", rows)) == (["quantity", "mean", "worlds"], [["x", "1.00", "1"]])
     two = [row | {"low": 0.0, "high": 2.0, "worlds": 2} for row in rows]
-    assert cells(table("t", "T", two))[0] == ["quantity", "mean", "worlds"]
+    assert cells(make_table("t", "T", two))[0] == ["quantity", "mean", "worlds"]
 
 
 def test_notes_are_plain_and_explain_the_words_of_the_energy_budget(analysis: Analysis) -> None:

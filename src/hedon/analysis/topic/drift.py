@@ -9,7 +9,7 @@ import numpy as np
 from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.gene.drift import drift_tests, standard_drift
 from hedon.analysis.gene.weight import last_mean
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import SEED, Conditions, generator, labels
 from hedon.statistic.correction import holm
 from hedon.statistic.mode import ENOUGH_WORLDS, modes
@@ -36,8 +36,8 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         "reward weights and tests of one control; neutral markers are there as a check."
     )
     return [
-        table("drift", "Weights of the agents born last against drift", rows, note),
-        table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
+        make_table("drift", "Weights of the agents born last against drift", rows, note),
+        make_table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
     ]
 
 
@@ -62,8 +62,8 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
         "at most 0.05. Neutral markers are there as a check."
     )
     return [
-        table("reversion", "Is a weight held near a value?", rows, note),
-        table("reversion_world", "Mean reversion, world by world", world_rows, shown=False),
+        make_table("reversion", "Is a weight held near a value?", rows, note),
+        make_table("reversion_world", "Mean reversion, world by world", world_rows, shown=False),
     ]
 
 
@@ -79,7 +79,7 @@ def mode(conditions: Conditions) -> list[ResultTable]:
         "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
         f"worlds; below 0.8, so with fewer than {ENOUGH_WORLDS} worlds, a single mode is not called."
     )
-    return [table("mode", "Modes of the worlds' mean weights", rows, note)]
+    return [make_table("mode", "Modes of the worlds' mean weights", rows, note)]
 
 
 def _rows(courses: Sequence[WorldCourse], weights: Sequence[str]) -> list[dict[str, Any]]:

@@ -11,7 +11,7 @@ from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.agent.reproduction import reproduction
 from hedon.analysis.descent.generation import generation_time
-from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.table import ResultTable, make_table, over_worlds
 from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, world_means
 from hedon.analysis.world.budget import energy_budget
 from hedon.analysis.world.population import run_tail
@@ -31,7 +31,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         for world, life, curve in zip(worlds, lives, fitted, strict=True):
             rows.append(labels(world) | _life_row(*life, curve, until))
             curves += [labels(world) | point for point in _points(curve)]
-    worlds_table = table("lifetime_world", "Lifetimes, world by world [step]", rows, shown=False)
+    worlds_table = make_table("lifetime_world", "Lifetimes, world by world [step]", rows, shown=False)
     quantities = {
         "mean_of_dead": "mean of the dead",
         "restricted_mean": "restricted mean, censored lives counted",
@@ -44,9 +44,13 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter."
     )
     return [
-        table("lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note),
+        make_table(
+            "lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note
+        ),
         worlds_table,
-        table("survival", "Survival curves (Kaplan and Meier, with pointwise 95 % intervals)", curves, shown=False),
+        make_table(
+            "survival", "Survival curves (Kaplan and Meier, with pointwise 95 % intervals)", curves, shown=False
+        ),
     ]
 
 
@@ -63,20 +67,20 @@ def food(conditions: Conditions) -> list[ResultTable]:
         for world in worlds
         for kind in (*world.food_kinds, *world.prey)
     ]
-    worlds_table = table("food_world", "Food, world by world [1/step]", rows, shown=False)
+    worlds_table = make_table("food_world", "Food, world by world [1/step]", rows, shown=False)
     quantities = {"per_agent": "mean over the dead of foods / lifetime", "per_step": "all foods / all steps lived"}
     note = (
         "The first rule, the paper's as we read it, counts a short life as much as a long one; the second is what is "
         "eaten in a step."
     )
     summary = over_worlds(worlds_table.rows, ("kind",), quantities)
-    return [table("food", "Food, means over worlds [1/step]", summary, note), worlds_table]
+    return [make_table("food", "Food, means over worlds [1/step]", summary, note), worlds_table]
 
 
 def reproductive_success(conditions: Conditions) -> list[ResultTable]:
     """Children per life, by birth cohort."""
     rows = cohort_rows(conditions, lambda _world, cohort, _rng: [_reproduction_row(cohort)])
-    worlds_table = table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
+    worlds_table = make_table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
     quantities = {
         "mean": "children per life",
         "opportunity": "opportunity for selection",
@@ -89,7 +93,7 @@ def reproductive_success(conditions: Conditions) -> list[ResultTable]:
         "lives of exponential length, the opportunity would be 1 + 1 / mean."
     )
     return [
-        table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
+        make_table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
         worlds_table,
     ]
 
@@ -101,14 +105,14 @@ def generation(conditions: Conditions) -> list[ResultTable]:
         for worlds in conditions.values()
         for world in worlds
     ]
-    worlds_table = table("generation_world", "Generations, world by world", rows, shown=False)
+    worlds_table = make_table("generation_world", "Generations, world by world", rows, shown=False)
     quantities = {
         "reached": "mean generation of the living",
         "parent_age": "age of parents at a birth [step]",
         "line_time": "steps per generation reached",
     }
     summary = over_worlds(worlds_table.rows, (), quantities)
-    return [table("generation", "Generations, means over worlds", summary), worlds_table]
+    return [make_table("generation", "Generations, means over worlds", summary), worlds_table]
 
 
 def energy(conditions: Conditions) -> list[ResultTable]:
@@ -121,7 +125,7 @@ def energy(conditions: Conditions) -> list[ResultTable]:
                 if found is not None:
                     flows = {name: value for name, value in asdict(found).items() if value is not None}
                     rows.append(labels(world) | {"part": part} | flows)
-    worlds_table = table("energy_world", "Energy budgets, world by world", rows, shown=False)
+    worlds_table = make_table("energy_world", "Energy budgets, world by world", rows, shown=False)
     names = ["eaten", "basic", "action", "forgiven", "capped", "lost", "shared"]
     names += [name for name in ("hunted", "damage") if name in worlds_table.rows.columns]
     quantities = {name: name for name in names} | {"forgiven_share": "share forgiven"}
@@ -138,7 +142,7 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     }
     note += "".join(said for name, said in further.items() if name in quantities)
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
-    return [table("energy", title, summary, note), worlds_table]
+    return [make_table("energy", title, summary, note), worlds_table]
 
 
 def _reproduction_row(cohort: pl.DataFrame) -> dict:

@@ -8,7 +8,7 @@ import polars as pl
 from hedon.analysis.agent.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.gene.selection import curvature, selection
-from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.table import ResultTable, make_table, over_worlds
 from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, window_count, world_means
 from hedon.analysis.world.record import Conditions, labels
 from hedon.statistic.price import price
@@ -34,7 +34,7 @@ def genome(conditions: Conditions) -> list[ResultTable]:
     if not last.is_empty():
         last = last.filter(pl.col("window") == pl.col("window").max().over("condition", "seed"))
     summary = over_worlds(last, ("weight",), {"mean": "mean", "sd": "sd within a world"})
-    return [table("genome", "Weights in the last birth cohort, means over worlds", summary), worlds_table]
+    return [make_table("genome", "Weights in the last birth cohort, means over worlds", summary), worlds_table]
 
 
 def selection_topic(conditions: Conditions) -> list[ResultTable]:
@@ -43,7 +43,7 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         conditions,
         lambda world, cohort, rng: map(asdict, selection(cohort, world.weight_names, world.last_step, rng)),
     )
-    worlds_table = table(
+    worlds_table = make_table(
         "selection_world",
         "Selection by world and birth cohort",
         rows,
@@ -62,8 +62,10 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         f"{100 * COMPLETE:.0f} % have died, then over worlds."
     )
     return [
-        table("selection", "Selection on each weight", over_worlds(by_world, ("fitness", "weight"), quantities), note),
-        table("selection_window", "Standardized gradient over time, means over worlds", by_window, shown=False),
+        make_table(
+            "selection", "Selection on each weight", over_worlds(by_world, ("fitness", "weight"), quantities), note
+        ),
+        make_table("selection_window", "Standardized gradient over time, means over worlds", by_window, shown=False),
         worlds_table,
     ]
 
@@ -74,7 +76,7 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
         conditions,
         lambda world, cohort, rng: map(asdict, curvature(cohort, world.weight_names, world.last_step, rng)),
     )
-    worlds_table = table(
+    worlds_table = make_table(
         "curvature_world",
         "Curvature of fitness by world and birth cohort",
         rows,
@@ -95,7 +97,7 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
         "excess": "the same, less the mean of the other neutral markers",
     }
     summary = over_worlds(by_world, ("fitness", "weight"), quantities)
-    return [table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
+    return [make_table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
 
 
 def price_topic(conditions: Conditions) -> list[ResultTable]:
@@ -114,7 +116,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
                     | asdict(price(z, tree.parent, cohorts == window))
                     for name, z in weights.items()
                 ]
-    worlds_table = table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)
+    worlds_table = make_table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)
     terms = ("change", "selection", "transmission", "residual")
     by_world = world_means(worlds_table.rows, ("weight",), terms)
     note = (
@@ -122,7 +124,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
         "numbers of children, and the part by mutation. The residual is rounding."
     )
     summary = over_worlds(by_world, ("weight",), {term: term for term in terms})
-    return [table("price", "Price's equation", summary, note), worlds_table]
+    return [make_table("price", "Price's equation", summary, note), worlds_table]
 
 
 def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:

@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 
 from hedon.analysis.gene.mutation import CLIP, OUTCOMES, SCALES, births_of, mutation_effects, pool
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.analysis.world.record import SEED, Conditions
 
 
@@ -38,6 +38,6 @@ def mutation_topic(conditions: Conditions) -> list[ResultTable]:
         "parents."
     )
     return [
-        table("mutation", "What mutations do to the lives of children", shown, note),
-        table("mutation_gene", "What mutations of each gene do, neutral markers too", rows, shown=False),
+        make_table("mutation", "What mutations do to the lives of children", shown, note),
+        make_table("mutation_gene", "What mutations of each gene do, neutral markers too", rows, shown=False),
     ]

@@ -7,7 +7,7 @@ import polars as pl
 
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.lineage import coalescence, lines_through_time
-from hedon.analysis.table import ResultTable, over_worlds, table
+from hedon.analysis.table import ResultTable, make_table, over_worlds
 from hedon.analysis.world.record import Conditions, labels
 from hedon.analysis.world.regime import REGIMES, regimes
 
@@ -28,7 +28,7 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
             steps = np.linspace(0, world.last_step, _LINE_TIMES + 1).round().astype(np.int64)
             found = lines_through_time(tree, world.agents, world.weight_names, steps)
             lines.append(found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all()))
-    over_time = table("genealogy_time", "Common descent over time, by world", rows, shown=False)
+    over_time = make_table("genealogy_time", "Common descent over time, by world", rows, shown=False)
     last = (
         over_time.rows.filter(pl.col("step") == pl.col("step").max().over("condition", "seed"))
         if rows
@@ -44,7 +44,9 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
         "is left; elsewhere it is longer than the run."
     )
     return [
-        table("genealogy", "Common descent of the living, means over worlds", over_worlds(last, (), quantities), note),
+        make_table(
+            "genealogy", "Common descent of the living, means over worlds", over_worlds(last, (), quantities), note
+        ),
         over_time,
         ResultTable(
             "lineage",
@@ -63,7 +65,7 @@ def regime(conditions: Conditions) -> list[ResultTable]:
         for world in worlds
         for found in regimes(world.population, world.config)
     ]
-    over_time = table("regime_time", "Regimes over time, by world", rows, shown=False)
+    over_time = make_table("regime_time", "Regimes over time, by world", rows, shown=False)
     shares = over_time.rows
     if rows:
         spent = shares.group_by("condition", "seed", maintain_order=True).agg(
@@ -78,4 +80,4 @@ def regime(conditions: Conditions) -> list[ResultTable]:
         "starving worlds drift, food-limited ones compete, idle ones stand still."
     )
     summary = over_worlds(shares, (), {name: name for name in REGIMES})
-    return [table("regime", "Share of the run in each regime, means over worlds", summary, note), over_time]
+    return [make_table("regime", "Share of the run in each regime, means over worlds", summary, note), over_time]

@@ -5,7 +5,7 @@ import math
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.table import ResultTable, table
+from hedon.analysis.table import ResultTable, make_table
 from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast
@@ -33,8 +33,8 @@ def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
     room = [{"agents in the arena": place.alive, "births that find a place": place.success} for place in found.room]
     sampled = "Sampled, with agents and foods thrown at random. In a run agents gather, and fewer places are free."
     return {
-        "life": table("life", f"{config.name} ({config.fidelity}): life at constant energy", levels, note),
-        "room": table("room", "Room for newborns", room, sampled),
+        "life": make_table("life", f"{config.name} ({config.fidelity}): life at constant energy", levels, note),
+        "room": make_table("room", "Room for newborns", room, sampled),
     }
 
 
