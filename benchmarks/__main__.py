@@ -75,6 +75,7 @@ def bench(
     from benchmarks.plan import make_plan
 
     require_backend(device)
+    on = device or ""
     chosen = choose(parts or (), on)
     plan = make_plan(
         preset,
@@ -84,7 +85,7 @@ def bench(
         kernel=kernel,
         windows=windows,
         quick=quick,
-        device=device or "",
+        device=on,
     )
     if json_file is not None:
         need_writable(json_file)
