@@ -14,7 +14,7 @@ from hedon.config.layout import layouts, observation_columns
 from hedon.config.native import engine_config
 
 FORWARD_ROWS = 10_240
-"""Observations in one timed call, so many that the cost of the call itself does not matter."""
+"""Observations in one timed call, enough that the cost of the call itself does not matter."""
 
 
 def shape(config: Config) -> tuple[int, int, int, int]:

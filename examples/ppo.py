@@ -111,7 +111,7 @@ def foods(choose: Any, worlds: int = 16) -> float:
 
 
 def train(seed: int, steps: int) -> PPO:
-    """A policy that has learned for so many decisions of agents."""
+    """A policy that has learned for a number of decisions of agents."""
     decisions = STEPS // HOLD
     model = PPO(
         "MlpPolicy",

@@ -119,7 +119,7 @@ HEDON_EXPORT(hedon_serve) void hedon_serve(int32_t index) {
   }
 }
 
-/// Tells the others that a thread, counted from 1, was stopped by a trap: whoever waits is stopped too.
+/// Tells the others that a thread, counted from 1, was stopped by a trap: any that wait are stopped too.
 HEDON_EXPORT(hedon_stop) void hedon_stop(uint32_t thread) {
   uint32_t none = 0;
   stopped.compare_exchange_strong(none, thread);

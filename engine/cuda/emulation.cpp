@@ -88,7 +88,7 @@ const DeviceProgram PROGRAM = {
 
 extern "C" __attribute__((visibility("default"))) const hedon::DeviceProgram* hedon_device() { return &hedon::PROGRAM; }
 
-/// For tests of failures: the devices are lost in the N-th run from now, and give at most so many bytes at once.
+/// For tests of failures: the devices are lost in the N-th run from now, and give at most that many bytes at once.
 extern "C" __attribute__((visibility("default"))) void hedon_emulation_fails(int64_t run, int64_t bytes) {
   hedon::runs_left = run;
   hedon::most_bytes = bytes;

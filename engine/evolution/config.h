@@ -49,7 +49,7 @@ struct LearningGene {
   HEDON_FIELDS(LearningGene, sets, gene)
 };
 
-/// The layout of a genome: its genes in order. What a gene does is said where it is read: here for those that set
+/// The layout of a genome: its genes in order. What a gene does stands where it is read: here for those that set
 /// learning, and in `RewardTerm::gene`.
 struct GenomeConfig {
   MutationNoise mutation_noise;
@@ -65,7 +65,7 @@ inline constexpr const char* ACTION_NORM_NAMES[] = {"max_force", "none"};
 /// What a reward is paid for, per step.
 enum class RewardInput : int32_t {
   food,             ///< foods of kind `index` eaten; past the kinds, agents of a species
-  action,           ///< norm of the two forces, divided as `ActionNorm` says
+  action,           ///< norm of the two forces, divided by what `ActionNorm` names
   see_mean,         ///< mean over the rays of the reading of sight channel `index`
   see_max,          ///< the largest of them
   smell,            ///< mean over the noses of what they smell of channel `index`

@@ -18,7 +18,7 @@ enum class Policy : int32_t {
   ppo,       ///< by a network of their own, which learns
   random,    ///< by a standard normal, as a network does that has not learned
   still,     ///< the motors never run
-  external,  ///< the caller says it, step by step
+  external,  ///< the caller gives it, step by step
   frozen,    ///< by a network that never learns
 };
 inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "still", "external", "frozen"};

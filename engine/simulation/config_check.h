@@ -1,4 +1,4 @@
-/// The engine's own check of its input: its memory and its loops rely on these rules, whoever calls it.
+/// The engine's own check of its input: its memory and its loops rely on these rules, whatever calls it.
 #pragma once
 
 #include <cstdint>

@@ -83,7 +83,7 @@ class Simulation {
   /// Gives a species a rule; must be there before a step if its config asks for one.
   void set_rule(int32_t species, RuleUse use, Rule rule);
 
-  /// "", or which rule is asked for and not there.
+  /// "", or which rule the config names and is not there.
   std::string missing_rule() const;
 
   /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2), before the

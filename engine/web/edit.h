@@ -1,7 +1,7 @@
 /// Changes of a world by hand, between two steps: somebody or something is put into it, or taken out of it.
 ///
-/// Who is added is as a founder is: with a new network, a genome drawn for its id, and a founder's energy, which the
-/// ledger counts as such. Who is taken out has died of age and energy, as far as records say. The world then goes on
+/// An added agent is like a founder: it has a new network, a genome drawn for its id, and a founder's energy, which the
+/// ledger counts as such. An agent that is taken out counts as dead of age and energy in records. The world then goes on
 /// by its own rules, but it is no longer what its config and seed give.
 #pragma once
 

@@ -159,13 +159,13 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   return company.empty() ? 0 : fail(company);
 }
 
-/// Bytes that the world of the input needs; a page refuses what it cannot have before it is asked for.
+/// Bytes that the world of the input needs; a page refuses what it cannot have before it reserves it.
 HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) {
   const MemoryNeed need = Simulation::bytes_needed(input.config, static_cast<int32_t>(input.walls.size()), 1, threads);
   return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
 }
 
-/// Makes the world of the input, with so many threads, which change no result; the world before is gone.
+/// Makes the world of the input, with that many threads, which change no result; the world before is gone.
 HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   simulation.reset();
   learning = edited = false;

@@ -204,7 +204,7 @@ struct HazardConfig {
   float beta_energy;
   float alpha_age;
   float beta_age;
-  int32_t rule;             ///< 1 if a function of the caller says it, and not the formula
+  int32_t rule;             ///< 1 if a function of the caller computes it, and not the formula
   ScheduleConfig schedule;  ///< of the whole hazard
 
   HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age, rule, schedule)
@@ -242,7 +242,7 @@ struct BirthConfig {
   float kappa;
   float beta;
   float delay;
-  int32_t rule;  ///< 1 if a function of the caller says the chance, and not the formula
+  int32_t rule;  ///< 1 if a function of the caller computes the chance, and not the formula
   int32_t attempts;
   Vec2 distance_sd;
   ChildNetwork network;

@@ -1,4 +1,4 @@
-/// Genes that set learning, expressed once, at birth: a gene g multiplies what the config says by 10^g.
+/// Genes that set learning, expressed once, at birth: a gene g multiplies the setting by 10^g.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// Rules of the caller: functions that say for all agents of a species at once what they are paid, or how likely they
+/// Rules of the caller: functions that compute for all agents of a species at once what they are paid, or how likely they
 /// die or breed.
 #pragma once
 
@@ -48,7 +48,7 @@ HEDON_FN float nearness(const RewardInputs& inputs) {
   return sum / static_cast<float>(inputs.rays);
 }
 
-/// What the config itself would say where a rule is asked.
+/// What the config itself would give in place of a rule.
 HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use, const RewardInputs& inputs) {
   switch (use) {
     case RuleUse::reward:
@@ -117,7 +117,7 @@ HEDON_FN int32_t ask_all(World& world, int32_t s, RuleUse use) {
   return count;
 }
 
-/// What a rule has left in the memory of the agent that it was asked about as number `i`.
+/// What a rule has left in the memory of the agent that was number `i`.
 HEDON_FN const double* memory_after(const World& world, int32_t s, int32_t i) {
   const Species& species = world.shape->of[s];
   return &world.scratch.record[int64_t{i + 1} * species.record - species.config->reward.memory];

@@ -54,7 +54,7 @@ struct WorldShape {
   bool networks;           ///< some species acts by networks
   bool learning;           ///< some species learns
   bool external;           ///< some species is told what to do
-  bool ruled;              ///< rules of the caller pay some species, or say when it dies or breeds
+  bool ruled;              ///< rules of the caller pay some species, or decide when it dies or breeds
   int32_t memory;          ///< most numbers that a rule keeps for each agent
   int32_t record;          ///< of the longest record that a rule gets
   int32_t scents;          ///< of the longest row of smells: channels times noses

@@ -111,7 +111,7 @@ WRONG = {
     '[design]\nzip = [["energy.initial", "birth.kappa"]]': "needs equally many values",
     'steps = 64\n[factor]\n"birth.kappa" = [0.1]\n[design]\nzip = [["birth.kappa", "birth.kapa"]]': "did you mean",
     'steps = 64\n[set]\n"birth.kappa" = 0.1\n[factor]\n"birth.kappa" = [0.1]': "set.birth.kappa: is a factor too",
-    'steps = 64\nbase = "poison"\n[factor]\npreset = ["baseline"]': "base: goes not with the factor preset",
+    'steps = 64\nbase = "poison"\n[factor]\npreset = ["baseline"]': "base: cannot be set beside the factor preset",
     'steps = 64\n[set]\n"learning.policy" = "external"': "takes actions from a program",
 }  # fmt: skip
 

@@ -31,7 +31,7 @@ export class Tools {
       element("h3", { text: "by hand" }),
       element("label", {}, "A click in the arena ", this.edit),
       this.refused,
-      element("p", { text: "Who is added has a founder's energy, new genes and a new network. After a change by hand no config gives this world.", class: "quiet" }),
+      element("p", { text: "An added agent has a founder's energy, new genes and a new network. After a change by hand no config gives this world.", class: "quiet" }),
       element("h3", { text: "snapshot" }),
       element("div", { class: "row" }, keep, this.back),
       this.kept,

@@ -72,7 +72,7 @@ def common_to(worlds: Iterable[WorldRecord]) -> Common:
     """The end and the age that all of some worlds share.
 
     A curve is trusted up to the age that 20 agents reached. The common age is the largest of these at which no curve
-    would have to be read further than it is trusted, but for so few survivors that they could not move its mean by a
+    would have to be read further than it is trusted, but for survivors too few to move its mean by a
     hundredth. In an extinct world no life is censored, so its curve can be read at any age.
     """
     worlds = list(worlds)

@@ -36,7 +36,7 @@ class End:
 
 
 def read_ends(path: Path, config: Config) -> list[End]:
-    """The ends of the worlds that a run's folder, its `summary.json`, or a `reproduction.json` tells of.
+    """The ends of the worlds that a run's folder, its `summary.json`, or a `reproduction.json` has.
 
     Of a reproduction with several conditions only the rows of the config's own condition count, if there are any; of a
     run with several species, the species that the config has first.
@@ -73,7 +73,7 @@ def read_ends(path: Path, config: Config) -> list[End]:
         ends = _summary_ends(content, path, config) if "worlds" in content and "tables" not in content else []
         ends = ends or _reproduction_ends(content, path, config)
     if not ends:
-        raise AssayError(f"--ends {name}: tells of no world's mean weights")
+        raise AssayError(f"--ends {name}: has no mean weights of a world")
     return ends
 
 

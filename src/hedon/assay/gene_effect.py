@@ -65,7 +65,7 @@ def gene_effects(
 
 
 def flatness(terms: Floats, fitness: Floats, world: Ints, rng: np.random.Generator) -> float:
-    """The chance that terms explain so much of fitness if genes do nothing.
+    """The chance that terms explain as much of fitness as they do, or more, if genes do nothing.
 
     Args:
         terms: of the regression, (n, p).

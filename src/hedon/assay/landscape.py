@@ -19,7 +19,7 @@ from hedon.record.founder import Founders, make_founders
 from hedon.record.reader import Run
 
 NEUTRAL = 16
-"""Neutral markers of an assay: so many genes of which it is known that they do nothing."""
+"""Neutral markers of an assay: genes that are known to do nothing."""
 ROWS = 2000
 """Genomes in the table that founders are taken from."""
 _SEED = 20260801
@@ -55,7 +55,7 @@ class MeasureSurface:
         measure: one of `MEASURES`.
         mean: of the measure over founders, before it is made relative.
         worlds: that enter; a world in which the measure's mean is 0 does not.
-        flat_p: chance that two genes explain so much if genes do nothing.
+        flat_p: chance that two genes explain this much or more if genes do nothing.
         quadratic, smooth: the surfaces.
         effects: of each gene by itself, neutral markers too.
     """
@@ -102,7 +102,7 @@ def assay_config(config: Config) -> Config:
 def spread_founders(config: Config, spread: Spread, species: str | None = None, rows: int = ROWS) -> Founders:
     """A table of genomes spread over all genes, independently; the same for the same arguments.
 
-    With a species, only its genes; those of the others are drawn as the config says.
+    With a species, only its genes; those of the others are drawn from the laws in the config.
 
     Args:
         config: with the genes and their limits.

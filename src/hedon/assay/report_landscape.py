@@ -116,7 +116,7 @@ def _surfaces(landscape: Landscape) -> ResultTable:
     note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. "
     note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
     flat = ", ".join(f"{name} {found.flat_p:.3g}" for name, found in landscape.surfaces.items())
-    note += f"Chance that two genes explain so much if they do nothing (permutation within worlds): {flat}."
+    note += f"Chance that two genes explain this much or more if they do nothing (permutation within worlds): {flat}."
     return make_table("surface", "Fitness over two genes", rows, note)
 
 

@@ -97,7 +97,7 @@ def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int =
 
 
 def chance(observed: Floats, null: Floats) -> Floats:
-    """Two-sided chance of a value at least so far from 0 under the null.
+    """Two-sided chance of a value at least this far from 0 under the null.
 
     Args:
         observed: (…,).

@@ -103,7 +103,7 @@ def landscape(
 
 
 def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | None":
-    """The runs of an assay, made or read; None if one was interrupted, which it says.
+    """The runs of an assay, made or read; None if one was interrupted, which it prints.
 
     Args:
         plans: Of its runs.

@@ -36,7 +36,7 @@ def export(
     color: Annotated[
         str | None, typer.Option(metavar="GENE", help="What colors the picture; by default the first gene.")
     ] = None,
-    points: Annotated[int, typer.Option(help="Indices at so many times.", min=1, max=10_000)] = POINTS,
+    points: Annotated[int, typer.Option(help="How many times indices are taken at.", min=1, max=10_000)] = POINTS,
     out: Annotated[
         Path | None, typer.Option(help="The new file; by default RUN-WHAT with the format's ending, here.")
     ] = None,

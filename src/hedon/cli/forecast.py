@@ -11,7 +11,7 @@ from hedon.cli.console import make_console
 def forecast(
     source: Source,
     species: Annotated[
-        str | None, typer.Option(help="Of which species, where there are several; by default the first.")
+        str | None, typer.Option(help="The species, if there are several; by default the first.")
     ] = None,
     fidelity: Fidelity = None,
     overrides: Overrides = None,

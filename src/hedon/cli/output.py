@@ -15,7 +15,7 @@ class OutputError(HedonError):
 
 
 class _Guarded(io.TextIOWrapper):
-    """A stream whose first failure is its last word: whoever tries again, if only to flush, gets it too."""
+    """A stream whose first failure is its last word: a second try, if only to flush, raises it too."""
 
     _failure: OutputError | None = None
 

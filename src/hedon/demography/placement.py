@@ -9,7 +9,7 @@ from hedon.config import Config
 from hedon.config.arena import outline, walls
 
 SCENES = 12
-"""Random scenes per number of agents; each is asked for every agent as a parent."""
+"""Random scenes per number of agents; each is tried with every agent as a parent."""
 _BATCH = 256  # places thrown at once, at most
 _THROWS = 200  # of a batch; a scene too full for these stays with fewer agents
 

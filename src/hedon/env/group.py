@@ -103,8 +103,8 @@ class Group:
     def newborns(self) -> NDArray[Any]:
         """(births,) all who were born in the steps, in the order of world and id: a structured array (`NEWBORN`).
 
-        `reward` is what it was paid in the steps, 0 in the step of its birth; `alive`, whether it lives now. Who is
-        not alive has come and gone within a repeat: no other array shows it.
+        `reward` is what it was paid in the steps, 0 in the step of its birth; `alive`, whether it lives now. A
+        newborn that is not alive has come and gone within a repeat: no other array shows it.
         """
         here = np.nonzero(self.born)
         now = _rows(here, self.ids, self._late, alive=True)

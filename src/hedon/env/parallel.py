@@ -21,10 +21,10 @@ Values = dict[str, NDArray[np.float32]]
 class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     """A world whose agents the caller drives. An agent's name is its species and its id: `agent_17`.
 
-    A newborn comes into `agents` with its first observation and a reward of 0. Who dies is told so once, by
-    `terminations`, with its last reward and an observation of zeros, and is gone. Agents of species that are not
-    driven live in the same world by themselves and are not shown. There is no list of possible agents: nobody knows
-    who will be born.
+    A newborn comes into `agents` with its first observation and a reward of 0. An agent that dies
+    appears once more, in `terminations`, with its last reward and an observation of zeros, and is gone. Agents of
+    species that are not driven live in the same world by themselves and are not shown. There is no list of possible
+    agents: nobody knows who will be born.
 
     Args:
         config: Settings of the world.

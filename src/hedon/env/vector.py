@@ -81,8 +81,8 @@ class VectorEnv:
         """Advances every world, with the actions that the groups hold; then the arrays are of the new step.
 
         Args:
-            repeat: Steps with the same actions: as so many calls of `step` in which nobody writes an action. Rewards
-                and meals are sums over all of them, and all who were born or died in them are told: see `Group`.
+            repeat: Steps with the same actions: the same as this many calls of `step` in which nobody writes an action.
+                Rewards and meals are sums over all of them, and all births and deaths are there: see `Group`.
 
         Raises:
             ArgumentError: An action is not a finite number, or `repeat` is not a positive whole number.

@@ -66,7 +66,7 @@ def same_backend(backend: str | None) -> str:
     asked = os.environ.get(BACKEND_VARIABLE, "")
     if asked and backend is not None and asked not in family:
         raise RecordError(
-            f"the run was made with the instruction set {backend}, and {BACKEND_VARIABLE} asks for {asked}, which "
+            f"the run was made with the instruction set {backend}, and {BACKEND_VARIABLE} is {asked}, which "
             f"computes different results: unset {BACKEND_VARIABLE}"
         )
     if not asked and backend is not None and is_device(backend) and not device_problem(backend):

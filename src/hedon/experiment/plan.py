@@ -40,8 +40,8 @@ class RunPlan:
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; 0 for none.
         checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
-        founders: Genomes that the worlds begin with; None where they are drawn as the config says. The plan's config
-            gets the table's digest.
+        founders: Genomes that the worlds begin with; None where they are drawn from the config's laws. The plan's
+            config gets the table's digest.
         networks: What agents that never learn begin with; None for new networks. The config gets their digest.
         backend: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
             set.

@@ -63,7 +63,7 @@ def lock(
 
     Args:
         folder: Of the run.
-        steps: Steps of each world in all; None for those that were asked for last.
+        steps: Steps of each world in all; None for those of the last session.
         threads: Threads to use; 0 for all processors. Changes no result.
         checkpoint_seconds: Time between two checkpoints [s].
 
@@ -116,7 +116,7 @@ def resume(
 
     Args:
         folder: Of the run.
-        steps: Steps of each world in all; None for those that were asked for last.
+        steps: Steps of each world in all; None for those of the last session.
         threads: Threads to use; 0 for all processors. Changes no result.
         display: Shows progress.
         checkpoint_seconds: Time between two checkpoints [s].

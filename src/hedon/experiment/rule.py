@@ -41,7 +41,7 @@ class RuleError(HedonError):
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule that pays the agents of a species, or says how likely they die or have a child.
+    """A rule that pays the agents of a species, or gives the chance that they die or have a child.
 
     Attributes:
         species: Name of the species.

@@ -240,10 +240,10 @@ class World:
         """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`.
 
         The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
-        runs. Who needs none need not call it.
+        runs. Without a use for them you need not call it.
 
         Args:
-            partial: Take those that are left, where older ones are lost; `lost_deaths` says before how many.
+            partial: Take those that are left, where older ones are lost; `lost_deaths` is the number of the others.
 
         Raises:
             EngineError: Some are lost, and `partial` is false. Nothing is taken then.

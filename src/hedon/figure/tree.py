@@ -21,7 +21,7 @@ from hedon.figure.style import (
 )
 
 MOST = 300
-"""Most tips that are drawn; of more, so many evenly by birth."""
+"""Most tips that are drawn; of more, this many are taken, evenly by birth."""
 _COLORS = LinearSegmentedColormap.from_list("weight", [BLUE, SKY, PALE, ORANGE, VERMILION])
 """Gray in the middle, so that lines of weights near 0 can be seen on white."""
 _SHARE = 0.98  # of the agents within the ends of the colors; the few beyond have the color of an end

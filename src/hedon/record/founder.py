@@ -1,7 +1,7 @@
 """Tables of founders: whose genes the worlds of a run begin with, and which founder gets which row.
 
-A table has one row per genome and a column for each gene that it gives; other genes are drawn as the config says. The
-column `group` tells competitors apart, and `share` is the part of the founders that comes from a group. The run's
+A table has one row per genome and a column for each gene that it gives; other genes are drawn from the config's laws.
+The column `group` tells competitors apart, and `share` is the part of the founders that comes from a group. The run's
 folder holds the table as `founders.csv`, and the config its digest, so that a run can be repeated and checked.
 """
 
@@ -38,7 +38,7 @@ class Founders:
 
     Attributes:
         genes: columns of the genome that the table gives.
-        values: (rows, genes) float32; NaN where a gene is drawn as the config says.
+        values: (rows, genes) float32; NaN where a gene is drawn from the config's law.
         group: of each row.
         share: of each group among the founders of a world; they sum to 1. The groups are in the order of the table.
     """
@@ -158,7 +158,7 @@ def make_founders(
 
     Args:
         genes: columns.
-        values: genomes, (rows, genes); NaN for a gene that is drawn as the config says.
+        values: genomes, (rows, genes); NaN for a gene that is drawn from the config's law.
         group: of each row.
         share: of each group among the founders; None for shares by the groups' rows.
     """
@@ -169,7 +169,7 @@ def make_founders(
 
 
 def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[float]) -> Founders:
-    """One table from several, each of which becomes one group; a gene that one lacks is drawn as the config says.
+    """One table from several, each of which becomes one group; a gene that one lacks is drawn from the config's law.
 
     Args:
         tables: one or more.

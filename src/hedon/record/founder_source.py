@@ -72,8 +72,8 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
     """The genomes of those alive after a step of a run, or at its end, from its table of agents.
 
     Where the run has several species, each gives its genes to the species of the same name; a species of which nobody
-    lives, or that the run lacks, is drawn as the config says. Neutral markers that the config has no room for are left
-    out; those that the run lacks are drawn as it says.
+    lives, or that the run lacks, is drawn from the config's laws. Neutral markers that the config has no room for are
+    left out; those that the run lacks are drawn from its laws.
 
     Args:
         folder: of the run.

@@ -23,7 +23,7 @@ def read_table(path: Path, config: Config) -> Founders:
 
     Args:
         path: Of the file. Its first line names the columns: genes, by their column in the records or by their short
-            name, and `group` and `share` if there are any. An empty cell is a gene that is drawn as the config says.
+            name, and `group` and `share` if there are any. An empty cell is a gene that is drawn from the config's law.
         config: Whose genes they are.
 
     Raises:
@@ -67,7 +67,7 @@ def read_table(path: Path, config: Config) -> Founders:
 
 
 def load_founders(folder: Path, config: Config) -> Founders | None:
-    """The table of a run, from its folder; None if its founders are drawn as the config says.
+    """The table of a run, from its folder; None if its founders are drawn from the config's laws.
 
     Args:
         folder: of the run.

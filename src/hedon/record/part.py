@@ -1,4 +1,4 @@
-"""Reads one file of a table, which may be damaged or come from anyone: whoever reads tables passes through here."""
+"""Reads one file of a table, which may be damaged or come from anyone: all that reads tables passes through here."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

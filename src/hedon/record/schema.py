@@ -67,17 +67,17 @@ class Columns:
 
     @property
     def several(self) -> bool:
-        """Whether there are several species: then rows say which."""
+        """Whether there are several species: then rows name it."""
         return len(self.species) > 1
 
     @property
     def has_causes(self) -> bool:
-        """Whether rows say of what agents die."""
+        """Whether rows have the cause of a death."""
         return self.several if self.causes is None else self.causes
 
     @property
     def has_hunts(self) -> bool:
-        """Whether rows say how agents eat agents."""
+        """Whether rows have columns of hunts."""
         return self.several if self.causes is None else bool(self.prey)
 
 
@@ -207,7 +207,7 @@ def _population_table(columns: Columns) -> Table:
 
 
 def _frame_table(columns: Columns) -> Table:
-    """One row per agent or food and frame; written only if frames were asked for."""
+    """One row per agent or food and frame; written only if the plan has frames."""
     kinds = (*columns.species, *columns.food_kinds)
     return _table(
         "frames",

@@ -1,1 +1,1 @@
-"""Pages, tables and files that tell what runs hold: of a report, and of a replication of the paper."""
+"""Pages, tables and files about runs: of a report, and of a replication of the paper."""

@@ -29,7 +29,7 @@ RUN/
   agents/part-000000.parquet …   agents that have died
   agents/living.parquet          agents alive when records were last written
   population/part-….parquet      one row per world and interval
-  frames/part-….parquet          positions, only where frames were asked for
+  frames/part-….parquet          positions, only if the plan has frames
   checkpoints/step-….npz         the newest two, for `hedon resume` and `hedon branch`
   fault/step-….npz               where a run stopped at a fault: the worlds as they were found
   final.npz                      last state of one world, for a picture
@@ -50,7 +50,7 @@ run.population()  # polars.DataFrame, by world and step
 run.frames()      # polars.LazyFrame
 ```
 
-Types: i32, i64, f32, f64 are integers and floats of that many bits; "null" says that a value may be
+Types: i32, i64, f32, f64 are integers and floats of that many bits; "null" means that a value may be
 missing. The tables are shown for one food kind `normal` and one neutral marker. With more kinds,
 `eaten_<kind>`, `food_<kind>`, `w_<kind>`, `w_<kind>_mean` and `w_<kind>_sd` repeat in the order of the
 config; with more markers so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`. Below each table stand the

@@ -1,4 +1,4 @@
-"""Makes what was asked of a reproduction, and writes it: figures, tables, and one page that holds all of it."""
+"""Makes the items of a reproduction, and writes them: figures, tables, and one page that holds all of it."""
 
 import io
 import json
@@ -84,7 +84,7 @@ def _make(item: Item, gathered: Gathered, folder: Path) -> BuiltItem:
 
 
 def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultTable | None:
-    """What an item was made of, beside what was asked for; None for one that needs no world, or only its picture."""
+    """What an item was made of, beside what was wanted; None for one that needs no world, or only its picture."""
     if not item.conditions or item.pictures:
         return None
     scale = gathered.request.scale(item)

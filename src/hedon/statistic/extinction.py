@@ -1,6 +1,6 @@
 """Which share of worlds dies out by a step? Kaplan & Meier (1958) over worlds, with an interval for few of them.
 
-A world that lives when its record ends is *censored*: it may still die out before the step that is asked for. Leaving
+A world that lives when its record ends is *censored*: it may still die out before the step in question. Leaving
 it out, or counting the extinct alone, makes the share too large, because a world that died out is known to the end
 however short it was.
 """
@@ -55,7 +55,7 @@ def extinct_share(duration: Floats, died: Flags, until: float, level: float = LE
     Args:
         duration: step of extinction, or at which the record of a living world ends [step], shape (n,).
         died: whether the world died out, shape (n,).
-        until: the step that is asked for [step].
+        until: the step by which worlds count as extinct [step].
         level: of the interval.
     """
     if not len(duration):

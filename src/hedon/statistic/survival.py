@@ -84,8 +84,8 @@ def survival_curve(duration: Floats, died: NDArray[np.bool_], level: float = LEV
 
     Args:
         duration: lifetime, or age when last seen [step], shape (n,).
-        died: whether it is a lifetime, shape (n,). Who is last seen at an age at which others die counts
-            as at risk there.
+        died: whether it is a lifetime, shape (n,). An agent last seen at an age at which others die
+            counts as at risk there.
         level: of the pointwise interval.
     """
     age, deaths = np.unique(duration[died], return_counts=True)

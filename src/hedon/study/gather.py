@@ -1,4 +1,4 @@
-"""From run folders to what items are made from: the worlds that were asked for, as far as they are there."""
+"""From run folders to what items are made from: the wanted worlds, as far as they are there."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

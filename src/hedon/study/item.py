@@ -86,7 +86,8 @@ class Item:
         paper: what the paper, or its sequel, shows or says there; for a study, what it asks.
         make: makes its figures and tables, in the order in which they are shown.
         conditions: the settings that it needs worlds of; none where settings alone are enough.
-        scale: how much is run of each condition unless asked otherwise; for an item of the paper, the paper's.
+        scale: how much is run of each condition unless the request has another scale; for an item of the
+            paper, the paper's.
         pictures: whether it only shows the last state of a world of each condition, for which any run is long enough.
         frames: steps between two records of all positions that it needs; 0 if it needs none.
     """

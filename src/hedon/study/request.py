@@ -1,4 +1,4 @@
-"""What is asked of a reproduction: which items, at which scale, and hence which worlds."""
+"""What a reproduction should make: which items, at which scale, and hence which worlds."""
 
 import math
 from collections.abc import Iterator
@@ -27,7 +27,7 @@ class Request:
     steps: int | None = None
 
     def scale(self, item: Item) -> Scale:
-        """How much is run of each condition of an item. A picture needs no more than it says itself."""
+        """How much is run of each condition of an item. A picture needs no more than its own scale."""
         if item.pictures:
             return item.scale
         return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)

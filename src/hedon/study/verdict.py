@@ -1,6 +1,6 @@
 """Do the paper's claims hold in these runs? The rules stand in `claim` and `order`; here they are applied.
 
-Two questions are asked apart. *Does the claim hold here?* Our figure's interval against the region of the claim.
+There are two separate questions. *Does the claim hold here?* Our figure's interval against the region of the claim.
 *Do we differ from the paper?* A test of two samples, where the paper gives a count of its worlds; it gives no spread
 for means, so that with them the question has no answer.
 """
@@ -40,7 +40,7 @@ class Verdict:
 
     Attributes:
         claim: its name.
-        condition: whose worlds were asked; two of them with "against" between.
+        condition: whose worlds were tested; two of them with "against" between.
         verdict: "holds", "fails" or "undecided".
         value: our figure; NaN where there is none, as its bounds.
         low, high: bounds of its 95 % interval.

@@ -161,7 +161,7 @@ def _base(tables: dict[str, Any], factors: Sequence[Factor], problems: list[Prob
         problems.append(Problem("fidelity", message, format_value(fidelity), near))
     for name, key in ((PRESET, "base"), (FIDELITY, "fidelity")):
         if key in tables and any(factor.name == name for factor in factors):
-            problems.append(Problem(key, f"goes not with the factor {name}, which chooses it: leave one of them out"))
+            problems.append(Problem(key, f"cannot be set beside the factor {name}, which chooses it: leave one out"))
     return base
 
 

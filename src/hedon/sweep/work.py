@@ -1,7 +1,8 @@
 """Makes one batch: its run, its rows of the table, and what is kept of it.
 
 A batch that is done is known by its result, which is written last. A run lives in the sweep's folder, or, for a sweep
-behind a URL, in a passing one, and its state travels at each checkpoint: whoever makes the batch next goes on there.
+behind a URL, in a passing one, and its state travels at each checkpoint: the process that
+makes the batch next continues there.
 """
 
 import io
@@ -150,7 +151,7 @@ def _keep(store: Store, task: Task, run: Run) -> None:
             store.write(f"{TABLES}/{table}/{task.batch.name}.parquet", buffer.getvalue())
     if "run" in task.keep:
         paths = sorted(path for path in task.folder.rglob("*") if path.is_file() and path.name != LOCK)
-        if store.folder is None:  # as one object: whoever made it before may have cut its tables at other places
+        if store.folder is None:  # as one object: an earlier process may have cut its tables at other places
             store.write(f"{RUNS}/{task.batch.name}.zip", _archive(task.folder, paths))
             return
         shutil.rmtree(store.folder / RUNS / task.batch.name, ignore_errors=True)

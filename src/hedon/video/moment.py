@@ -15,7 +15,7 @@ from hedon.record.snapshot import Snapshot
 from hedon.video.error import VideoError
 
 EVEN_STEPS = 128
-"""Agents are moved evenly between frames that are at most so far apart; in longer times they turn too often [step]."""
+"""Agents are moved evenly between frames that are at most this far apart; longer apart, they turn too often [step]."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The local server of `hedon view`: this machine only, reading only, and only what the page needs.
 
 Every link begins with a random token, so that other programs and pages that know the port get nothing. The server knows
-a list of names, and gives the file or data behind a name; it never makes a path out of what is asked for.
+a list of names, and gives the file or data behind a name; it never makes a path out of a request.
 """
 
 import secrets

@@ -20,11 +20,11 @@ SEQUEL = "Kanagawa & Doya, arXiv 2507.09992"
 FAR = 1.96
 """A score further from 0 than this is in the outer 5 % of neutral genes."""
 BY_CHANCE = 0.025
-"""Share of worlds in which a neutral gene is so far out on one side."""
+"""Share of worlds in which a neutral gene is that far out on one side."""
 OFTEN = 0.25
 """At least this share of worlds is often: ten times as many as by chance. Our choice."""
 FAMILY = 6
-"""Verdicts that are asked together."""
+"""Verdicts that are corrected together."""
 FAMILY_LEVEL = 1.0 - 0.05 / FAMILY
 
 

@@ -23,7 +23,7 @@ from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
 from hedon_studies.kanagawa_doya_2024.weight_history import draw_courses
 
 SCALE = Scale((1, 2, 3, 4, 5), 2_048_000)
-"""Our choice; the sequel says of its runs only how many steps of its own they took."""
+"""Our choice; the sequel gives only the number of steps of its own that its runs took."""
 FRAMES = 1024
 """Steps between two records of all positions."""
 PREY, PREDATOR = "prey", "predator"
@@ -79,7 +79,7 @@ def _numbers(inputs: ItemInputs) -> Iterator[NamedFigure]:
 
 
 def _deaths(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
-    name, question = "sequel-deaths", "Of what do prey and predators die?"
+    name, question = "sequel-deaths", "What do prey and predators die of?"
     worlds = present((MAIN, HUNTERS), inputs)
     if not worlds:
         yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))

@@ -52,8 +52,8 @@ def make_drift(
 
     Args:
         conditions: whose worlds are read.
-        rewards: the weights that are asked about and that all conditions have, with what they are called.
-        scale: how much was asked for.
+        rewards: the weights that are tested, which all conditions have, with their titles.
+        scale: how much should be run.
         name: of the figure; begins the names of the tables.
         inputs: what there is.
     """

@@ -20,7 +20,7 @@ _READ = (
     "Costs are those of living [energy/step] and of action [energy/(step·force)]. The share is that of worlds extinct "
     "by the step named, over all worlds (Kaplan and Meier; living ones that end earlier are censored), with the mid-p "
     "interval of the beta product. The paper's is by step 1,024,000, of ten; p_paper is the chance of shares at least "
-    "so far apart if both are the same (mid-p Fisher), where all worlds are known to that step. The median step of "
+    "that far apart if both are the same (mid-p Fisher), where all worlds are known to that step. The median step of "
     "extinction counts living worlds as censored, and is known where half of the worlds died out. Agents alive and "
     "their energy are means over the last tenth of the worlds that live."
 )

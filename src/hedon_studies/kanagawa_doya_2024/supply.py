@@ -36,7 +36,7 @@ _NOTE = (
     "grows: food that grows per step; eaten_share: how much of it was eaten; eaten: foods per step lived; both in the "
     "last tenth of a run; food_agent: mean over the dead of foods / lifetime, the paper's rule, over all of a run. "
     "feeds: the number of agents that eat all that grows, at the rate that the paper reports. Its mean counts each of "
-    "the dead once; who eats more lives longer, so that what is eaten per step lived is rather more, and those fed are "
+    "the dead once; agents that eat more live longer, so that more is eaten per step lived, and those fed are "
     "fewer. Means over worlds, geometric for rates and lifetimes."
 )
 _DRAWN = (

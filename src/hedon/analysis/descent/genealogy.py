@@ -82,7 +82,7 @@ def founder(tree: Genealogy) -> Ints:
 
 
 def ancestry(tree: Genealogy, agents: Ints) -> Flags:
-    """Who is one of some agents, or an ancestor of one, (n,).
+    """Which agents are among some agents, or are ancestors of one, (n,).
 
     Args:
         tree: the pedigree.
@@ -121,7 +121,7 @@ def living_at(tree: Genealogy, step: int) -> Ints:
 
     Args:
         tree: the pedigree.
-        step: after which [step]; who is born in it lives, who dies in it does not.
+        step: after which [step]: agents born in it live, agents that die in it do not.
 
     Returns:
         Ascending positions, (alive,).

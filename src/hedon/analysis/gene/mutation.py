@@ -28,7 +28,7 @@ KNOWN = 0.9
 """Part of the run in which a child must be born: of those born later little is known. Whether a child is dead must not
 decide, since that would choose by the outcome."""
 YOUNG = 1024
-"""Food per step is counted over at least so many steps [step]: a meal in a life of three steps says nothing."""
+"""Fewest steps over which food per step is counted [step]: a meal in a life of three steps tells nothing."""
 FEWEST = 30
 """Parents with several children below which nothing is estimated."""
 

@@ -21,7 +21,7 @@ SEED = 20240717
 
 @dataclass(frozen=True, eq=False)
 class WorldRecord:
-    """All that the records say of one world, or of one species of it.
+    """All that the records hold of one world, or of one species of it.
 
     Two records are equal only if they are the same object.
 
@@ -85,8 +85,8 @@ class WorldRecord:
     def until(self, step: int) -> "WorldRecord":
         """The world as its records would be if it had ended earlier, but for what the living had done by then.
 
-        Who dies later lives on, with `death_step` missing. What such agents had eaten, spent, borne and so on by that
-        step was not recorded, so it is missing too.
+        Agents that die later live on, with `death_step` missing. What such agents had eaten, spent, borne and so on by
+        that step was not recorded, so it is missing too.
 
         Args:
             step: the end [step]; at the end of an interval, or the last one is lost.
@@ -232,7 +232,7 @@ def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFra
     died = agents["death_step"]
     if gone is None or not len(died) or died.null_count():
         return gone
-    return int(died.to_numpy().max())  # within the interval that the rows tell of
+    return int(died.to_numpy().max())  # within the interval of the rows
 
 
 def _label(run: Run, taken: set[str]) -> str:

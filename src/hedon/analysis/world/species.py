@@ -1,4 +1,4 @@
-"""The door to tables of worlds with several species: whoever sums or averages rows takes those of one species.
+"""The door to tables of worlds with several species: code that sums or averages rows takes those of one species.
 
 Rows of prey and predators look alike, so their means would be numbers of nobody. Functions that read a table ask here
 that it is of one species.

@@ -33,7 +33,7 @@ class Screen:
             self._live.__exit__(*error)
 
     def is_due(self) -> bool:
-        """Whether so much time has passed that something should be shown again."""
+        """Whether enough time has passed to show something again."""
         return time.monotonic() >= self._due
 
     def show(self, line: Callable[[], str], picture: Callable[[], RenderableType]) -> None:
