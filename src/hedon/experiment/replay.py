@@ -8,7 +8,7 @@ import polars as pl
 
 from hedon.check.finding import Finding
 from hedon.error import HedonError
-from hedon.experiment.branch import begin_branch, plan_branch
+from hedon.experiment.branch import start_branch, plan_branch
 from hedon.record.folder import checkpoint_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
@@ -36,7 +36,7 @@ def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:
         try:
             again = Path(place) / "run"
-            manifest = begin_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads))
+            manifest = start_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads))
             findings = tuple(_compare(run, open_run(again), manifest, start))
         except HedonError as error:
             return (Finding(f"checkpoint of step {start:,}", f"cannot be computed again: {error}"),), "not compared"
