@@ -15,7 +15,7 @@ from project_files import ROOT
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 SOURCE = ROOT / "src"
-LATER = {"_engine", "config", "jobs", "study", "hedon_studies"}
+LATER = {"_engine", "config"}
 FILES = [path for path in sorted(SOURCE.rglob("*.py")) if LATER.isdisjoint(path.relative_to(SOURCE).parts)]
 ARRAY = re.compile(r"\b(NDArray|ndarray|ArrayLike)\b")
 OPTION = re.compile(r"\btyper\.(Option|Argument)\b")

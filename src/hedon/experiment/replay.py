@@ -8,7 +8,7 @@ import polars as pl
 
 from hedon.check.finding import Finding
 from hedon.error import HedonError
-from hedon.experiment.branch import start_branch, plan_branch
+from hedon.experiment.branch import plan_branch, start_branch
 from hedon.record.folder import checkpoint_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run

@@ -48,11 +48,21 @@ class Display(Protocol[T_contra]):
     """A progress display of several runs."""
 
     def update(self, job: T_contra, moment: Moment) -> None:
-        """Shows a moment of a run; called about five times a second for each."""
+        """Shows a moment of a run; called about five times a second for each.
+
+        Args:
+            job: that goes on.
+            moment: how far it is.
+        """
         ...
 
     def end(self, job: T_contra, outcome: Outcome) -> None:
-        """Shows how a run ended."""
+        """Shows how a run ended.
+
+        Args:
+            job: that ended.
+            outcome: how it ended.
+        """
         ...
 
 

@@ -36,5 +36,10 @@ class RunJob:
         return holds_run(self.folder)
 
     def make(self, threads: int, display: Display | None) -> str:
-        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
+        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`.
+
+        Args:
+            threads: that the run may use.
+            display: shows progress.
+        """
         return make(replace(self.plan, threads=threads), display).status

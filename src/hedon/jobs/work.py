@@ -29,6 +29,10 @@ class Job(Protocol):
     def make(self, threads: int, display: Display | None) -> str:
         """Begins, continues, or only reads its run.
 
+        Args:
+            threads: that the job may use.
+            display: shows progress.
+
         Returns:
             The status of an `Outcome`.
 
@@ -89,7 +93,13 @@ def work(job: Job, threads: int, link: Connection) -> None:
 
 
 def attempt(job: Job, threads: int, display: Display | None = None) -> Outcome:
-    """Does a job in this process. A fault of the job is an outcome."""
+    """Does a job in this process. A fault of the job is an outcome.
+
+    Args:
+        job: what to do.
+        threads: that it may use.
+        display: shows progress.
+    """
     try:
         return Outcome(job.make(threads, display))
     except HedonError as error:

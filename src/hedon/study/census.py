@@ -11,13 +11,23 @@ _NAMED = 3  # at most this many seeds that died out are named
 
 
 def present(conditions: Iterable[Condition], inputs: ItemInputs) -> dict[str, Sequence[WorldRecord]]:
-    """The worlds of each condition that has any, by label and in the order of the conditions."""
+    """The worlds of each condition that has any, by label and in the order of the conditions.
+
+    Args:
+        conditions: of an item.
+        inputs: with the worlds that there are.
+    """
     found = {condition.label: inputs.worlds.get(condition.label, ()) for condition in conditions}
     return {label: worlds for label, worlds in found.items() if worlds}
 
 
 def missing(conditions: Iterable[Condition], inputs: ItemInputs) -> str:
-    """A sentence that names the conditions without worlds; empty where there is none."""
+    """A sentence that names the conditions without worlds; empty where there is none.
+
+    Args:
+        conditions: of an item.
+        inputs: with the worlds that there are.
+    """
     absent = [condition.label for condition in conditions if not inputs.worlds.get(condition.label)]
     return f"Not run yet: {'; '.join(absent)}." if absent else ""
 
@@ -55,7 +65,13 @@ def world_indices(groups: Iterable[Sequence[WorldRecord]]) -> dict[int, int]:
 
 
 def stack(worlds: Iterable[WorldRecord], table: str, indices: Mapping[int, int]) -> pl.DataFrame:
-    """The rows of one table ("agents" or "population") of all worlds, with `world` as its seed's index."""
+    """The rows of one table ("agents" or "population") of all worlds, with `world` as its seed's index.
+
+    Args:
+        worlds: one or more, with equal columns.
+        table: its name.
+        indices: by seed, from `world_indices`.
+    """
     return pl.concat(
         getattr(world, table).with_columns(world=pl.lit(indices[world.seed], pl.Int32)) for world in worlds
     )

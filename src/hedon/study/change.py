@@ -14,8 +14,14 @@ def world_rows(
 ) -> list[dict[str, Any]]:
     """One row per world, in the order of the conditions.
 
-    Columns: arm, seed, steps, died_out, one per response, and until, the age up to which lifetimes are averaged where
-    the living are counted [step].
+    Args:
+        inputs: with the worlds that there are.
+        conditions: of the study.
+        responses: what is measured of each world.
+
+    Returns:
+        Columns arm (the condition's label), seed, steps, died_out, one per response, and until, the age up to which
+        lifetimes are averaged where the living are counted [step].
     """
     common = common_to(world for condition in conditions for world in inputs.worlds.get(condition.label, ()))
     return [
@@ -51,7 +57,12 @@ def shown_interval(values: Sequence[float | None], response: Response | None = N
 
 
 def read_change(before: str, after: str) -> str:
-    """How the rows of `change` are to be read."""
+    """How the rows of `change` are to be read.
+
+    Args:
+        before: label of the condition that the change is against.
+        after: label of the condition that is changed.
+    """
     return (
         f"Means over worlds; change: {after} against {before}, seed by seed, as a difference or, for lifetimes and "
         "rates of food, a ratio (then all means are geometric); its 95 % interval is Student's t over seeds, from "
@@ -88,7 +99,13 @@ def change(rows: Sequence[dict[str, Any]], response: Response, before: str, afte
 
 
 def missing_note(inputs: ItemInputs, conditions: Sequence[Condition], scale: Scale) -> str:
-    """Names conditions without worlds, worlds that reach less far than the study's scale, and those that died out."""
+    """Names conditions without worlds, worlds that reach less far than the study's scale, and those that died out.
+
+    Args:
+        inputs: with the worlds that there are.
+        conditions: of the study.
+        scale: how many worlds it wants, and how long.
+    """
     parts = [missing(conditions, inputs)]
     worlds = [(condition.label, world) for condition in conditions for world in inputs.worlds.get(condition.label, ())]
     short = [world.last_step for _, world in worlds if world.extinct_step is None and world.last_step < scale.steps]

@@ -76,6 +76,10 @@ class Gathered:
 def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run], list[str]]:
     """The runs in a folder that hold worlds of the settings that are needed, from their beginning on.
 
+    Args:
+        folder: whose subfolders are searched.
+        wanted: settings with their seeds.
+
     Returns:
         The runs by name, and what is wrong with folders that hold a run that cannot be read.
     """
@@ -94,7 +98,12 @@ def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run]
 
 
 def gather(request: Request, folder: Path) -> Gathered:
-    """Reads what there is of the worlds that a request needs; what is damaged is left out and named."""
+    """Reads what there is of the worlds that a request needs; what is damaged is left out and named.
+
+    Args:
+        request: the items, with their scale.
+        folder: that holds the runs.
+    """
     wanted = needs(request)
     runs, faults = find_runs(folder, wanted)
     damaged = {run.path.name: run.damaged_parts() for run in runs}

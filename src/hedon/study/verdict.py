@@ -81,6 +81,11 @@ def verdicts(
 
     A condition is what a claim is about if its settings are those of the claim's preset, with any fidelity,
     and nothing else is changed. Two conditions are compared if their fidelity is the same.
+
+    Args:
+        worlds: of any settings.
+        claims: about one condition each.
+        orders: claims about two conditions each.
     """
     groups = by_condition(worlds)
     found = [
@@ -100,7 +105,13 @@ def verdicts(
 
 
 def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
-    """Applies a claim's rule to worlds of one condition."""
+    """Applies a claim's rule to worlds of one condition.
+
+    Args:
+        claim: with its rule.
+        condition: its name, for the verdict.
+        worlds: of that condition, one or more.
+    """
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
     used, shortfall, remarks = _asked(claim, worlds)
@@ -121,7 +132,13 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
 
 
 def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> Verdict:
-    """Applies the rule of a claim about two conditions to worlds of both."""
+    """Applies the rule of a claim about two conditions to worlds of both.
+
+    Args:
+        order: the claim, with its rule.
+        first: worlds of the first condition, one or more.
+        second: worlds of the second condition, one or more.
+    """
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
         used, shortfall, said = _asked(order, worlds)
@@ -142,7 +159,17 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
 
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
-    """Where an interval lies: within the region, outside of it, or across its border (or without bounds)."""
+    """Where an interval lies: within the region, outside of it, or across its border (or without bounds).
+
+    Args:
+        low: bound of the interval; NaN where it has none.
+        high: the other bound.
+        region_low: bound of the region in which the claim holds.
+        region_high: the other bound.
+
+    Returns:
+        `HOLDS`, `FAILS` or `UNDECIDED`.
+    """
     if region_low < low and high < region_high:
         return HOLDS
     if high < region_low or low > region_high:

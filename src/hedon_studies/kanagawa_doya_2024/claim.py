@@ -101,7 +101,12 @@ class Claim:
 
 
 def score(weight: str, world: WorldRecord) -> float | None:
-    """A weight's score among neutral genes of the same pedigree; None without a whole pedigree."""
+    """A weight's score among neutral genes of the same pedigree; None without a whole pedigree.
+
+    Args:
+        weight: a genome column.
+        world: a world with its agents.
+    """
     return next((found.score for found in standard_drift(world) if found.weight == weight), None)
 
 

@@ -41,7 +41,12 @@ Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
 
 
 def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Drifts:
-    """All genes of all worlds of some conditions."""
+    """All genes of all worlds of some conditions.
+
+    Args:
+        inputs: with the worlds that there are.
+        conditions: whose worlds are read.
+    """
     return {
         condition.label: [
             (world.seed, found)

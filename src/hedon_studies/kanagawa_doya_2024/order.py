@@ -61,7 +61,17 @@ class Order:
 def compare(
     scale: Scale, values: NDArray[np.float64], others: NDArray[np.float64], level: float = LEVEL
 ) -> tuple[float, float, float]:
-    """The comparison of two groups with its interval; two values or more in each, above 0 for a "ratio"."""
+    """Compares two groups, with an interval; two values or more in each, above 0 for a "ratio".
+
+    Args:
+        scale: "difference" of means, "ratio" of geometric means, or "spread", a ratio of standard deviations.
+        values: first group, (n,).
+        others: second group, (m,).
+        level: of confidence.
+
+    Returns:
+        The comparison, lower and upper bound.
+    """
     if scale == "spread":
         return spread_ratio_interval(values, others, level)
     if scale == "ratio":

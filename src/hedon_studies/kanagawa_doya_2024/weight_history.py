@@ -19,7 +19,14 @@ _READ = (
 def draw_courses(
     name: str, question: str, conditions: Sequence[Condition], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each."""
+    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each.
+
+    Args:
+        name: of the figure.
+        question: its title.
+        conditions: a row for each.
+        inputs: with the worlds that there are.
+    """
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:
