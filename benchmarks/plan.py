@@ -96,7 +96,7 @@ def make_plan(
         ConfigError: There is no such preset or file, or it is wrong.
     """
     load_config(preset)
-    known = tuple(_engine.backend.kernel_names())
+    known = tuple(_engine.kernel.kernel_names())
     if kernel and kernel not in known:
         near = nearest(kernel, known)
         hint = f"; did you mean {near}?" if near else ""

@@ -26,11 +26,11 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     views = [_view_of(world, index) for index in chosen]
     casts = 10 if plan.quick else CASTS
     for kernel in plan.kernels:
-        _check(plan, world, chosen, [_engine.backend.cast_rays(kernel, *view) for view in views], kernel)
+        _check(plan, world, chosen, [_engine.kernel.cast_rays(kernel, *view) for view in views], kernel)
 
     def cast(kernel: str) -> None:
         for view in views:
-            _engine.backend.cast_rays(kernel, *view, casts)
+            _engine.kernel.cast_rays(kernel, *view, casts)
 
     times = interleave({kernel: lambda k=kernel: cast(k) for kernel in plan.kernels}, plan.repeats)
     circles = float(np.mean([len(view[0]) for view in views]))

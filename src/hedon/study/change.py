@@ -79,16 +79,16 @@ def change(rows: Sequence[dict[str, Any]], response: Response, before: str, afte
         before: label of the condition that the change is against.
         after: label of the condition that is changed.
     """
-    by_arm = {
+    by_condition = {
         label: {row["seed"]: row[response.name] for row in rows if row["arm"] == label} for label in (before, after)
     }
-    means = {label: shown_interval(list(values.values()), response).mean for label, values in by_arm.items()}
+    means = {label: shown_interval(list(values.values()), response).mean for label, values in by_condition.items()}
     if all(mean is None for mean in means.values()):
         return
     changes = [
         response.scaled(value) - response.scaled(old)
-        for seed, value in by_arm[after].items()
-        if value is not None and (old := by_arm[before].get(seed)) is not None
+        for seed, value in by_condition[after].items()
+        if value is not None and (old := by_condition[before].get(seed)) is not None
     ]
     found = shown_interval(changes)
     low, high = (found.low, found.high) if response.sure else (None, None)

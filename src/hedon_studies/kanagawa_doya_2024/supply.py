@@ -17,20 +17,20 @@ from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.figure.supply import Eater, draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
 
-CONDITIONS = ("small", "baseline", "centered")
+PRESETS = ("small", "baseline", "centered")
 """The baseline, and the two in which the paper's agents live in plenty."""
 CORRECTED, GROWTH, RELEASED = "corrected", "growth", "released"
 SCALE = Scale((1, 2), 1_024_000)
 
 
-def _arms(preset: str) -> Iterator[Condition]:
+def _conditions(preset: str) -> Iterator[Condition]:
     yield Condition(f"{preset}, {CORRECTED}", preset, fidelity="corrected")
     yield Condition(f"{preset}, {GROWTH}", preset, (FACTORS["growth"],), fidelity="corrected")
     yield Condition(f"{preset}, {RELEASED}", preset, fidelity="released")
 
 
 RULES = (CORRECTED, GROWTH, RELEASED)
-CONDITIONS = tuple(condition for preset in CONDITIONS for condition in _arms(preset))
+CONDITIONS = tuple(condition for preset in PRESETS for condition in _conditions(preset))
 
 _NOTE = (
     "grows: food that grows per step; eaten_share: how much of it was eaten; eaten: foods per step lived; both in the "
@@ -85,7 +85,7 @@ def _eaters(rows: list[dict[str, Any]]) -> list[Eater]:
 
 
 def _rates() -> dict[str, float | None]:
-    return {preset: PAPER[preset].food_per_step for preset in CONDITIONS}
+    return {preset: PAPER[preset].food_per_step for preset in PRESETS}
 
 
 def _supplies(inputs: ItemInputs) -> list[float]:

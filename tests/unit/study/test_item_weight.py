@@ -63,7 +63,7 @@ def test_each_arm_shows_its_own_agents_on_the_same_axes(five: list[WorldRecord])
         assert sorted(points[:, 1]) == pytest.approx(sorted(agents["w_action"]))
 
 
-def test_the_axes_reach_as_far_as_the_agents_of_the_widest_arm(five: list[WorldRecord]) -> None:
+def test_the_axes_reach_as_far_as_the_agents_of_the_widest_condition(five: list[WorldRecord]) -> None:
     agents = five[0].agents.with_columns(w_action=pl.lit(7.0, pl.Float32))
     _, figure = draw("weights-sizes", small=five[1:2], large=[dataclasses.replace(five[0], agents=agents)])
     assert len(panels(figure)) == 2
@@ -80,7 +80,7 @@ def test_a_panel_names_its_arm_its_worlds_and_those_that_died_out(five: list[Wor
     assert f"1 world\ndied out at step {five[2].extinct_step:,}" in found
 
 
-def test_a_seed_has_the_same_color_in_each_arm(five: list[WorldRecord]) -> None:
+def test_a_seed_has_the_same_color_in_each_condition(five: list[WorldRecord]) -> None:
     _, figure = draw("weights-sizes", small=five[1:2], baseline=five[:2])
     small, baseline = (axes.collections[0] for axes in panels(figure))
     (color,) = np.unique(np.asarray(small.get_facecolor()), axis=0)
