@@ -1,8 +1,8 @@
 /// Changes of a world by hand, between two steps: somebody or something is put into it, or taken out of it.
 ///
 /// An added agent is like a founder: it has a new network, a genome drawn for its id, and a founder's energy, which the
-/// ledger counts as such. An agent that is taken out counts as dead of age and energy in records. The world then goes on
-/// by its own rules, but it is no longer what its config and seed give.
+/// ledger counts as such. An agent that is taken out counts as dead of age and energy in records. The world then goes
+/// on by its own rules, but it is no longer what its config and seed give.
 #pragma once
 
 #include <cstdint>

@@ -130,8 +130,8 @@ HEDON_FN void settle_one_by_one(World& world, Claims& claims) {
   }
 }
 
-/// Settles claims where each holds: all are judged by what agents have before anyone eats, so no order matters. An agent
-/// that is eaten eats too, and dies with what it gained.
+/// Settles claims where each holds: all are judged by what agents have before anyone eats, so no order matters. An
+/// agent that is eaten eats too, and dies with what it gained.
 HEDON_FN void settle_all_at_once(World& world) {
   const StepScratch& scratch = world.scratch;
   const auto each_claim = [&](auto&& visit) {
@@ -147,8 +147,8 @@ HEDON_FN void settle_all_at_once(World& world) {
   each_claim([&](int32_t eater, int32_t prey, double gained) { feed_with(world, eater, prey, gained); });
 }
 
-/// Who eats whom in this step. An agent that starves in it neither eats nor is eaten. If several eat one agent, one gets
-/// it, by a draw, or each in full.
+/// Settles who eats whom in this step. An agent that starves in it neither eats nor is eaten. If several eat one agent,
+/// one gets it, by a draw, or each in full.
 HEDON_FN void hunt(World& world) {
   const StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;

@@ -1,5 +1,5 @@
-/// Rules of the caller: functions that compute for all agents of a species at once what they are paid, or how likely they
-/// die or breed.
+/// Rules of the caller: functions that compute for all agents of a species at once what they are paid, or how likely
+/// they die or breed.
 #pragma once
 
 #include <cmath>

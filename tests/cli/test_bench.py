@@ -120,6 +120,6 @@ def test_the_command_that_measured_before_names_what_does_now():
     answer = subprocess.run(["hedon", "bench", "world"], capture_output=True, text=True, check=False)
     assert answer.returncode == 2
     assert answer.stderr == (
-        "hedon: there is no command 'bench': the benchmarks are no part of the package any more: "
+        "hedon: there is no command 'bench': the benchmarks are not in the package any more: "
         "call `uv run python -m benchmarks` in a checkout\n"
     )

@@ -12,7 +12,7 @@ export interface Source {
   readonly last: number;
   readonly lives: Lives;
   readonly series: Series;
-  /** The moments at or before `step` and after it, where they are known; asks for what is not. */
+  /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
   agentProbe(): AgentProbe | undefined;
   status(): string;

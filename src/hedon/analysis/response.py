@@ -150,7 +150,7 @@ RESPONSES = (
     Response("energy", "mean energy, last tenth", _energy),
     Response("extinct", "extinct", lambda w, _: float(w.extinct_step is not None), sure=False),
 )
-"""Of a baseline world; those of weights are means over the 5000 agents born last."""
+"""Responses of a baseline world; those of weights are means over the 5000 agents born last."""
 
 
 def _food_agent(world: WorldRecord) -> float | None:

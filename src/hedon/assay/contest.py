@@ -52,7 +52,7 @@ class Lines:
 
     @property
     def share(self) -> Floats:
-        """Of the first group among the living, (times,)."""
+        """The share of the first group among the living, (times,)."""
         return self.count[:, 0] / self.count.sum(axis=1)
 
 
@@ -150,7 +150,7 @@ def measure_contest(run: Run, groups: tuple[str, str]) -> Contest:
     config = worlds[0].config
     founders = load_founders(run.path, config)
     if founders is None:
-        raise AssayError(f"{run.path}: has no table of founders, so it is no contest")
+        raise AssayError(f"{run.path}: has no table of founders, so it is not a contest")
     steps = max(run.manifest.steps_done)
     lines = [world_lines(world.agents, world.seed, _members(founders, world, groups[0]), steps) for world in worlds]
     return estimate(groups, lines, config, steps)

@@ -69,7 +69,7 @@ def read_ends(path: Path, config: Config) -> list[End]:
         except (OSError, ValueError) as error:
             raise AssayError(f"--ends {name}: cannot be read: {error}") from None
         if not isinstance(content, dict):
-            raise AssayError(f"--ends {name}: is no summary.json and no reproduction.json")
+            raise AssayError(f"--ends {name}: is neither a summary.json nor a reproduction.json")
         ends = _summary_ends(content, path, config) if "worlds" in content and "tables" not in content else []
         ends = ends or _reproduction_ends(content, path, config)
     if not ends:

@@ -1,7 +1,7 @@
 """Relative fitness as a function of two genes: a quadratic and a smooth surface, with intervals over worlds.
 
 The quadratic surface is ω = c + β·z + ½ zᵀΓz (Lande & Arnold 1983). The smooth one is a tensor product of cubic
-B-splines with a penalty on second differences of its coefficients (Eilers & Marx 1996): where the data say no more, it
+B-splines with a penalty on second differences of its coefficients (Eilers & Marx 1996): where the data show no more, it
 is a twisted plane. Its smoothness has the least generalized cross-validation. Both are fitted to deviations from the
 means of each world, so that worlds may differ, and are placed so that the mean over the founders is 1.
 """

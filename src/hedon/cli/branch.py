@@ -18,14 +18,14 @@ def branch(
     at: Annotated[int | None, typer.Option(help="Step of one of the run's checkpoints; by default the newest.")] = None,
     steps: Annotated[
         int | None,
-        typer.Option(help="Total steps of each world; by default as the old run.", min=1, max=MAX_STEPS),
+        typer.Option(help="Total steps of each world; by default as in the old run.", min=1, max=MAX_STEPS),
     ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
     threads: Threads = 0,
     frames: Annotated[
-        int | None, typer.Option(help="Save all positions every N steps; by default as the old run.", min=0)
+        int | None, typer.Option(help="Save all positions every N steps; by default as in the old run.", min=0)
     ] = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:

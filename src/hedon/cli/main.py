@@ -34,7 +34,7 @@ ADDRESSES = 2_000_000_000
 """Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
 
 GONE = {
-    ("bench",): "the benchmarks are no part of the package any more: call `uv run python -m benchmarks` in a checkout",
+    ("bench",): "the benchmarks are not in the package any more: call `uv run python -m benchmarks` in a checkout",
     ("demography",): "it is `hedon forecast` now",
     ("assay", "start"): "it is `hedon assay stability` now",
 }

@@ -32,9 +32,9 @@ class EnergyLevel:
         energy: [energy].
         lifetime: mean age at death [step].
         r0: children tried in a whole life; those that find a place are fewer.
-        refusal: share of them that may fail before a lineage shrinks, 1 − 1/r0; 0 where it shrinks anyhow.
+        refusal: share of them that may fail before a lineage shrinks, 1 − 1/r0; 0 where it shrinks in any case.
         population: agents in the arena at which that share of births fails: the number that room allows at this
-            energy; the capacity where more would find places, NaN where the lineage shrinks anyhow.
+            energy; the capacity where more would find places, NaN where the lineage shrinks in any case.
     """
 
     energy: float

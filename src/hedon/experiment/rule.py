@@ -213,7 +213,7 @@ def pinned(config: Config, found: Sequence[Rule]) -> Config:
 
 
 def rules_beside(source: str | Path) -> tuple[RuleSource, ...]:
-    """The texts that the run keeps whose config a file is; none if it is no run's."""
+    """The texts of rules that a run keeps, from the path of its config; none if no run has this file."""
     manifest = Path(source).parent / MANIFEST
     return load_manifest(manifest.parent).rules if Path(source).name == CONFIG and manifest.is_file() else ()
 

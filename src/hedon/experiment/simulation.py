@@ -41,7 +41,7 @@ class Simulation:
         seeds: One world per seed, each in [0, 2^64).
         threads: Threads to use; 0 for all processors that this process may use. Changes no result.
         backend: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
-            empty for what the environment variable HEDON_BACKEND names, or else the best instruction set.
+            empty for what the environment variable HEDON_BACKEND names, otherwise the best instruction set.
         rules: Texts of the rules that the config is pinned to, such as `RunPlan.rules`; all others are read from their
             files.
 

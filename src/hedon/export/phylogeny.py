@@ -46,7 +46,7 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
         agents = agents.filter(pl.col("species") == species) if run.columns.several else agents
     gaps = genealogy(agents).gaps
     if gaps:
-        raise ExportError(f"{gaps} agents have a parent of whom there is no record: a part of the run is missing")
+        raise ExportError(f"the parents of {gaps} agents are not recorded: a part of the run is missing")
     return agents
 
 

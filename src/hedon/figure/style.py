@@ -266,4 +266,4 @@ def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, s
 
 
 _OTHER_COLORS = ("#b8322a", "#3a5fa8", "#7a4fa3", "#b07d1a")
-"""Of weights that are neither for a food nor for action."""
+"""Colors of weights that are neither for a food nor for action."""

@@ -223,7 +223,7 @@ def _is_beyond(names: Sequence[str], reach: float) -> pl.Expr:
 
 
 def _reach(group: WeightGroup) -> float:
-    """Half the range of the axes: room for nearly all agents, but none for what no agent has."""
+    """Half the range of the axes: room for nearly all agents, and no more."""
     if group.agents.is_empty():
         return _MIN_HALF_RANGE
     weights = np.abs(group.agents.select(group.weights).to_numpy())

@@ -15,7 +15,7 @@ from hedon.figure.style import INK, MUTED, PALE, new_figure, styled
 from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"
-"""Of agents where no color stands for their energy."""
+"""Color of agents where no color stands for their energy."""
 OBSTACLE_COLOR = "#c9a26b"
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"

@@ -22,7 +22,7 @@ class RunJob:
 
     @property
     def folder(self) -> Path:
-        """Of the run."""
+        """The run's folder."""
         return self.plan.out
 
     @property

@@ -18,12 +18,12 @@ class Job(Protocol):
 
     @property
     def folder(self) -> Path:
-        """Of its run."""
+        """The folder of its run."""
         ...
 
     @property
     def threads(self) -> int:
-        """That it can use; the last one of several gets all that are free."""
+        """Most threads that it can use; the last job of several gets all that are free."""
         ...
 
     def make(self, threads: int, display: Display | None) -> str:

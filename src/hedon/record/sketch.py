@@ -9,11 +9,11 @@ import polars as pl
 from hedon.record.manifest import Manifest
 
 WIDTH, HEIGHT, EDGE = 460, 110, 16
-"""Of the figure, and what its edge takes for labels [px]."""
+"""Size of the figure, and the part at its edge for labels [px]."""
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#6b7884")
-"""Of the worlds, in turn: Okabe & Ito (2008)."""
+"""Colors of the worlds, in turn: Okabe & Ito (2008)."""
 DASHES = ("", "6 3", "2 3", "6 3 2 3")
-"""Of the species of a world, in turn."""
+"""Colors of the species of a world, in turn."""
 
 
 def status_line(manifest: Manifest) -> str:

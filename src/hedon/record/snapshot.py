@@ -135,7 +135,7 @@ def load_snapshot(folder: Path) -> Snapshot | None:
 
 
 def _require_drawable(snapshot: Snapshot) -> None:
-    """Refuses what no world is: numbers that are not finite, indices of nothing, names that are no text."""
+    """Refuses what no world has: numbers that are not finite, indices out of range, names that are not text."""
     for name in _ARRAYS:
         if not np.isfinite(getattr(snapshot, name)).all():
             raise ValueError(f"{name} has numbers that are not finite")

@@ -62,7 +62,7 @@ def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
-    """A page from one of the templates; whatever a template prints is escaped, but for what it calls `verbatim`.
+    """A page from one of the templates; everything that a template prints is escaped, except what it marks `verbatim`.
 
     Args:
         template: A file of the folder `template`, for HTML if it ends with .html.j2.

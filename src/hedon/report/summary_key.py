@@ -38,7 +38,7 @@ _END: dict[str, str] = {
 }
 
 RUN_KEYS: dict[str, str] = _BEGIN | MEAN_KEYS | _END
-"""Of a run with one species."""
+"""Keys of a run with one species."""
 
 SEVERAL_KEYS: dict[str, str] = {
     **_BEGIN,
@@ -48,7 +48,7 @@ SEVERAL_KEYS: dict[str, str] = {
     "species": "by name: " + ", ".join(f"`{name}`" for name in MEAN_KEYS) + ", each of this species alone",
     **_END,
 }
-"""Of a run with several species."""
+"""Keys of a run with several species."""
 
 HUNT_KEYS: dict[str, str] = {
     "prey_per_step": "worlds' `prey_per_step` as mean and interval [1/step]",
@@ -95,7 +95,7 @@ FARE_KEYS: dict[str, str] = {
 """How one species fares in a world."""
 
 WORLD_KEYS: dict[str, str] = _WORLD | FARE_KEYS
-"""Of a world with one species."""
+"""Keys of a world with one species."""
 
 WORLD_SEVERAL_KEYS: dict[str, str] = {
     **_WORLD,
@@ -105,7 +105,7 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
     "`births_failed_space`, `eaten`",
     "species": "by name: " + ", ".join(f"`{name}`" for name in FARE_KEYS) + ", each of this species alone",
 }
-"""Of a world with several species."""
+"""Keys of a world with several species."""
 
 CAUSE_KEYS: dict[str, str] = {
     "deaths_starved": "agents that starved",

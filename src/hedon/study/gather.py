@@ -138,7 +138,7 @@ def _frames(needed: Mapping[str, RunRequirement], runs: Iterable[Run]) -> dict[t
 
 
 def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
-    """Per setting that is to be pictured the first state found in which somebody lives, or else any."""
+    """For each setting with a picture, the first state in which somebody lives, otherwise any."""
     wanted = {
         digest(condition.config(request.fidelity))
         for item in request.items

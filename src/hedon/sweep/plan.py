@@ -109,7 +109,7 @@ def plan_sweep(file: SweepFile) -> SweepPlan:
 
 
 def write_plan(file: SweepFile, store: Store) -> SweepPlan:
-    """Writes the plan, so that it needs its file no more; nothing where it is there already.
+    """Writes the plan, so that the sweep needs its file no longer; does nothing if it is there already.
 
     Configs come first and the plan last: where there is a plan, all of it is there.
 
@@ -125,7 +125,7 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     if before is not None:
         if before != plan.text().encode():
             raise SweepError(
-                f"{store.location} holds another sweep than {file.name}.toml asks for: give another place with --out, "
+                f"{store.location} holds another sweep than that of {file.name}.toml: give another place with --out, "
                 f"or go on with that one by `hedon sweep resume {store.location}`"
             )
         return plan

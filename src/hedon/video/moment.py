@@ -125,7 +125,7 @@ def open_footage(folder: Path, seed: int | None = None) -> Footage:
 
     Raises:
         VideoError: the run has no frames, or no such world.
-        RecordError: it is no run, or a part of its frames is damaged.
+        RecordError: it is not a run, or a part of its frames is damaged.
     """
     run = open_run(folder)
     seeds = run.manifest.seeds

@@ -35,7 +35,7 @@ class RunIndex:
             each world there, or None; or `damaged` where it cannot be read.
 
         Raises:
-            RecordError: It is no run, or it holds a symbolic link.
+            RecordError: It is not a run, or it holds a symbolic link.
         """
         run = open_run(self.folder)
         manifest = run.manifest

@@ -4,7 +4,7 @@ The rules were written before any run of full length, but after short assays and
 
 Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992. A weight is
 read as its *score* in its world: where its mean ends among neutral genes of the same pedigree, in standard deviations
-of drift. So a world in which weights wander far has no more say than others. The claims are one family: each interval
+of drift. So a world in which weights wander far counts no more than others. The claims are one family: each interval
 is at the level that makes one false verdict among all of them, by Bonferroni's inequality, come up in at most 5 %.
 Worlds where a species died out are left out: without predators nobody selects fear.
 """

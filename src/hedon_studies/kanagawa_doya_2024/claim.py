@@ -39,7 +39,7 @@ SAME_FACTOR = 1.5
 MOST = 0.5
 """More than this share is most."""
 SOME = (0.05, 0.95)
-"""Of the worlds some die out and some do not if the share lies between these."""
+"""Some worlds die out and some do not if the share of extinct ones lies between these."""
 OLD_SHARE = 0.05
 """The lifespan of agents is read as the age that this share of those with full energy reaches."""
 

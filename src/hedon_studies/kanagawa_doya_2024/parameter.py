@@ -71,7 +71,7 @@ def _conditions(fidelity: str) -> Iterator[Row]:
         like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
         for path, setting, value in leaves(config):
             kind = ".".join(path.split(".")[:2])
-            before = base.get(path.replace(kind, like.get(kind, kind), 1), value)  # names are no settings
+            before = base.get(path.replace(kind, like.get(kind, kind), 1), value)  # names are not settings
             if before == value:
                 continue
             yield {

@@ -1,4 +1,4 @@
-"""Who was born when: birth cohorts, and the genomes in them."""
+"""When was each agent born? Birth cohorts, and the genomes in them."""
 
 from collections.abc import Sequence
 

@@ -23,7 +23,7 @@ class Genealogy:
     Attributes:
         parent: position of the parent, −1 for founders and for those whose parent is not recorded, (n,).
         birth, death: [step], (n,); a death of `ALIVE` for those who live.
-        gaps: agents that have a parent of whom there is no record: a damaged part is missing.
+        gaps: agents whose parent is not recorded: a damaged part is missing.
     """
 
     parent: Ints
@@ -38,7 +38,7 @@ class Genealogy:
 
     @property
     def alive(self) -> Flags:
-        """Who lives at the end of the records, (n,)."""
+        """Which agents live at the end of the records, (n,)."""
         return self.death == ALIVE
 
 

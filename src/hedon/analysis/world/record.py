@@ -16,7 +16,7 @@ from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
 SEED = 20240717
-"""Of the bootstrap and the neutral walks, so that the same records give the same numbers."""
+"""Seed of the bootstrap and the neutral walks, so that the same records give the same numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class WorldRecord:
         return int(steps[known == self.population["alive"].to_numpy()].max(initial=0))
 
     def until(self, step: int) -> "WorldRecord":
-        """The world as its records would be if it had ended earlier, but for what the living had done by then.
+        """The world as its records would be if it had ended earlier, except for what the living had done by then.
 
         Agents that die later live on, with `death_step` missing. What such agents had eaten, spent, borne and so on by
         that step was not recorded, so it is missing too.

@@ -112,7 +112,7 @@ def _needed(columns: Sequence[_Column]) -> int:
 
 
 def _widths(columns: Sequence[_Column], width: int) -> list[int]:
-    """A width per column: all need no more than the table's, but for a terminal of a few letters."""
+    """A width per column: all need no more than the table's, except on a terminal of a few letters."""
     widths = [column.least for column in columns]
     spare = width - _needed(columns)
     while spare > 0 and any(own < column.most for own, column in zip(widths, columns, strict=True)):
