@@ -4,11 +4,13 @@ import json
 import platform
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 import pytest
 from cuda_emulation import emulated as emulated
+from project_files import ROOT
 from sweep_case import assert_same_table, sweep_file, table_of
 
 from hedon.check.run import check_run
@@ -88,12 +90,14 @@ def test_commands_take_the_device_as_the_processor(emulated: str, tmp_path: Path
 
 
 def test_benchmarks_measure_a_device_and_compare_its_bits(emulated: str, tmp_path: Path):
-    answer = cli("bench", "--device", emulated, "--quick", "--json", tmp_path / "bench.json")
+    command = [sys.executable, "-m", "benchmarks", "--quick"]
+    given = {"cwd": ROOT, "capture_output": True, "text": True, "check": False}
+    answer = subprocess.run([*command, "--device", emulated, "--json", str(tmp_path / "bench.json")], **given)
     assert answer.returncode == 0, answer.stderr
     rows = json.loads((tmp_path / "bench.json").read_text())["parts"]["device"]
     assert [(row["worlds"], row["devices"]) for row in rows] == [(1, 1), (2, 2)]
     assert all(row[f"{kernel}_seconds"] > 0 for row in rows for kernel in ("step", "learn", "close", "copying"))
-    wrong = cli("bench", "device")
+    wrong = subprocess.run([*command, "device"], **given)
     assert (wrong.returncode, "--device cuda" in wrong.stderr) == (2, True)
 
 
