@@ -26,6 +26,7 @@ MAX_DIGITS = 40
 
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
+Report = Annotated[bool, typer.Option(help="Write a report at the end; `hedon report` writes it at any time.")]
 
 
 class RunError(HedonError):
@@ -57,6 +58,7 @@ def run(
         typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "frozen" act by: networks of a run.'),
     ] = None,
     device: Annotated[str, typer.Option(help="What advances the worlds: cpu, or cuda for a CUDA device.")] = "cpu",
+    report: Report = True,
 ) -> None:
     """Run a condition, then write its report.
 
@@ -91,10 +93,10 @@ def run(
     act_by = None if networks is None else networks_from(networks, config)
     kept = rules_beside(source)
     plan = RunPlan(config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, kernel, kept)
-    conduct(plan, lambda display: run_plan(plan, display))
+    conduct(plan, lambda display: run_plan(plan, display), report=report)
 
 
-def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
+def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "", *, report: bool) -> None:
     """Prints what will be run, shows progress while `go` runs it, and reports; `begun` says where the run continues."""
     from hedon.cli.display.run import duration, make_display
     from hedon.record.schema import columns_of
@@ -116,8 +118,9 @@ def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str =
         console.print(f"Interrupted after step {done:,} of {plan.steps:,}; all results up to there are kept.")
         console.print(f"Continue with: hedon resume {folder}", soft_wrap=True)
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
-    show_report(plan.out, console)
-    console.print(f"Write the report again with: hedon report {folder}", soft_wrap=True)
+    if report:
+        show_report(plan.out, console)
+    console.print(f"Write the report{' again' if report else ''} with: hedon report {folder}", soft_wrap=True)
     unseen = "" if plan.frames else " (plots only: a run with --frames 64 also shows its agents)"
     console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
 
