@@ -57,7 +57,7 @@ def live(case: Case, folder: Path, kernel: str) -> tuple[str, Quantities]:
     for i, species in enumerate(simulation.config.agents.values()):
         if species.learning.policy == "external":
             slots = species.population.capacity
-            simulation.engine.command(i, np.tile(np.array([0.8, -0.3], np.float32), (1, slots, 1)))
+            simulation.engine.set_actions(i, np.tile(np.array([0.8, -0.3], np.float32), (1, slots, 1)))
     simulation.run(STEPS)
     world = simulation.worlds[0]
     return world.digest(), quantities(world)

@@ -26,8 +26,9 @@ def read_world(simulation: Simulation) -> World:
         here = foods["kind"] == k
         stocks[k].foods = list(zip(foods["x"][here].tolist(), foods["y"][here].tolist(), strict=True))
         assert world.view("food_stock.present")[k] == len(stocks[k].foods)
-    ghosts = [
-        (*(world.view(f"ghost.{name}")[i].item() for name in ("x", "y", "kind")),) for i in range(head["ghost_count"])
+    eaten_foods = [
+        (*(world.view(f"eaten_food.{name}")[i].item() for name in ("x", "y", "kind")),)
+        for i in range(head["eaten_food_count"])
     ]
     made = tuple(layouts(world.config).values())
     genes = [len(layout.genes) for layout in made]
@@ -43,7 +44,7 @@ def read_world(simulation: Simulation) -> World:
         meals=meals,
         vacancies=_vacancies(world, genes),
         newborns=_newborns(world, genes, numbers["births_in_window"]),
-        ghosts=ghosts,
+        eaten_foods=eaten_foods,
     )
 
 
@@ -54,8 +55,8 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
     for name in ("digestion", "ready_until"):
         if len(world.view(name)):
             columns[name] = world.view(name)[living].tolist()
-    if len(world.view("old_slot")):
-        columns["old_slot"] = (world.view("old_slot")[living] != 0).tolist()
+    if len(world.view("resident_slot")):
+        columns["resident_slot"] = (world.view("resident_slot")[living] != 0).tolist()
     agents = []
     memory = world.view("memory").reshape(len(world.view("alive")), -1)[living]
     kept = [species.reward.memory for species in world.config.agents.values()]
@@ -86,7 +87,7 @@ def _sums(world: Any) -> list[dict[str, float]]:
 
 def _vacancies(world: Any, genes: list[int]) -> list[list[Vacancy]]:
     genome = world.view("genome").reshape(len(world.view("alive")), -1).astype(float)
-    old, first, found = world.view("old_slot"), 0, []
+    old, first, found = world.view("resident_slot"), 0, []
     for s, (species, length) in enumerate(zip(world.config.agents.values(), genes, strict=True)):
         free = world.view("free")[first : first + world.view("free_count")[s]].tolist()
         found.append([Vacancy(genome[slot, :length], bool(len(old) and old[slot])) for slot in free])
@@ -155,8 +156,8 @@ def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: d
     deeds = []
     places = np.stack([view(f"physics.bodies.{name}")[slots] for name in ("x", "y", "angle")], axis=1).tolist()
     now = view("life.agent_id")[slots].tolist()
-    deaths = simulation.engine.head(0)["event_count"]
-    eaten = view("event.agent_id")[:deaths][view("event_cause")[:deaths] == CAUSES.index("eaten")]
+    deaths = simulation.engine.head(0)["death_log_count"]
+    eaten = view("death_log.agent_id")[:deaths][view("death_log_cause")[:deaths] == CAUSES.index("eaten")]
     for i, (slot, agent, place) in enumerate(zip(slots, before.agents, places, strict=True)):
         if now[i] != agent.agent_id:  # it died, and a newborn lies there
             place = [agent.x, agent.y, agent.angle]

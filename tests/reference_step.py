@@ -58,7 +58,7 @@ class Judge:
         seen = [self.sight(agent, row) for agent, row in zip(before.agents, observations, strict=True)]
         if before.step % 5 == 0:
             self.assert_observations(before, slots, observations)
-        params, command = world.view("params"), world.view("command").reshape(len(world.view("alive")), -1)
+        params, command = world.view("params"), world.view("external_action").reshape(len(world.view("alive")), -1)
         params = params[slots] if len(params) else np.zeros((len(slots), 0), np.float32)
         told = command[slots].tolist() if command.size else [(0.0, 0.0)] * len(slots)
         for agent, network in zip(before.agents, params, strict=True):
@@ -109,7 +109,7 @@ class Judge:
             poisoned=sum(agent.toxin > 1 for agent in before.agents),
             sated=sum(agent.nutrient == rules.of(agent).nutrient.capacity for agent in before.agents),
             empty=sum("nutrient" in rules.of(agent).holds and agent.nutrient == 0 for agent in before.agents),
-            ghosts=len(expected.world.ghosts),
+            eaten_foods=len(expected.world.eaten_foods),
             switched=sum(a.center != b.center for a, b in zip(before.stocks, expected.world.stocks, strict=True)),
             told=sum(rules.of(turn.agent).learning.policy == "external" and any(turn.deed.action) for turn in turns),
             passed=_overlaps(rules, before),
@@ -209,7 +209,7 @@ def command(simulation: Simulation) -> None:
     for s, species in enumerate(simulation.config.agents.values()):
         if species.learning.policy == "external" and step % 7 == 0:
             actions = np.random.default_rng(step).normal(size=(1, species.population.capacity, 2))
-            simulation.engine.command(s, actions.astype(np.float32))
+            simulation.engine.set_actions(s, actions.astype(np.float32))
 
 
 def _overlaps(rules: Rules, world: World) -> int:

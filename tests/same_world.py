@@ -24,7 +24,7 @@ MEASURED = ("x", "y", "angle", "genome", "distance", "force_left", "force_right"
 """What of an agent rounds in other ways than energy does."""
 EXACT = (
     *("agent_id", "species", "parent_id", "mate_id", "generation", "birth_step", "children", "eaten"),
-    *("digestion", "ready_until", "old_slot"),
+    *("digestion", "ready_until", "resident_slot"),
 )
 STORED = ("energy", "nutrient", "toxin", "birth_energy", "energy_gained", "energy_spent")
 assert {*MEASURED, *EXACT, *STORED, "memory"} == {each.name for each in fields(Agent)}
@@ -65,7 +65,7 @@ def assert_same_world(actual: World, expected: World, costs: float, force: float
     largest = 1 + np.abs(column(expected, "genome")).max(initial=0) ** 2
     assert_close(column(actual, "reward"), column(expected, "reward"), REWARD * largest, REWARD)
     for a, e in zip(actual.vacancies, expected.vacancies, strict=True):
-        assert [vacancy.old_slot for vacancy in a] == [vacancy.old_slot for vacancy in e]
+        assert [vacancy.resident_slot for vacancy in a] == [vacancy.resident_slot for vacancy in e]
         if late:
             for one, other in zip(a, e, strict=True):
                 assert_close(one.genome, other.genome, WEIGHT)
@@ -75,8 +75,8 @@ def assert_same_world(actual: World, expected: World, costs: float, force: float
     for a, e in zip(actual.newborns, expected.newborns, strict=True):
         if e.parent < 0:
             assert_close(a.genome, e.genome, WEIGHT)
-    ghosts = [np.sort(np.reshape(world.ghosts, (-1, 3)), 0) for world in (actual, expected)]
-    assert_close(ghosts[0], ghosts[1], PLACE)
+    eaten_foods = [np.sort(np.reshape(world.eaten_foods, (-1, 3)), 0) for world in (actual, expected)]
+    assert_close(eaten_foods[0], eaten_foods[1], PLACE)
     for a, e in zip(actual.stocks, expected.stocks, strict=True):
         assert (a.eaten, a.center, len(a.foods)) == (e.eaten, e.center, len(e.foods))
         assert a.number == pytest.approx(e.number, abs=1e-12)

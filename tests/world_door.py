@@ -130,7 +130,7 @@ def _drive(simulation: Simulation) -> None:
             actions = np.tile(
                 np.array([0.8, -0.3], np.float32), (len(simulation.worlds), species.population.capacity, 1)
             )
-            simulation.engine.command(i, actions)
+            simulation.engine.set_actions(i, actions)
 
 
 def _same(one: Simulation, other: Simulation, what: str) -> None:

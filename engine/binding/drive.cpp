@@ -23,26 +23,26 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
 
 }  // namespace
 
-void command(PythonSimulation& self, int32_t species, TableIn actions) {
+void set_actions(PythonSimulation& self, int32_t species, TableIn actions) {
   need_rows(self, species, actions);
   if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
-  self.get().command(species, actions.data());
+  self.get().set_actions(species, actions.data());
 }
 
-void show(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
+void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
   need_rows(self, species, observation);
   need_rows(self, species, reward);
   need_rows(self, species, agent_id);
   const int32_t entries = self.get().shape().of[species].network.observation.size();
   if (observation.shape(2) != static_cast<size_t>(entries))
     throw nb::value_error("observations must have as many columns as there are entries");
-  self.show(species, {observation.data(), reward.data(), agent_id.data()});
+  self.read_observations(species, {observation.data(), reward.data(), agent_id.data()});
 }
 
-void pay(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id) {
+void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id) {
   need_rows(self, species, reward);
   need_rows(self, species, agent_id);
-  self.show(species, {nullptr, reward.data(), agent_id.data()});
+  self.read_observations(species, {nullptr, reward.data(), agent_id.data()});
 }
 
 nb::object meals_of(PythonSimulation& self, int32_t species) {

@@ -16,13 +16,13 @@ using RowsOut = nanobind::ndarray<float, nanobind::ndim<2>, nanobind::c_contig, 
 using IdsOut = nanobind::ndarray<int32_t, nanobind::ndim<2>, nanobind::c_contig, nanobind::device::cpu>;
 
 /// Tells the agents of an external species what to do: (worlds, slots, 2). ValueError: an array has another shape.
-void command(PythonSimulation& self, int32_t species, TableIn actions);
+void set_actions(PythonSimulation& self, int32_t species, TableIn actions);
 
 /// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …).
-void show(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);
+void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);
 
 /// The same without what they sense.
-void pay(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id);
+void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id);
 
 /// What the agents of a species have eaten since the worlds began: (worlds, meals).
 nanobind::object meals_of(PythonSimulation& self, int32_t species);

@@ -88,7 +88,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
   const WorldConfig known = need_config(config);
   const std::vector<Segment> segments = to_segments(walls);
   const int used = count_threads(threads);
-  need(check_company(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
+  need(check_arguments(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
   need_memory(known, segments.size(), seeds.size(), used);
   const DeviceProgram* const program = device.empty() ? nullptr : need_device(device, known);
   simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
@@ -160,13 +160,13 @@ void PythonSimulation::run(int64_t steps) {
   }
 }
 
-void PythonSimulation::show(int32_t species, const Shown& out) {
+void PythonSimulation::read_observations(int32_t species, const ObservationOut& out) {
   Simulation& simulation = get();
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};
   const Released released;
-  if (out.observation == nullptr) return simulation.pay(species, out);
-  simulation.show(species, out);
+  if (out.observation == nullptr) return simulation.read_rewards(species, out);
+  simulation.read_observations(species, out);
 }
 
 /// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.

@@ -41,8 +41,9 @@ class PythonSimulation {
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
-  /// `Simulation::show`, or `pay` if there is no array of observations, with the interpreter lock released.
-  void show(int32_t species, const Shown& out);
+  /// `Simulation::read_observations`, or `read_rewards` if there is no array of observations, with the interpreter lock
+  /// released.
+  void read_observations(int32_t species, const ObservationOut& out);
 
   /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises
   /// KeyboardInterrupt. The worlds are then in a valid state, after fewer steps.

@@ -72,9 +72,10 @@ void restore(PythonSimulation& self, int index, const nb::dict& arrays) {
 /// The deaths that wait, the oldest first.
 std::vector<int64_t> waiting_rows(const World& world) {
   const WorldHead& head = world.head();
-  const int64_t waiting = std::clamp(head.event_count, 0, world.shape->events);
+  const int64_t waiting = std::clamp(head.death_log_count, 0, world.shape->death_log_rows);
   std::vector<int64_t> rows;
-  for (int64_t i = 0; i < waiting; ++i) rows.push_back(head.events_lost == 0 ? i : (head.events_lost + i) % waiting);
+  for (int64_t i = 0; i < waiting; ++i)
+    rows.push_back(head.death_log_lost == 0 ? i : (head.death_log_lost + i) % waiting);
   return rows;
 }
 
@@ -82,17 +83,18 @@ nb::dict take_rows(PythonSimulation& self, int index) {
   World& from = self.world(index);
   const WorldState& state = from.state;
   const std::vector<int64_t> rows = waiting_rows(from);
-  nb::dict out = columns(state.event.data, state.event_eaten.data, state.event_genome.data, rows, *from.shape);
+  nb::dict out =
+      columns(state.death_log.data, state.death_log_eaten.data, state.death_log_genome.data, rows, *from.shape);
   const auto column = [&](const Array<int32_t>& of) {
     std::vector<int32_t> values;
     for (const int64_t row : rows) values.push_back(of[row]);
     return copy_array(std::move(values), {rows.size()});
   };
-  out["species"] = column(state.event_species);
-  out["cause"] = column(state.event_cause);
-  if (from.shape->mating) out["mate_id"] = column(state.event_mate);
-  from.head().event_count = 0;
-  from.head().events_lost = 0;
+  out["species"] = column(state.death_log_species);
+  out["cause"] = column(state.death_log_cause);
+  if (from.shape->mating) out["mate_id"] = column(state.death_log_mate);
+  from.head().death_log_count = 0;
+  from.head().death_log_lost = 0;
   return out;
 }
 
@@ -262,8 +264,9 @@ void bind_simulation(nb::module_& module) {
            "Advances every world that is not over; releases the interpreter lock. Ctrl-C raises KeyboardInterrupt.")
       .def("take_rows", &take_rows, nb::arg("world"),
            nb::sig("def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
-           "Columns of the agents that died since the last call, the oldest first: the newest `event` rows of them. "
-           "`head` says before how many older ones are lost (`events_lost`).")
+           "Columns of the agents that died since the last call, the oldest first: the newest of them, as many as "
+           "`death_log` has rows. "
+           "`head` says before how many older ones are lost (`death_log_lost`).")
       .def("living_rows", &living_rows, nb::arg("world"),
            nb::sig("def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
            "Columns of the living, in the order of their ids.")
@@ -285,17 +288,19 @@ void bind_simulation(nb::module_& module) {
       .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"),
            "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
            "*records, double *answers).")
-      .def("command", &command, nb::arg("species"), nb::arg("actions"),
-           nb::sig("def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
+      .def("set_actions", &set_actions, nb::arg("species"), nb::arg("actions"),
+           nb::sig("def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
            "Tells the agents of an external species what to do from now on: (worlds, slots, 2).")
-      .def("show", &show, nb::arg("species"), nb::arg("observation"), nb::arg("reward"), nb::arg("agent_id"),
-           nb::sig("def show(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: "
-                   "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None"),
-           "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
-           "arrays of "
-           "(worlds, slots, …).")
-      .def("pay", &pay, nb::arg("species"), nb::arg("reward"), nb::arg("agent_id"),
-           nb::sig("def pay(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: "
+      .def(
+          "read_observations", &read_observations, nb::arg("species"), nb::arg("observation"), nb::arg("reward"),
+          nb::arg("agent_id"),
+          nb::sig("def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: "
+                  "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None"),
+          "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
+          "arrays of "
+          "(worlds, slots, …).")
+      .def("read_rewards", &read_rewards, nb::arg("species"), nb::arg("reward"), nb::arg("agent_id"),
+           nb::sig("def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: "
                    "numpy.typing.NDArray[numpy.int32]) -> None"),
            "The same without what they sense.")
       .def("meals", &meals_of, nb::arg("species"),

@@ -64,14 +64,15 @@ inline constexpr const char* ACTION_NORM_NAMES[] = {"max_force", "none"};
 
 /// What a reward is paid for, per step.
 enum class RewardInput : int32_t {
-  food,      ///< foods of kind `index` eaten; past the kinds, agents of a species
-  action,    ///< norm of the two forces, divided as `ActionNorm` says
-  see_mean,  ///< mean over the rays of the reading of sight channel `index`
-  see_max,   ///< the largest of them
-  smell,     ///< mean over the noses of what they smell of channel `index`
-  relief,    ///< by how much inner states came closer to their set points, in shares of their capacities
+  food,             ///< foods of kind `index` eaten; past the kinds, agents of a species
+  action,           ///< norm of the two forces, divided as `ActionNorm` says
+  see_mean,         ///< mean over the rays of the reading of sight channel `index`
+  see_max,          ///< the largest of them
+  smell,            ///< mean over the noses of what they smell of channel `index`
+  drive_reduction,  ///< by how much inner states came closer to their set points, in shares of their capacities
 };
-inline constexpr const char* REWARD_INPUT_NAMES[] = {"food", "action", "see_mean", "see_max", "smell", "relief"};
+inline constexpr const char* REWARD_INPUT_NAMES[] = {"food",    "action", "see_mean",
+                                                     "see_max", "smell",  "drive_reduction"};
 
 constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
 /// Whether an input needs what the agent observes.
@@ -89,7 +90,7 @@ enum class RewardFamily : int32_t {
 };
 inline constexpr const char* REWARD_FAMILY_NAMES[] = {"linear", "sinh", "scaled", "fed", "hungry", "by_age"};
 
-/// What an agent holds, in the order in which relief counts them.
+/// What an agent holds, in the order in which drives count them.
 enum InnerState : int32_t { ENERGY, NUTRIENT, TOXIN, INNER_STATES };
 
 /// One term of the reward: coef · weight · input.

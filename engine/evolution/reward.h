@@ -37,8 +37,9 @@ HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) 
   return mean ? sum / static_cast<float>(inputs.rays) : largest;
 }
 
-/// Distance of inner states from their set points, in shares of their capacities.
-HEDON_FN double need(const RewardConfig& config, const float* genome, const double* states, const double* capacity) {
+/// Drive: the distance of inner states from their set points, in shares of their capacities. Keramati and Gutkin
+/// (2014).
+HEDON_FN double drive(const RewardConfig& config, const float* genome, const double* states, const double* capacity) {
   double squared = 0.0, only = 0.0;
   int32_t count = 0;
   for (int32_t s = 0; s < INNER_STATES; ++s) {
@@ -50,10 +51,10 @@ HEDON_FN double need(const RewardConfig& config, const float* genome, const doub
   return count == 1 ? fabs(only) : sqrt(squared);
 }
 
-/// The need before this step's meals and costs less the need after them.
-HEDON_FN float relief(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
-  return static_cast<float>(need(config, genome, inputs.before, inputs.capacity) -
-                            need(config, genome, inputs.now, inputs.capacity));
+/// The drive before this step's meals and costs less the drive after them.
+HEDON_FN float drive_reduction(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
+  return static_cast<float>(drive(config, genome, inputs.before, inputs.capacity) -
+                            drive(config, genome, inputs.now, inputs.capacity));
 }
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
@@ -72,7 +73,7 @@ HEDON_FN double beyond(const RewardConfig& config, const float* genome, double v
 /// The weight of a term, from its genes.
 HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, const float* genome,
                          const RewardInputs& inputs) {
-  if (term.input == RewardInput::relief) return 1.0f;  // its gene is the set point
+  if (term.input == RewardInput::drive_reduction) return 1.0f;  // its gene is the set point
   const float w = genome[term.gene], second = genome[term.second_gene];
   switch (config.family) {
     case RewardFamily::linear:
@@ -104,8 +105,8 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
       for (int32_t n = 0; n < inputs.noses; ++n) sum += inputs.smelled[term.index * inputs.noses + n];
       return sum / static_cast<float>(inputs.noses);
     }
-    case RewardInput::relief:
-      return relief(config, genome, inputs);
+    case RewardInput::drive_reduction:
+      return drive_reduction(config, genome, inputs);
     case RewardInput::action:
       return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
   }

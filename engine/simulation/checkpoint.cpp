@@ -15,7 +15,7 @@ SavedExtent extent_of(const World& world) {
   SavedExtent extent{};
   extent.slots.assign(state.living.data, state.living.data + head.living_count);
   extent.free = free_slots(world);
-  extent.ghosts = head.ghost_count;
+  extent.eaten_foods = head.eaten_food_count;
   extent.newborns = state.newborn.count > 0 ? head.births_in_window : 0;
   for (int32_t f = 0; f < world.shape->foods; ++f) {
     if (state.physics.circles.present[f]) extent.foods.push_back(f);

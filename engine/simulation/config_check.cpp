@@ -282,8 +282,8 @@ std::string check_config(const WorldConfig& config) {
   return complaint.text;
 }
 
-std::string check_company(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,
-                          int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order) {
+std::string check_arguments(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,
+                            int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order) {
   Complaint complaint;
   const auto count = [&](const char* name, int64_t value, int64_t low, int64_t high) {
     complaint.need(value >= low && value <= high, name, static_cast<double>(value),

@@ -18,7 +18,7 @@ std::string check_config(const WorldConfig& config);
 /// The same for the arguments besides the config.
 /// walls        the first `outer_walls` of them make up the closed outer polygon
 /// slot_order   each slot once, or nothing
-std::string check_company(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,
-                          int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order);
+std::string check_arguments(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,
+                            int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order);
 
 }  // namespace hedon

@@ -123,7 +123,7 @@ void Device::list_pieces() {
   const auto add = [&](const auto& array, Kind kind, int64_t row) {
     const int64_t first = reinterpret_cast<const char*>(array.data) - base, bytes = laid_out_bytes(array);
     if (array.count == 0) return;
-    const bool joins = kind != Kind::events && !pieces_.empty() && pieces_.back().kind == kind &&
+    const bool joins = kind != Kind::death_log && !pieces_.empty() && pieces_.back().kind == kind &&
                        pieces_.back().first + pieces_.back().bytes == first;
     if (joins)
       pieces_.back().bytes += bytes;
@@ -133,13 +133,13 @@ void Device::list_pieces() {
   WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
     auto& field = world.state.*member;
     if constexpr (IsArray<std::remove_cvref_t<decltype(field)>>::value) {
-      const bool events = size.rows == Extent::events || size.rows == Extent::mating_events;
-      const int64_t rows = world.shape->events;
+      const bool log = size.rows == Extent::death_log || size.rows == Extent::mating_death_log;
+      const int64_t rows = world.shape->death_log_rows;
       const Kind kind = strcmp(name, "head") == 0 ? Kind::head
-                        : events                  ? Kind::events
+                        : log                     ? Kind::death_log
                         : is_large(size)          ? Kind::large
                                                   : Kind::small;
-      add(field, kind, events ? field.count / rows * static_cast<int64_t>(sizeof field[0]) : 0);
+      add(field, kind, log ? field.count / rows * static_cast<int64_t>(sizeof field[0]) : 0);
     } else {
       for_each_array(field, "", [&](const std::string&, auto& array) { add(array, Kind::small, 0); });
     }
@@ -172,13 +172,13 @@ void Device::copy_in(int index, bool all) {
   }
 }
 
-/// Copies the pieces of a kind. Of events, those rows that the head counts, so the head must be there.
+/// Copies the pieces of a kind. Of the death log, those rows that the head counts, so the head must be there.
 void Device::copy_out(int index, Kind kind) {
   for (const Piece& piece : pieces_) {
     if (piece.kind != kind) continue;
     int64_t bytes = piece.bytes;
-    if (kind == Kind::events)
-      bytes = piece.row * std::clamp(world(index).head().event_count, 0, world(index).shape->events);
+    if (kind == Kind::death_log)
+      bytes = piece.row * std::clamp(world(index).head().death_log_count, 0, world(index).shape->death_log_rows);
     if (bytes > 0) note(program_.copy_out(memory(index).data() + piece.first, home(index) + piece.first, bytes));
   }
 }
@@ -210,7 +210,7 @@ void Device::finish() {
   if (!complaint_.empty()) return;
   const Timer timer(seconds_.copying);
   for (int i = first_; i < last_; ++i) {
-    for (const Kind kind : {Kind::head, Kind::small, Kind::events}) copy_out(i, kind);
+    for (const Kind kind : {Kind::head, Kind::small, Kind::death_log}) copy_out(i, kind);
     fetched_[at(i)] = false;
   }
 }

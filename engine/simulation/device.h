@@ -113,16 +113,16 @@ class Device {
  private:
   /// Which arrays are copied together.
   enum class Kind : uint8_t {
-    head,    ///< the host may change it between any two runs
-    small,   ///< read after each run
-    events,  ///< the same, of which only the rows in use are copied
-    large    ///< networks and rollouts: copied when somebody wants them
+    head,       ///< the host may change it between any two runs
+    small,      ///< read after each run
+    death_log,  ///< the same, of which only the rows in use are copied
+    large       ///< networks and rollouts: copied when somebody wants them
   };
 
   /// A part of a world's memory.
   struct Piece {
     int64_t first, bytes;
-    int64_t row;  ///< bytes of a row of events
+    int64_t row;  ///< bytes of a row of the death log
     Kind kind;
   };
 

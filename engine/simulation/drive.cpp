@@ -12,18 +12,18 @@ namespace {
 constexpr int32_t SLOTS_AT_ONCE = 16;
 
 /// Writes what the agent in `slot` earned, and who is there now, into the row of the caller's arrays.
-void pay_agent(const World& world, int32_t slot, const Shown& out, int64_t row) {
+void read_reward(const World& world, int32_t slot, const ObservationOut& out, int64_t row) {
   int32_t& id = out.agent_id[row];
   out.reward[row] = id >= 0 ? world.state.reward[slot * int64_t{world.shape->rollout}] : 0.0f;
   id = world.state.alive[slot] != 0 ? world.state.life[slot].agent_id : -1;
 }
 
 /// Writes all that is known of the agent in `slot` into the row of the caller's arrays.
-void show_agent(World& world, int32_t slot, int rank, const Shown& out, int64_t row) {
+void read_observation(World& world, int32_t slot, int rank, const ObservationOut& out, int64_t row) {
   const ObservationShape& shape = world.species(slot).network.observation;
   float* const observation = out.observation + row * shape.size();
   const bool acted = out.agent_id[row] >= 0;
-  pay_agent(world, slot, out, row);
+  read_reward(world, slot, out, row);
   if (out.agent_id[row] < 0) {
     if (acted) memset(observation, 0, static_cast<size_t>(shape.size()) * sizeof(float));
     return;
@@ -51,22 +51,22 @@ std::string Simulation::missing_rule() const {
   return "";
 }
 
-void Simulation::command(int32_t species, const float* actions) {
+void Simulation::set_actions(int32_t species, const float* actions) {
   const Species& own = shape_.of[species];
   const int64_t numbers = int64_t{own.capacity()} * ACTIONS;
   for (World& world : worlds_) {
-    memcpy(&world.state.command[int64_t{own.first_slot} * ACTIONS], actions,
+    memcpy(&world.state.external_action[int64_t{own.first_slot} * ACTIONS], actions,
            static_cast<size_t>(numbers) * sizeof(float));
     actions += numbers;
   }
 }
 
-void Simulation::pay(int32_t species, const Shown& out) {
+void Simulation::read_rewards(int32_t species, const ObservationOut& out) {
   const Species& own = shape_.of[species];
   for (int i = 0; i < world_count(); ++i) {
     const World& world = complete(i);
     const int64_t before = int64_t{i} * own.capacity() - own.first_slot;
-    for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot) pay_agent(world, slot, out, before + slot);
+    for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot) read_reward(world, slot, out, before + slot);
   }
 }
 
@@ -80,7 +80,7 @@ void Simulation::count_meals(int32_t species, int64_t* out) const {
   }
 }
 
-void Simulation::show(int32_t species, const Shown& out) {
+void Simulation::read_observations(int32_t species, const ObservationOut& out) {
   const FloatMode mode(flush_);
   const Species& own = shape_.of[species];
   const int32_t blocks = (own.capacity() + SLOTS_AT_ONCE - 1) / SLOTS_AT_ONCE;
@@ -91,7 +91,8 @@ void Simulation::show(int32_t species, const Shown& out) {
       const int32_t first = own.first_slot + i % blocks * SLOTS_AT_ONCE;
       const int32_t last = first + SLOTS_AT_ONCE < own.last_slot ? first + SLOTS_AT_ONCE : own.last_slot;
       const int64_t before = int64_t{i / blocks} * own.capacity() - own.first_slot;
-      for (int32_t slot = first; slot < last; ++slot) show_agent(world(i / blocks), slot, rank, out, before + slot);
+      for (int32_t slot = first; slot < last; ++slot)
+        read_observation(world(i / blocks), slot, rank, out, before + slot);
     }
   });
 }

@@ -59,8 +59,9 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
       !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("head.step", 0, UINT32_MAX) ||
       !in.within<int32_t>("head.living_count", 0, shape.capacity) ||
       !in.within<int32_t>("food.slot", 0, shape.foods - 1) || !in.has<int32_t>("head.births_in_window", {1}) ||
-      !in.has<int32_t>("head.ghost_count", {1}) || !in.within<int32_t>("head.births_in_window", 0, INT32_MAX - 1.0) ||
-      !in.within<int32_t>("head.ghost_count", 0, static_cast<double>(in.world_.state.ghost.count)) ||
+      !in.has<int32_t>("head.eaten_food_count", {1}) ||
+      !in.within<int32_t>("head.births_in_window", 0, INT32_MAX - 1.0) ||
+      !in.within<int32_t>("head.eaten_food_count", 0, static_cast<double>(in.world_.state.eaten_food.count)) ||
       !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("head.living_count")[0]})) {
     return false;
   }
@@ -73,7 +74,7 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
   if (!in.within<int64_t>("life.birth_step", 0, static_cast<double>(step))) return false;
   extent.slots.resize(births.size());
   extent.free.resize(static_cast<size_t>(shape.capacity) - births.size());
-  extent.ghosts = in.numbers<int32_t>("head.ghost_count")[0];
+  extent.eaten_foods = in.numbers<int32_t>("head.eaten_food_count")[0];
   if (!read_networks(in, extent, births)) return false;
   if (shape.newborns == 0) return true;
   extent.newborns = in.numbers<int32_t>("head.births_in_window")[0];
@@ -179,8 +180,9 @@ bool check_food(Inspector& in, const SavedExtent& extent) {
     if (fabs(number[at]) > config.capacity) return in.refuse("food_stock.number is above the capacity");
     if (center[at] < 0 || center[at] >= centers) return in.refuse("food_stock.center is not the index of a center");
   }
-  const bool ghosts = world.state.ghost.count == 0 || in.within<int32_t>("ghost.kind", 0, world.shape->kinds - 1);
-  return ghosts && in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
+  const bool eaten =
+      world.state.eaten_food.count == 0 || in.within<int32_t>("eaten_food.kind", 0, world.shape->kinds - 1);
+  return eaten && in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
          in.within<float>("food.x", 0, world.config->arena.width) &&
          in.within<float>("food.y", 0, world.config->arena.height);
 }

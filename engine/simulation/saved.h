@@ -21,7 +21,7 @@ struct SavedExtent {
   std::vector<int32_t> free_networks;  ///< those of them whose species acts by networks
   std::vector<int32_t> foods;          ///< slots of the foods present, ascending
   int64_t newborns;                    ///< births of this window that wait for their genomes
-  int64_t ghosts;                      ///< foods just eaten that are still seen
+  int64_t eaten_foods;                 ///< foods just eaten that are still seen
   int64_t taught;                      ///< number of learners that were there when the window began; they come first
   int64_t filled;                      ///< steps done in the window
 };
@@ -102,8 +102,8 @@ class SavedArrays {
     } else if (size.rows == Extent::newborns || size.rows == Extent::mixed_newborns) {
       if (name == "newborn") free_slots();
       columns(name, array.data, nullptr, extent_.newborns, width);
-    } else if (size.rows == Extent::ghosts) {
-      columns(name, array.data, nullptr, extent_.ghosts, width);
+    } else if (size.rows == Extent::eaten_foods) {
+      columns(name, array.data, nullptr, extent_.eaten_foods, width);
     } else {
       columns(name, array.data, nullptr, hedon::extent(shape_, size.rows, 1), width);
       if (name == "food_stock") foods();
@@ -126,7 +126,7 @@ class SavedArrays {
     } else {
       T::for_each_field([&](const char* field, auto member) {
         using Number = std::remove_cvref_t<decltype(first->*member)>;
-        if (std::is_same_v<T, WorldHead> && strncmp(field, "event", 5) == 0) return;  // what a reader has taken
+        if (std::is_same_v<T, WorldHead> && strncmp(field, "death_log", 9) == 0) return;  // what a reader has taken
         visit_(name + "." + field, SavedRows<Number>{&(first->*member), sizeof(T), index, count, 0});
       });
     }
@@ -135,7 +135,7 @@ class SavedArrays {
   template <class T>
   void by_slot(const std::string& name, const Array<T>& array, int64_t width, const std::vector<int32_t>& slots) {
     columns(name, array.data, slots.data(), static_cast<int64_t>(slots.size()), width);
-    if (name == "old_slot") by_slot("free." + name, array, width, extent_.free);
+    if (name == "resident_slot") by_slot("free." + name, array, width, extent_.free);
   }
 
   /// With late inheritance the next newborns find in free slots what the dead have left.

@@ -29,8 +29,8 @@ struct SceneInput {
 };
 
 /// The caller's arrays for the agents of one species: (worlds, slots of the species, …) each.
-struct Shown {
-  float* observation;  ///< (…, entries); zeros where nobody lives; null for `pay`
+struct ObservationOut {
+  float* observation;  ///< (…, entries); zeros where nobody lives; null for `read_rewards`
   float* reward;       ///< of the last step, for the agent whose id was there before it; else 0
   int32_t* agent_id;   ///< -1 where nobody lives; holds the ids of before the step on entry
 };
@@ -55,7 +55,7 @@ class Simulation {
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   /// flush   whether denormals are flushed to zero; it changes no result
   /// program  of the devices that advance the worlds, which are dealt out to them; null for the threads
-  /// The arguments must have passed `check_config` and `check_company`. It can do nothing unless `pool().whole()`.
+  /// The arguments must have passed `check_config` and `check_arguments`. It can do nothing unless `pool().whole()`.
   Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
              const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
              const std::vector<int32_t>& slot_order, bool flush = true, const DeviceProgram* program = nullptr);
@@ -88,13 +88,13 @@ class Simulation {
 
   /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2), before the
   /// sigmoid.
-  void command(int32_t species, const float* actions);
+  void set_actions(int32_t species, const float* actions);
 
   /// Writes what the agents of an external species sense now, and what they earned in the last step.
-  void show(int32_t species, const Shown& out);
+  void read_observations(int32_t species, const ObservationOut& out);
 
   /// The same without what they sense.
-  void pay(int32_t species, const Shown& out);
+  void read_rewards(int32_t species, const ObservationOut& out);
 
   /// Writes what the agents of a species have eaten since the worlds began: (worlds, meals).
   void count_meals(int32_t species, int64_t* out) const;

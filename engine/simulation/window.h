@@ -48,7 +48,7 @@ HEDON_FN void close_window(World& world, int32_t taught) {
     const int32_t slot = world.state.living[i];
     world.counters(slot).learners += world.species(slot).learns;
   }
-  if (inherits_late(world)) settle_newborns(world);
+  if (inherits_late(world)) apply_late_inheritance(world);
   open_window(world);
 }
 

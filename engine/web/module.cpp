@@ -19,9 +19,9 @@
 #include "simulation/memory.h"
 #include "simulation/simulation.h"
 #include "simulation/window.h"
-#include "web/hand.h"
+#include "web/edit.h"
 #include "web/input.h"
-#include "web/portion.h"
+#include "web/work_slice.h"
 
 #define HEDON_EXPORT(name) extern "C" __attribute__((export_name(#name), used))
 
@@ -39,7 +39,7 @@ struct View {
 };
 
 /// What the chosen agent senses and how its network answers.
-struct Mind {
+struct AgentProbe {
   PackedObservation observation;
   ObservationExtra extra;  ///< of a wide observation
   float output[16];        ///< mean of the two actions, then the value
@@ -55,11 +55,11 @@ Pace pace;
 int32_t learned;  ///< learners of the present window that have learned, while the window is being learned
 bool learning;
 int32_t learners;
-bool by_hand;                                                 ///< whether the world has been changed by hand
+bool edited;                                                  ///< whether the world has been changed by hand
 std::unique_ptr<char, decltype(&free)> kept(nullptr, &free);  ///< a copy of the world's memory; null for none
-bool kept_by_hand;
+bool kept_edited;
 View view;
-Mind mind;
+AgentProbe probe;
 
 int fail(const std::string& what) {
   message = what;
@@ -99,7 +99,7 @@ int need_rest() { return learning ? fail("the agents are learning: wait until th
 
 int change(const std::string& refused) {
   if (!refused.empty()) return fail(refused);
-  by_hand = true;
+  edited = true;
   return report_fault();
 }
 
@@ -155,7 +155,7 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   for (int32_t s = 0; s < input.config.species.count; ++s) {
     if (has_rule(input.config.species[s])) return fail("a page cannot have rules in Python");
   }
-  const std::string company = check_company(input.config, input.walls, input.outer_walls, 1, 1, {});
+  const std::string company = check_arguments(input.config, input.walls, input.outer_walls, 1, 1, {});
   return company.empty() ? 0 : fail(company);
 }
 
@@ -168,7 +168,7 @@ HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) {
 /// Makes the world of the input, with so many threads, which change no result; the world before is gone.
 HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   simulation.reset();
-  learning = by_hand = false;
+  learning = edited = false;
   kept.reset();
   if (threads > available_processors()) return fail("there are not as many threads as the world is to have");
   const auto bytes = static_cast<size_t>(hedon_bytes_needed(threads)) + SPARE;
@@ -212,10 +212,10 @@ HEDON_EXPORT(hedon_must_learn) int hedon_must_learn() { return learning ? 1 : 0;
 HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
   if (!learning) return 0;
   together([&](Team& team) {
-    Portion portion(team, learned, learned + count);
-    learn_window(portion, world(), aligned_scratch(), scratch_stride());
-    if (portion.done()) audit(team, world());
-    if (team.rank() == 0) learners = portion.count();
+    WorkSlice slice(team, learned, learned + count);
+    learn_window(slice, world(), aligned_scratch(), scratch_stride());
+    if (slice.done()) audit(team, world());
+    if (team.rank() == 0) learners = slice.count();
   });
   learned += count;
   learning = learned < learners;
@@ -225,18 +225,18 @@ HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
 /// Status of the world: 0 while nothing is wrong.
 HEDON_EXPORT(hedon_fault) int hedon_fault() { return report_fault(); }
 
-/// Adds a thing by hand: see `add_by_hand`.
+/// Adds a thing by hand: see `add_thing`.
 HEDON_EXPORT(hedon_add) int hedon_add(int32_t type, float x, float y) {
-  return need_rest() != 0 ? 1 : change(add_by_hand(world(), type, {x, y}));
+  return need_rest() != 0 ? 1 : change(add_thing(world(), type, {x, y}));
 }
 
-/// Takes out by hand what is at a place: see `remove_by_hand`.
+/// Takes out by hand what is at a place: see `remove_thing`.
 HEDON_EXPORT(hedon_remove) int hedon_remove(float x, float y, float slack) {
-  return need_rest() != 0 ? 1 : change(remove_by_hand(world(), {x, y}, slack));
+  return need_rest() != 0 ? 1 : change(remove_thing(world(), {x, y}, slack));
 }
 
 /// Whether the world has been changed by hand: 1 if no config and seed give it.
-HEDON_EXPORT(hedon_by_hand) int hedon_by_hand() { return by_hand ? 1 : 0; }
+HEDON_EXPORT(hedon_edited) int hedon_edited() { return edited ? 1 : 0; }
 
 /// Keeps the world as it is now, instead of the one kept before.
 HEDON_EXPORT(hedon_keep) int hedon_keep() {
@@ -245,7 +245,7 @@ HEDON_EXPORT(hedon_keep) int hedon_keep() {
   if (!kept) kept.reset(static_cast<char*>(reserve_pages(bytes)));
   if (!kept) return fail("there is no memory left to keep the world");
   memcpy(kept.get(), simulation->memory(0), bytes);
-  kept_by_hand = by_hand;
+  kept_edited = edited;
   return 0;
 }
 
@@ -254,7 +254,7 @@ HEDON_EXPORT(hedon_return) int hedon_return() {
   if (!kept) return fail("no world was kept");
   memcpy(simulation->memory(0), kept.get(), static_cast<size_t>(simulation->bytes_per_world()));
   learning = false;
-  by_hand = kept_by_hand;
+  edited = kept_edited;
   return report_fault();
 }
 
@@ -281,22 +281,22 @@ HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
   return rest[0] != 0.0f ? 1 : 0;
 }
 
-/// Forgets the deaths that wait in the views `event.…`; call it when they are read.
+/// Forgets the deaths that wait in the views `death_log.…`; call it when they are read.
 HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() {
-  world().head().event_count = 0;
-  world().head().events_lost = 0;
+  world().head().death_log_count = 0;
+  world().head().death_log_lost = 0;
 }
 
 /// What the agent in `slot` senses now and how its network answers, zeros if its species has none; changes nothing of
 /// the world's state.
-HEDON_EXPORT(hedon_mind) const Mind* hedon_mind(int32_t slot) {
+HEDON_EXPORT(hedon_probe) const AgentProbe* hedon_probe(int32_t slot) {
   note_start(world(), slot);
-  observe(world(), slot, 0, mind.observation);
-  memset(mind.output, 0, sizeof mind.output);
+  observe(world(), slot, 0, probe.observation);
+  memset(probe.output, 0, sizeof probe.output);
   if (world().species(slot).has_network)
-    world().kernel->network.forward(world().species(slot).network, world().network(slot), mind.observation,
-                                    mind.output);
-  return &mind;
+    world().kernel->network.forward(world().species(slot).network, world().network(slot), probe.observation,
+                                    probe.output);
+  return &probe;
 }
 
 }  // namespace hedon

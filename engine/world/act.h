@@ -50,7 +50,7 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
       return;
     }
     case Policy::external:
-      for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.command[int64_t{slot} * ACTIONS + a];
+      for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.external_action[int64_t{slot} * ACTIONS + a];
       return;
     case Policy::ppo:
     case Policy::frozen:

@@ -93,12 +93,12 @@ HEDON_FN void audit_capacity(const World& world) {
     const int32_t count = pairs->start[bodies];
     if (count < 0 || count > pairs->first.count) return world.fail(Status::neighbor_overflow, -1, count);
   }
-  const int32_t ghosts = world.head().ghost_count;
-  if (ghosts < 0 || ghosts > world.state.ghost.count) world.fail(Status::counts_inconsistent, -1, ghosts);
+  const int32_t eaten = world.head().eaten_food_count;
+  if (eaten < 0 || eaten > world.state.eaten_food.count) world.fail(Status::counts_inconsistent, -1, eaten);
   const WorldHead& head = world.head();
-  const int32_t events = head.event_count;
-  if (events < 0 || events > world.shape->events || head.events_lost < 0)
-    world.fail(Status::counts_inconsistent, -1, events);
+  const int32_t logged = head.death_log_count;
+  if (logged < 0 || logged > world.shape->death_log_rows || head.death_log_lost < 0)
+    world.fail(Status::counts_inconsistent, -1, logged);
 }
 
 /// For each species: energy of its agents = initial + eaten + hunted + forgiven − basic − action − damage − capped −

@@ -52,7 +52,7 @@ enum class RayInside : int32_t { hit, behind };
 inline constexpr const char* RAY_INSIDE_NAMES[] = {"hit", "behind"};
 
 /// Whether rays meet food that was eaten in the step before.
-enum class EatenFood : int32_t { gone, seen };
+enum class EatenFoodRule : int32_t { gone, seen };
 inline constexpr const char* EATEN_FOOD_NAMES[] = {"gone", "seen"};
 
 /// Which of several mouths that touch a food in the same step are fed.
@@ -308,7 +308,7 @@ HEDON_FN bool has_rule(const SpeciesConfig& species) {
 
 /// Rules that all species of a world share.
 struct RuleConfig {
-  EatenFood eaten_food;
+  EatenFoodRule eaten_food;
   Mouths mouths;
   PreySharing prey_sharing;
   BirthOrder birth_order;

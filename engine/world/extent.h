@@ -14,7 +14,7 @@ enum class Extent : uint8_t {
   one,
   slots,
   mixed_slots,     ///< slots, if there are several species
-  old_slots,       ///< slots, if only agents in old slots have children
+  resident_slots,  ///< slots, if only agents in slots that were taken when the window began have children
   network_slots,   ///< slots, if some species acts by networks; of other species they are not used
   learner_slots,   ///< slots, if some species learns; of other species they are not used
   external_slots,  ///< slots, if some species is told what to do
@@ -24,10 +24,10 @@ enum class Extent : uint8_t {
   eaters,  ///< the same, if there are several or one that eats its own kind
   kinds,
   foods,
-  ghosts,          ///< foods, if those just eaten are seen
+  eaten_foods,     ///< foods, if those just eaten are seen
   newborns,        ///< births that wait for their genomes
   mixed_newborns,  ///< the same, if there are several species
-  events,          ///< deaths that wait for the reader
+  death_log,       ///< deaths that wait for the reader
   walls,
   obstacles,
   obstacle_slots,    ///< slots, if there are obstacles
@@ -41,21 +41,21 @@ enum class Extent : uint8_t {
   pairs,
   hidden,
   actions,
-  instinct_slots,  ///< slots, if some species passes on the networks that it was born with
-  mating_slots,    ///< slots, if some species has two parents
-  mating_events,   ///< events, if some species has two parents
-  inner_slots,     ///< slots, if some species has a nutrient or a toxin
-  inner_states,    ///< nutrient and toxin
-  scents,          ///< what an agent smells: channels times noses
-  memory,          ///< numbers that a rule keeps for each agent
-  record,          ///< numbers that a rule gets for one agent
-  steps,           ///< of a rollout
-  step_actions,    ///< actions of a rollout
-  observations,    ///< cache lines of the observations of a rollout, and of the one after it
-  wide_slots,      ///< slots, if some observations are wide
-  hunted_slots,    ///< slots, if some species eats agents
-  deaths,          ///< species, if they die of more than age and energy
-  meals,           ///< what an agent can eat: food kinds, and species if some species eats agents
+  instinct_slots,    ///< slots, if some species passes on the networks that it was born with
+  mating_slots,      ///< slots, if some species has two parents
+  mating_death_log,  ///< the same, if some species has two parents
+  inner_slots,       ///< slots, if some species has a nutrient or a toxin
+  inner_states,      ///< nutrient and toxin
+  scents,            ///< what an agent smells: channels times noses
+  memory,            ///< numbers that a rule keeps for each agent
+  record,            ///< numbers that a rule gets for one agent
+  steps,             ///< of a rollout
+  step_actions,      ///< actions of a rollout
+  observations,      ///< cache lines of the observations of a rollout, and of the one after it
+  wide_slots,        ///< slots, if some observations are wide
+  hunted_slots,      ///< slots, if some species eats agents
+  deaths,            ///< species, if they die of more than age and energy
+  meals,             ///< what an agent can eat: food kinds, and species if some species eats agents
 };
 
 /// How long the contents of an array last.
@@ -69,7 +69,7 @@ enum class Lifetime : uint8_t {
 
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
-  return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::old_slots ||
+  return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::resident_slots ||
          rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots ||
          rows == Extent::ruled_slots || rows == Extent::packed_slots || rows == Extent::wide_slots ||
          rows == Extent::obstacle_slots || rows == Extent::inner_slots || rows == Extent::instinct_slots ||
@@ -90,8 +90,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.capacity;
     case Extent::mixed_slots:
       return shape.species > 1 ? shape.capacity : 0;
-    case Extent::old_slots:
-      return shape.old_slots ? shape.capacity : 0;
+    case Extent::resident_slots:
+      return shape.resident_slots ? shape.capacity : 0;
     case Extent::network_slots:
       return shape.networks ? shape.capacity : 0;
     case Extent::learner_slots:
@@ -110,14 +110,14 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.kinds;
     case Extent::foods:
       return shape.foods;
-    case Extent::ghosts:
-      return shape.ghosts ? shape.foods : 0;
+    case Extent::eaten_foods:
+      return shape.shows_eaten_food ? shape.foods : 0;
     case Extent::newborns:
       return shape.newborns;
     case Extent::mixed_newborns:
       return shape.species > 1 ? shape.newborns : 0;
-    case Extent::events:
-      return shape.events;
+    case Extent::death_log:
+      return shape.death_log_rows;
     case Extent::walls:
       return shape.walls;
     case Extent::obstacles:
@@ -146,8 +146,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.instinct ? shape.capacity : 0;
     case Extent::mating_slots:
       return shape.mating ? shape.capacity : 0;
-    case Extent::mating_events:
-      return shape.mating ? shape.events : 0;
+    case Extent::mating_death_log:
+      return shape.mating ? shape.death_log_rows : 0;
     case Extent::inner_slots:
       return shape.inner ? shape.capacity : 0;
     case Extent::inner_states:

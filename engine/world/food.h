@@ -111,9 +111,9 @@ HEDON_FN void share_food(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
   const BodyState& body = state.physics.bodies;
-  world.head().ghost_count = 0;
+  world.head().eaten_food_count = 0;
   const bool all = world.config->rules.mouths == Mouths::all;
-  const bool seen = world.shape->ghosts;
+  const bool seen = world.shape->shows_eaten_food;
   int32_t found = 0;
   for_each_marked_circle(state.physics.neighbors, [&](int32_t slot, int32_t f) {
     const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
@@ -137,7 +137,8 @@ HEDON_FN void share_food(World& world) {
       stock.present -= 1;
       stock.number -= 1.0;
       feed(world, slot, k);
-      if (seen) state.ghost[world.head().ghost_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
+      if (seen)
+        state.eaten_food[world.head().eaten_food_count++] = {state.physics.circles.x[f], state.physics.circles.y[f], k};
     }
   }
 }

@@ -87,7 +87,7 @@ HEDON_FN Random4 fate_bits(const World& world, int32_t slot) {
 }
 
 /// Draws whether an agent has a child and whether it dies; where a rule says its chances, it decides later.
-HEDON_FN void draw_fates(World& world, int32_t slot) {
+HEDON_FN void draw_births_and_deaths(World& world, int32_t slot) {
   const Random4 bits = fate_bits(world, slot);
   world.scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
   if (!world.ruled(slot, RuleUse::birth))

@@ -108,7 +108,7 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
 
 /// Gives the newborns of a window, in the order of their births, their genomes, and those that still live their
 /// networks. A newborn that was itself a parent passes on the genome that it gets here.
-HEDON_FN void settle_newborns(World& world) {
+HEDON_FN void apply_late_inheritance(World& world) {
   const WorldState& state = world.state;
   const WorldHead& head = world.head();
   const int32_t births = head.births_in_window;
@@ -136,12 +136,13 @@ HEDON_FN void open_window(World& world) {
   head.births_before = head.births_in_window;
   head.births_in_window = 0;
   if (world.config->rules.parents == Parents::all) return;
-  for (int32_t slot = 0; slot < world.shape->capacity; ++slot) world.state.old_slot[slot] = world.state.alive[slot];
+  for (int32_t slot = 0; slot < world.shape->capacity; ++slot)
+    world.state.resident_slot[slot] = world.state.alive[slot];
 }
 
 /// Whether the agent in `slot` may have children in this window.
 HEDON_FN bool may_breed(const World& world, int32_t slot) {
-  return world.config->rules.parents == Parents::all || world.state.old_slot[slot] != 0;
+  return world.config->rules.parents == Parents::all || world.state.resident_slot[slot] != 0;
 }
 
 }  // namespace hedon

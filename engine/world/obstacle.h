@@ -82,7 +82,7 @@ HEDON_FN int32_t harmful_obstacles(const World& world) {
 }
 
 /// Counts for each agent the harmful obstacles that it touched in this step, whichever of their sides.
-HEDON_FN void feel_obstacles(World& world) {
+HEDON_FN void count_obstacle_contacts(World& world) {
   const PairList& pairs = world.state.physics.neighbors.walls;
   const NeighborList& list = world.state.physics.neighbors;
   for (int32_t i = 0; i < world.head().living_count; ++i) world.scratch.touched[world.state.living[i]] = 0;

@@ -52,7 +52,8 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   if (world.shape->hunting) state.digestion[slot] = world.scratch.eaten[slot] = 0;
   if (state.species.count > 0) state.species[slot] = species;
   for (int64_t m = 0; m < world.shape->memory; ++m) state.memory[int64_t{slot} * world.shape->memory + m] = 0.0;
-  for (int64_t a = 0; a < ACTIONS && state.command.count > 0; ++a) state.command[int64_t{slot} * ACTIONS + a] = 0.0f;
+  for (int64_t a = 0; a < ACTIONS && state.external_action.count > 0; ++a)
+    state.external_action[int64_t{slot} * ACTIONS + a] = 0.0f;
   if (world.shape->mating) state.ready_until[slot] = state.mate_id[slot] = -1;
   world.scratch.dies[slot] = 0;
 
@@ -161,8 +162,8 @@ HEDON_FN void count_cause(const World& world, int32_t slot) {
 }
 
 /// The row for the next death. Nobody may ever read them: when all rows are taken, the oldest is replaced, and counted.
-HEDON_FN int64_t take_event(WorldHead& head, int32_t events) {
-  return head.event_count < events ? head.event_count++ : head.events_lost++ % events;
+HEDON_FN int64_t claim_death_row(WorldHead& head, int32_t rows) {
+  return head.death_log_count < rows ? head.death_log_count++ : head.death_log_lost++ % rows;
 }
 
 /// Removes the agent in `slot` and keeps its life for the records. The caller updates the living order.
@@ -178,14 +179,14 @@ HEDON_FN void kill(World& world, int32_t slot) {
   world.counters(slot).energy_lost += life.energy;
   count_cause(world, slot);
 
-  const int64_t event = take_event(head, world.shape->events);
-  state.event[event] = life;
-  state.event_species[event] = world.shape->species_of(slot);
-  if (world.shape->mating) state.event_mate[event] = state.mate_id[slot];
+  const int64_t row = claim_death_row(head, world.shape->death_log_rows);
+  state.death_log[row] = life;
+  state.death_log_species[row] = world.shape->species_of(slot);
+  if (world.shape->mating) state.death_log_mate[row] = state.mate_id[slot];
   const int32_t meals = world.shape->meals(), genes = world.shape->genes;
-  state.event_cause[event] = static_cast<int32_t>(cause_of_death(world, slot));
-  for (int32_t m = 0; m < meals; ++m) state.event_eaten[event * meals + m] = state.eaten[int64_t{slot} * meals + m];
-  for (int32_t g = 0; g < genes; ++g) state.event_genome[event * genes + g] = world.genome(slot)[g];
+  state.death_log_cause[row] = static_cast<int32_t>(cause_of_death(world, slot));
+  for (int32_t m = 0; m < meals; ++m) state.death_log_eaten[row * meals + m] = state.eaten[int64_t{slot} * meals + m];
+  for (int32_t g = 0; g < genes; ++g) state.death_log_genome[row * genes + g] = world.genome(slot)[g];
 }
 
 /// Tries per founder or food of a new world; a half-full arena needs a few.

@@ -19,14 +19,14 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
   const RayGrid& grid = shape.scene;
   const BodyState& body = state.physics.bodies;
   const StaticCircles& food = state.physics.circles;
-  const int32_t foods = world.head().living_count, ghosts = foods + shape.foods;  // where those begin
+  const int32_t foods = world.head().living_count, eaten = foods + shape.foods;  // where those begin
   const auto place_of = [&](int32_t circle) {
     if (circle < foods) return Vec2{body.x[state.living[circle]], body.y[state.living[circle]]};
-    if (circle < ghosts) return Vec2{food.x[circle - foods], food.y[circle - foods]};
-    return Vec2{state.ghost[circle - ghosts].x, state.ghost[circle - ghosts].y};
+    if (circle < eaten) return Vec2{food.x[circle - foods], food.y[circle - foods]};
+    return Vec2{state.eaten_food[circle - eaten].x, state.eaten_food[circle - eaten].y};
   };
   const auto cell_of = [&](int32_t circle) {
-    if (circle >= foods && circle < ghosts && !food.present[circle - foods]) return -1;
+    if (circle >= foods && circle < eaten && !food.present[circle - foods]) return -1;
     const Vec2 place = place_of(circle);
     const int32_t column = cell_along(place.x, grid.inverse_cell, grid.columns);
     return cell_along(place.y, grid.inverse_cell, grid.rows) * grid.columns + column;
@@ -42,12 +42,12 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
       scene.own[slot] = at;
     } else {
       const int32_t kind =
-          circle < ghosts ? shape.bodies.circle_class(circle - foods) : state.ghost[circle - ghosts].kind;
+          circle < eaten ? shape.bodies.circle_class(circle - foods) : state.eaten_food[circle - eaten].kind;
       scene.radius[at] = world.config->food_radius;
       scene.type[at] = static_cast<float>(shape.food_type(kind));
     }
   };
-  crew.sort(ghosts + world.head().ghost_count, grid.columns * grid.rows, scene.start.data, scene.cell.data, cell_of,
+  crew.sort(eaten + world.head().eaten_food_count, grid.columns * grid.rows, scene.start.data, scene.cell.data, cell_of,
             put);
 }
 

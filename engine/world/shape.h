@@ -41,30 +41,30 @@ struct WorldShape {
   int32_t outer_walls;     ///< the first walls, a closed convex polygon
   int32_t first_obstacle;  ///< walls from here on are the sides of obstacles
   int32_t obstacles;
-  int32_t circles;   ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
-  int32_t events;    ///< deaths that can wait for the reader
-  int32_t newborns;  ///< births of a window that can wait for their genomes
-  int32_t steps;     ///< of a window
-  int32_t rollout;   ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
-  int32_t genes;     ///< of the longest genome: the length of a row
-  int32_t params;    ///< of the largest network
-  int32_t pairs;     ///< of weights of the largest network
-  bool ghosts;       ///< eaten food is seen for one step
-  bool old_slots;    ///< only agents in slots that were taken when the window began have children
-  bool networks;     ///< some species acts by networks
-  bool learning;     ///< some species learns
-  bool external;     ///< some species is told what to do
-  bool ruled;        ///< rules of the caller pay some species, or say when it dies or breeds
-  int32_t memory;    ///< most numbers that a rule keeps for each agent
-  int32_t record;    ///< of the longest record that a rule gets
-  int32_t scents;    ///< of the longest row of smells: channels times noses
-  bool packed;       ///< some species acts with weights in pairs
-  bool instinct;     ///< some species passes on the networks that it was born with
-  bool mating;       ///< some species has two parents
-  bool inner;        ///< some species has a nutrient or a toxin
-  bool hunting;      ///< some species eats agents, of another species or its own
-  bool causes;       ///< agents die of more than age and energy: some starve at once, or are eaten
-  int32_t lines;     ///< cache lines of an observation
+  int32_t circles;         ///< most circles that rays may hit: agents, foods, and foods just eaten if they are seen
+  int32_t death_log_rows;  ///< deaths that can wait for the reader
+  int32_t newborns;        ///< births of a window that can wait for their genomes
+  int32_t steps;           ///< of a window
+  int32_t rollout;         ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
+  int32_t genes;           ///< of the longest genome: the length of a row
+  int32_t params;          ///< of the largest network
+  int32_t pairs;           ///< of weights of the largest network
+  bool shows_eaten_food;   ///< eaten food is seen for one step
+  bool resident_slots;     ///< only agents in slots that were taken when the window began have children
+  bool networks;           ///< some species acts by networks
+  bool learning;           ///< some species learns
+  bool external;           ///< some species is told what to do
+  bool ruled;              ///< rules of the caller pay some species, or say when it dies or breeds
+  int32_t memory;          ///< most numbers that a rule keeps for each agent
+  int32_t record;          ///< of the longest record that a rule gets
+  int32_t scents;          ///< of the longest row of smells: channels times noses
+  bool packed;             ///< some species acts with weights in pairs
+  bool instinct;           ///< some species passes on the networks that it was born with
+  bool mating;             ///< some species has two parents
+  bool inner;              ///< some species has a nutrient or a toxin
+  bool hunting;            ///< some species eats agents, of another species or its own
+  bool causes;             ///< agents die of more than age and energy: some starve at once, or are eaten
+  int32_t lines;           ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
   RayGrid scene;
   Species of[MAX_SPECIES];
@@ -86,7 +86,7 @@ struct WorldShape {
 
 /// Deaths per slot that can wait for the reader. The host loop reads a few times per second, about every thousand
 /// steps, in which about one agent in ten dies.
-inline constexpr int EVENTS_PER_SLOT = 16;
+inline constexpr int LOGGED_DEATHS_PER_SLOT = 16;
 
 /// The classes of the physics: one per species, one per food kind.
 HEDON_FN BodyTable make_body_table(const WorldConfig& config, const WorldShape& shape) {
@@ -144,15 +144,15 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   shape.first_obstacle = walls;
   shape.walls = walls + config.obstacle.count * config.obstacle.corners;
   shape.outer_walls = outer_walls;
-  shape.events = EVENTS_PER_SLOT * shape.capacity;
+  shape.death_log_rows = LOGGED_DEATHS_PER_SLOT * shape.capacity;
   shape.steps = config.species[0].learning.rollout_steps;
   shape.rollout = shape.learning ? shape.steps : 1;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
-  shape.ghosts = config.rules.eaten_food == EatenFood::seen;
-  shape.old_slots = config.rules.parents == Parents::old_slots;
-  shape.circles = shape.capacity + shape.foods + (shape.ghosts ? shape.foods : 0);
-  shape.newborns = config.rules.inheritance == Inheritance::at_window_end ? shape.events : 0;
+  shape.shows_eaten_food = config.rules.eaten_food == EatenFoodRule::seen;
+  shape.resident_slots = config.rules.parents == Parents::old_slots;
+  shape.circles = shape.capacity + shape.foods + (shape.shows_eaten_food ? shape.foods : 0);
+  shape.newborns = config.rules.inheritance == Inheritance::at_window_end ? shape.death_log_rows : 0;
   shape.scene = make_ray_grid(config, shape.capacity + shape.foods);
   shape.bodies = make_body_table(config, shape);
   return shape;

@@ -100,12 +100,12 @@ struct WorldHead {
   int32_t living_count;
   int32_t births_in_window;
   int32_t births_before;  ///< of the window before
-  int32_t ghost_count;
-  int32_t event_count;  ///< deaths that wait for the reader
-  int64_t events_lost;  ///< older ones, which newer ones have replaced, since the reader last took any
+  int32_t eaten_food_count;
+  int32_t death_log_count;  ///< deaths that wait for the reader
+  int64_t death_log_lost;   ///< older ones, which newer ones have replaced, since the reader last took any
 
-  HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, births_in_window, births_before, ghost_count,
-               event_count, events_lost)
+  HEDON_FIELDS(WorldHead, step, extinct_step, next_agent_id, living_count, births_in_window, births_before,
+               eaten_food_count, death_log_count, death_log_lost)
 };
 
 /// A birth of this window whose genome is drawn at the window's end.
@@ -117,11 +117,11 @@ struct Newborn {
 };
 
 /// A food eaten in the last step that rays still meet.
-struct Ghost {
+struct EatenFood {
   float x, y;
   int32_t kind;
 
-  HEDON_FIELDS(Ghost, x, y, kind)
+  HEDON_FIELDS(EatenFood, x, y, kind)
 };
 
 struct WorldState {
@@ -152,8 +152,8 @@ struct WorldState {
   Array<float> obstacle;       // (obstacles, corners · 2) where their corners are: follows from the config and the seed
   Array<ObstacleCounters> obstacle_counters;
 
-  Array<float> command;  // (slots, 2) what the caller told agents to do, before the sigmoid
-  Array<double> memory;  // what the rule of its species keeps for each agent
+  Array<float> external_action;  // (slots, 2) what the caller told agents to do, before the sigmoid
+  Array<double> memory;          // what the rule of its species keeps for each agent
 
   // Networks and learners, by slot.
   Array<float> params;
@@ -165,9 +165,9 @@ struct WorldState {
   Array<int64_t> updates;  // Adam steps done in this life
 
   // Rules that reach over steps or windows.
-  Array<Ghost> ghost;
-  Array<uint8_t> old_slot;  // 1 for slots that were taken when the window began
-  Array<Newborn> newborn;   // of this window, in the order of birth
+  Array<EatenFood> eaten_food;
+  Array<uint8_t> resident_slot;  // 1 for slots that were taken when the window began
+  Array<Newborn> newborn;        // of this window, in the order of birth
   Array<int32_t> newborn_species;
   Array<float> newborn_genome;  // of each newborn's parent, if that is older than the window
 
@@ -179,12 +179,12 @@ struct WorldState {
   Array<float> reward;
 
   // Deaths that the reader has not yet taken: the newest of them, in a ring if some were lost.
-  Array<Life> event;
-  Array<int32_t> event_species;
-  Array<int32_t> event_cause;
-  Array<int32_t> event_mate;
-  Array<int32_t> event_eaten;
-  Array<float> event_genome;
+  Array<Life> death_log;
+  Array<int32_t> death_log_species;
+  Array<int32_t> death_log_cause;
+  Array<int32_t> death_log_mate;
+  Array<int32_t> death_log_eaten;
+  Array<float> death_log_genome;
 
   HEDON_ARRAYS(WorldState, (head, one, one, saved), (fault, one, one, derived), (counters, species, one, saved),
                (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),
@@ -195,18 +195,18 @@ struct WorldState {
                (eaten_by, eaters, meals, saved), (ready_until, mating_slots, one, saved),
                (mate_id, mating_slots, one, saved), (inner, inner_slots, inner_states, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
-               (command, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
+               (external_action, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
                (params, network_slots, params, saved), (initial_params, instinct_slots, params, saved),
                (folded_bias, network_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
                (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),
-               (updates, learner_slots, one, saved), (ghost, ghosts, one, saved), (old_slot, old_slots, one, saved),
-               (newborn, newborns, one, saved), (newborn_species, mixed_newborns, one, saved),
-               (newborn_genome, newborns, genes, saved), (observation, slots, observations, rollout),
-               (action, slots, step_actions, rollout), (log_prob, slots, steps, rollout),
-               (value, slots, steps, rollout), (reward, slots, steps, rollout), (event, events, one, waiting),
-               (event_species, events, one, waiting), (event_cause, events, one, waiting),
-               (event_mate, mating_events, one, waiting), (event_eaten, events, meals, waiting),
-               (event_genome, events, genes, waiting))
+               (updates, learner_slots, one, saved), (eaten_food, eaten_foods, one, saved),
+               (resident_slot, resident_slots, one, saved), (newborn, newborns, one, saved),
+               (newborn_species, mixed_newborns, one, saved), (newborn_genome, newborns, genes, saved),
+               (observation, slots, observations, rollout), (action, slots, step_actions, rollout),
+               (log_prob, slots, steps, rollout), (value, slots, steps, rollout), (reward, slots, steps, rollout),
+               (death_log, death_log, one, waiting), (death_log_species, death_log, one, waiting),
+               (death_log_cause, death_log, one, waiting), (death_log_mate, mating_death_log, one, waiting),
+               (death_log_eaten, death_log, meals, waiting), (death_log_genome, death_log, genes, waiting))
 };
 
 }  // namespace hedon

@@ -83,12 +83,12 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   group.together([&](const auto& crew) {
     check_inside(crew, world);
     eat(crew, world);
-    if (world.shape->obstacles > 0) crew.once([&] { feel_obstacles(world); });
+    if (world.shape->obstacles > 0) crew.once([&] { count_obstacle_contacts(world); });
   });
   if (world.fault().status != Status::ok) return;
   const auto reward_and_fates = [&](int32_t slot) {
     compute_reward(world, slot, t);
-    draw_fates(world, slot);
+    draw_births_and_deaths(world, slot);
   };
   if (!world.shape->hunting) {
     group.for_each(head.living_count, [&](int32_t i) {

@@ -13,5 +13,10 @@ def printable(text: str) -> str:
 
 
 def brief(text: str, limit: int = LINE) -> str:
-    """The text, or its beginning and its length if it has more than `limit` characters."""
+    """The text, or its beginning and its length if it has more than `limit` characters.
+
+    Args:
+        text: what a user gave, of any length.
+        limit: characters that are shown.
+    """
     return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"

@@ -1,21 +1,25 @@
-"""`hedon bench` as a user calls it."""
+"""`python -m benchmarks` as a user calls it."""
 
 import json
 import math
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from hedon.benchmark import bench
-from hedon.benchmark.check import CheckError
-from hedon.cli.main import app
+from benchmarks import bench
+from benchmarks.__main__ import app
+from benchmarks.check import CheckError
 
+ROOT = Path(__file__).parents[2]
 HERE = tuple(name for name in bench.PARTS if name != "device")
 
 
 def call(*arguments):
-    return subprocess.run(["hedon", "bench", *map(str, arguments)], capture_output=True, text=True, check=False)
+    words = [sys.executable, "-m", "benchmarks", *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT)
 
 
 def numbers(value):
@@ -100,7 +104,7 @@ def test_a_failed_check_ends_in_exit_code_1_and_names_the_part(monkeypatch):
         raise CheckError("the world of seed 1 at step 3 has died out")
 
     monkeypatch.setitem(bench.PARTS, "rays", bench.Part("", measure, bench.PARTS["rays"].table))
-    answer = CliRunner().invoke(app, ["bench", "--quick", "rays"])
+    answer = CliRunner().invoke(app, ["--quick", "rays"])
     assert answer.exit_code == 1
     assert "rays is not reported, because its check failed: the world of seed 1 at step 3 has died out" in answer.output
 
@@ -110,3 +114,12 @@ def test_the_help_names_every_part():
     assert answer.returncode == 0
     for name, part in bench.PARTS.items():
         assert f"{name:9} {part.about}" in answer.stdout
+
+
+def test_the_command_that_measured_before_names_what_does_now():
+    answer = subprocess.run(["hedon", "bench", "world"], capture_output=True, text=True, check=False)
+    assert answer.returncode == 2
+    assert answer.stderr == (
+        "hedon: there is no command 'bench': the benchmarks are no part of the package any more: "
+        "call `uv run python -m benchmarks` in a checkout\n"
+    )

@@ -129,7 +129,7 @@ def test_lists_beyond_their_room_are_named(world):
         world.run(1)
 
 
-@pytest.mark.parametrize(("path", "count"), [("head.event_count", 10**6), ("head.events_lost", -1)])
+@pytest.mark.parametrize(("path", "count"), [("head.death_log_count", 10**6), ("head.death_log_lost", -1)])
 def test_more_deaths_than_the_buffer_holds_are_named(world, path, count):
     poke(world, path, 0, count)
     with pytest.raises(EngineError, match="counts_inconsistent"):

@@ -9,7 +9,7 @@ WINDOW = 64
 
 # How each array of the state gets into a checkpoint. An array that stands nowhere here would be forgotten.
 DERIVED = {"alive", "living", "free", "free_count", "folded_bias", "packed_weights"}
-TAKEN_BY_READER = {"event", "event_species", "event_cause", "event_eaten", "event_genome"}
+TAKEN_BY_READER = {"death_log", "death_log_species", "death_log_cause", "death_log_eaten", "death_log_genome"}
 FROM_CONFIG = {"physics.walls"}
 IMPULSES = {"physics.neighbors", "physics.body_grid", "physics.circle_grid"}
 SAVED_AS = {
@@ -135,7 +135,7 @@ def test_slots_and_reads_are_no_part_of_a_digest(settings):
         plain.run(50)
         shuffled.run(50)
         shuffled.take_rows(0)
-    assert plain.head(0)["event_count"] > shuffled.head(0)["event_count"]
+    assert plain.head(0)["death_log_count"] > shuffled.head(0)["death_log_count"]
     assert plain.digest(0) == shuffled.digest(0)
 
 
@@ -163,5 +163,5 @@ def test_every_array_of_the_state_is_saved_or_known_to_follow_from_others():
             if path.startswith(prefix):
                 path = None if name is None else path.replace(prefix, name)
                 break
-        derived = path in (None, "head.event_count", "head.events_lost", "food.present")
+        derived = path in (None, "head.death_log_count", "head.death_log_lost", "food.present")
         assert derived or path in saved, path

@@ -11,12 +11,12 @@ from rich.console import Console
 
 from hedon.cli.display.plan import PlanDisplay
 from hedon.config import load_config
-from hedon.experiment.plan import Moment
+from hedon.experiment.plan import Moment, RunPlan
+from hedon.jobs.process import conduct, next_share
+from hedon.jobs.run import RunJob
+from hedon.jobs.work import Outcome
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
-from hedon.replication.run.conduct import conduct, next_share
-from hedon.replication.run.plan import Job
-from hedon.replication.run.work import Outcome
 
 STEPS = 640
 
@@ -24,24 +24,24 @@ STEPS = 640
 class Interrupting(PlanDisplay):
     """A display that presses Ctrl-C when a run has come so far."""
 
-    def __init__(self, jobs: list[Job], at_step: int) -> None:
+    def __init__(self, jobs: list[RunJob], at_step: int) -> None:
         super().__init__(Console(file=io.StringIO()), jobs)
         self._at_step = at_step
         self.pressed = False
 
-    def update(self, job: Job, moment: Moment) -> None:
+    def update(self, job: RunJob, moment: Moment) -> None:
         super().update(job, moment)
         if moment.step >= self._at_step and not self.pressed:
             self.pressed = True
             os.kill(os.getpid(), signal.SIGINT)
 
 
-def a_job(folder: Path, *, begun: bool = False, steps: int = STEPS, growth: float = 0.2) -> Job:
+def a_job(folder: Path, *, steps: int = STEPS, growth: float = 0.2) -> RunJob:
     config = load_config("baseline", overrides=(*SMALL, f"food.normal.growth_rate={growth}"))
-    return Job(folder, config, (1, 2), steps, 2 * steps, begun)
+    return RunJob(RunPlan(config, (1, 2), steps, folder), 2 * steps)
 
 
-def printed_display(jobs: list[Job]) -> tuple[io.StringIO, PlanDisplay]:
+def printed_display(jobs: list[RunJob]) -> tuple[io.StringIO, PlanDisplay]:
     stream = io.StringIO()
     return stream, PlanDisplay(Console(file=stream, width=200), jobs)
 
@@ -68,7 +68,7 @@ def test_an_interrupted_plan_goes_on_to_the_same_end(tmp_path: Path) -> None:
     assert 0 < done < steps
     assert done % 64 == 0, "a single Ctrl-C ends a run at the end of a window"
     assert not (tmp_path / "b").exists()
-    again = [a_job(tmp_path / "a", begun=True, steps=steps)]
+    again = [a_job(tmp_path / "a", steps=steps)]
     assert conduct(again, 2, printed_display(again)[1]) == {tmp_path / "a": Outcome("finished")}
     small_run(tmp_path / "alone", steps)
     assert_same_run(tmp_path / "a", tmp_path / "alone")
@@ -100,7 +100,7 @@ def test_each_world_has_a_thread_and_the_last_run_what_is_left(
     worlds: tuple[int, ...], threads: int, shares: list[int]
 ) -> None:
     config = load_config("baseline")
-    waiting = [Job(Path(str(i)), config, tuple(range(n)), 1, n, False) for i, n in enumerate(worlds)]
+    waiting = [RunJob(RunPlan(config, range(n), 1, Path(str(i))), n) for i, n in enumerate(worlds)]
     begun: list[int] = []
     while share := next_share(waiting, begun, threads):
         begun.append(share)

@@ -55,7 +55,7 @@ def test_toxin_takes_its_share_of_the_force():
     set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
     world = simulation.worlds[0]
     capacity = len(world.view("alive"))
-    simulation.engine.command(0, np.full((1, capacity, 2), 2.0, np.float32))
+    simulation.engine.set_actions(0, np.full((1, capacity, 2), 2.0, np.float32))
     full = -20 + 100 * sigmoid(2.0)
     forces = []
     for _ in range(2):

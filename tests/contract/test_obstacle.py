@@ -162,7 +162,7 @@ def test_bodies_do_not_enter_and_rub_by_the_obstacles_friction():
         set_scene(simulation, [(x, y, heading_to(along - out))])
         start = np.array([x, y])
         capacity = len(world.view("alive"))
-        simulation.engine.command(0, np.full((1, capacity, 2), 10.0, np.float32))
+        simulation.engine.set_actions(0, np.full((1, capacity, 2), 10.0, np.float32))
         simulation.run(50)
         end = np.array([world.agents()["x"][0], world.agents()["y"][0]], dtype=float)
         assert (end - middle) @ out > 9.5

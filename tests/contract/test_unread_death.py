@@ -72,7 +72,7 @@ def test_the_last_row_is_not_lost():
         if before <= ROOM:
             assert world.lost_deaths == 0
     assert world.lost_deaths == world.counters["deaths"] - ROOM
-    first = world.view("event.agent_id").copy()
+    first = world.view("death_log.agent_id").copy()
     while world.lost_deaths == 0:
         simulation.run(1)
     assert world.deaths(partial=True)["agent_id"][0] != first[0]

@@ -162,13 +162,13 @@ def test_the_engine_refuses_arrays_of_another_shape():
     worlds = batch(config(*QUICK), seeds=[1])
     engine, group = worlds.simulation.engine, worlds.groups["agent"]
     with pytest.raises(ValueError, match="a row for each slot"):
-        engine.command(0, group.actions[:, 1:].copy())
+        engine.set_actions(0, group.actions[:, 1:].copy())
     with pytest.raises(ValueError, match="as many columns"):
-        engine.show(0, group.observations[:, :, 1:].copy(), group.rewards, group.ids)
+        engine.read_observations(0, group.observations[:, :, 1:].copy(), group.rewards, group.ids)
     with pytest.raises(ValueError, match="must be external"):
-        make_simulation(*QUICK).engine.command(0, group.actions)
+        make_simulation(*QUICK).engine.set_actions(0, group.actions)
     with pytest.raises(IndexError):
-        engine.command(1, group.actions)
+        engine.set_actions(1, group.actions)
 
 
 def test_a_trained_policy_forages_better_than_chance():

@@ -28,7 +28,7 @@ inline WorldInput read_world(const std::string& file, int64_t worlds) {
   WorldInput input;
   std::string wrong = read_input(text.str(), input);
   if (wrong.empty()) wrong = check_config(input.config);
-  if (wrong.empty()) wrong = check_company(input.config, input.walls, input.outer_walls, worlds, WORLD_THREADS, {});
+  if (wrong.empty()) wrong = check_arguments(input.config, input.walls, input.outer_walls, worlds, WORLD_THREADS, {});
   if (wrong.empty()) return input;
   fprintf(stderr, "%s: %s\n", file.c_str(), wrong.c_str());
   exit(2);

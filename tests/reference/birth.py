@@ -26,8 +26,8 @@ def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Tu
     here = {agent.agent_id for agent in world.agents}
     turn_of = {turn.agent.agent_id: turn for turn in turns if turn.agent.agent_id in here}
     parents = [turn for turn in turn_of.values() if turn.breeds]
-    if rules.old_slots_only:
-        parents = [turn for turn in parents if turn.agent.old_slot]
+    if rules.resident_slots_only:
+        parents = [turn for turn in parents if turn.agent.resident_slot]
     for turn in sorted(parents, key=lambda each: rules.draw("parent_order", each.agent.agent_id, world.step)[0]):
         parent, species = turn.agent, rules.of(turn.agent)
         mate = None
@@ -104,7 +104,7 @@ def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, f
         eaten=[0] * len(first.eaten),
         memory=memory_of(species),
         birth_energy=energy,
-        old_slot=vacancy.old_slot,
+        resident_slot=vacancy.resident_slot,
     )
     world.agents.append(child)
     world.next_agent_id += 1
@@ -143,6 +143,6 @@ def open_window(rules: Rules, world: World) -> None:
     world.newborns = []
     world.births_before, world.births_in_window = world.births_in_window, 0
     for agent in world.agents:
-        agent.old_slot = rules.old_slots_only
+        agent.resident_slot = rules.resident_slots_only
     for vacancy in (vacancy for each in world.vacancies for vacancy in each):
-        vacancy.old_slot = False
+        vacancy.resident_slot = False

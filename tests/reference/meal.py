@@ -8,7 +8,7 @@ from reference.state import Turn, World
 
 def eat(rules: Rules, world: World, turns: list[Turn]) -> None:
     """Each food goes to the nearest of those whose mouths it met, or to all."""
-    world.ghosts = []
+    world.eaten_foods = []
     for k, stock in enumerate(world.stocks):
         left, fed = [], 0
         for f, (x, y) in enumerate(stock.foods):
@@ -20,8 +20,8 @@ def eat(rules: Rules, world: World, turns: list[Turn]) -> None:
             fed += len(rivals)
             if not rivals:
                 left.append((x, y))
-            elif rules.ghosts_seen:
-                world.ghosts.append((x, y, k))
+            elif rules.eaten_foods_seen:
+                world.eaten_foods.append((x, y, k))
         placement = rules.foods[k].placement
         if placement.form == "switching":
             turned = (stock.eaten + fed) // placement.switch_after - stock.eaten // placement.switch_after

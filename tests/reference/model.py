@@ -72,7 +72,7 @@ class Model:
             eaten=[0] * meals,
             memory=memory_of(species),
             birth_energy=species.energy.initial,
-            old_slot=self.rules.old_slots_only,
+            resident_slot=self.rules.resident_slots_only,
         )
 
     # One step.
@@ -129,7 +129,7 @@ class Model:
             agent, sums = turn.agent, world.sums[turn.agent.species]
             cause = "eaten" if turn.caught else "starved" if turn.starved else "age_energy"
             world.agents.remove(agent)
-            world.vacancies[agent.species].append(Vacancy(agent.genome, agent.old_slot))
+            world.vacancies[agent.species].append(Vacancy(agent.genome, agent.resident_slot))
             outcome.dead.append(agent)
             outcome.causes.append(cause)
             sums["deaths"] += 1

@@ -21,11 +21,11 @@ def inputs(rules: Rules, turn: Turn) -> dict[str, float]:
     for name in settings.smell:
         found[f"smell_{name}"] = float(turn.smelled[species.smells.index(name)].mean())
     if settings.relief_coef:
-        found["relief"] = need(species, turn.start) - need(species, turn.agent)
+        found["drive_reduction"] = drive(species, turn.start) - drive(species, turn.agent)
     return found
 
 
-def need(species: Species, agent: Agent) -> float:
+def drive(species: Species, agent: Agent) -> float:
     """Distance of the inner states from their set points, in shares of their capacities."""
     whole = {
         "energy": species.energy.capacity,
@@ -43,13 +43,17 @@ def reward(rules: Rules, turn: Turn, step: int) -> float:
     species = rules.of(turn.agent)
     total = 0.0
     for name, value in inputs(rules, turn).items():
-        total += coef(species, name) * (1.0 if name == "relief" else weight(species, turn.agent, name, step)) * value
+        total += (
+            coef(species, name)
+            * (1.0 if name == "drive_reduction" else weight(species, turn.agent, name, step))
+            * value
+        )
     return total
 
 
 def coef(species: Species, name: str) -> float:
     settings = species.reward
-    if name in ("action", "relief"):
+    if name in ("action", "drive_reduction"):
         return getattr(settings, f"{name}_coef")
     for sense in ("see", "smell"):
         if name.startswith(f"{sense}_"):

@@ -16,7 +16,7 @@ def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
     sources = {name: [] for name in species.smells}
     for kind, stock in zip(rules.kinds, world.stocks, strict=True):
         sources.get(kind, []).extend(stock.foods)
-    for x, y, kind in world.ghosts:
+    for x, y, kind in world.eaten_foods:
         sources.get(rules.kinds[kind], []).append((x, y))
     for other in world.agents:
         if other is not agent:

@@ -115,15 +115,15 @@ class Rules:
         self.hunting = any(name in each.eats for each in self.species for name in self.names)
         self.obstacle = held(config.obstacle)
         self.food_radius = held(config.body.food_radius)
-        self.ghosts_seen = config.sensor.eaten_food == "seen"
+        self.eaten_foods_seen = config.sensor.eaten_food == "seen"
         agents = sum(species.population.capacity for species in self.species)
         foods = sum(food.capacity for food in self.foods)
-        self.most_sources = agents + foods * (2 if self.ghosts_seen else 1)
+        self.most_sources = agents + foods * (2 if self.eaten_foods_seen else 1)
         self.all_mouths = config.sensor.mouths == "all"
         self.each_gains = config.diet.prey_sharing == "each"
         self.births_first = config.birth.order == "before_deaths"
         self.inherits_late = config.birth.inheritance == "at_window_end"
-        self.old_slots_only = config.birth.parents == "old_slots"
+        self.resident_slots_only = config.birth.parents == "old_slots"
         self.shared_heading = config.birth.heading == "shared"
         self.window = config.learning.rollout_steps
 

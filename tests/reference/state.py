@@ -48,7 +48,7 @@ class Agent:
     force_left: float = 0.0
     force_right: float = 0.0
     reward: float = 0.0
-    old_slot: bool = False
+    resident_slot: bool = False
     """Whether somebody lived in its slot when the window began."""
 
 
@@ -67,7 +67,7 @@ class Vacancy:
     """What the dead left in a free slot, and whether somebody lived there when the window began."""
 
     genome: np.ndarray
-    old_slot: bool = False
+    resident_slot: bool = False
 
 
 @dataclass
@@ -95,7 +95,7 @@ class World:
     meals: list[list[int]]
     vacancies: list[list[Vacancy]]
     newborns: list[Newborn] = field(default_factory=list)
-    ghosts: list[tuple[float, float, int]] = field(default_factory=list)
+    eaten_foods: list[tuple[float, float, int]] = field(default_factory=list)
     """Foods just eaten that rays still meet, with their kinds."""
 
     def copy(self) -> "World":
@@ -108,7 +108,7 @@ class World:
             meals=[[*meals] for meals in self.meals],
             vacancies=[[copy(vacancy) for vacancy in each] for each in self.vacancies],
             newborns=[copy(newborn) for newborn in self.newborns],
-            ghosts=[*self.ghosts],
+            eaten_foods=[*self.eaten_foods],
         )
 
 

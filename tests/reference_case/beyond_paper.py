@@ -75,7 +75,7 @@ SPECIES = {
             *each("two", 'sensor.scaling="unit"', "reward.smell.normal.coef=0.3"),
             *("population.capacity=20", "population.initial_count=12", 'sensor.eaten_food="seen"'),
         ),
-        {"smelled": 100, "paid_smell_two": 500, "paid_smell_normal": 500, "ghosts": 3},
+        {"smelled": 100, "paid_smell_two": 500, "paid_smell_normal": 500, "eaten_foods": 3},
     ),
     "wide": Case(
         "observations with more touch than one word has bits, and all inner states",

@@ -45,7 +45,7 @@ FIRST_PAPER = {
             *('genome.mutation_noise="frozen"', 'birth.parents="old_slots"', 'birth.order="after_deaths"'),
             *('sensor.mouths="all"', 'sensor.eaten_food="seen"', 'learning.acting_weights="float32"'),
         ),
-        {"births_failed_full": 5, "acts_ppo_float32": 100, "ghosts": 5},
+        {"births_failed_full": 5, "acts_ppo_float32": 100, "eaten_foods": 5},
         steps=104,
     ),
     "text": Case(

@@ -9,7 +9,7 @@ from sweep_case import planned, sweep_file
 
 from hedon.cli.display.sweep import SweepDisplay
 from hedon.experiment.plan import Moment
-from hedon.replication.run.work import Outcome
+from hedon.jobs.work import Outcome
 from hedon.sweep.work import make_task
 
 

@@ -203,10 +203,10 @@ def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
         seen = 0
         for i in range(0, watched.get("hedon.frame.id.length"), 7):
             watched.get(f"hedon.choose(hedon.frame.id[{i}])")
-            watched.until(f"hedon.source.mind()?.id === hedon.frame.id[{i}]")
+            watched.until(f"hedon.source.agentProbe()?.id === hedon.frame.id[{i}]")
             drawn = watched.get(f"hedon.rays({i})")
-            reading = watched.get("Array.from(hedon.source.mind().reading)")
-            types = watched.get("Array.from(hedon.source.mind().type)")
+            reading = watched.get("Array.from(hedon.source.agentProbe().reading)")
+            types = watched.get("Array.from(hedon.source.agentProbe().type)")
             for r, ray in enumerate(drawn):
                 assert (ray["type"] >= 0) == (reading[r] > 0)
                 if ray["type"] >= 0:

@@ -31,9 +31,9 @@ needs_node = pytest.mark.skipif(
 )
 
 
-def run_in_node(module: str, text: str, folder: Path, steps: int, portion: int = 50, threads: int = 0) -> dict:
+def run_in_node(module: str, text: str, folder: Path, steps: int, work_slice: int = 50, threads: int = 0) -> dict:
     """With 0 threads, one thread without shared memory."""
-    return in_node("digest.mjs", module, text, folder, str(steps), str(portion), str(threads))
+    return in_node("digest.mjs", module, text, folder, str(steps), str(work_slice), str(threads))
 
 
 def in_node(program: str, module: str, text: str, folder: Path, *more: str) -> dict:
@@ -119,7 +119,7 @@ def test_twenty_windows_have_the_bits_of_the_native_engine(module, kernel, prese
 
 
 @needs_node
-def test_the_size_of_the_portions_of_learning_changes_no_bit(tmp_path):
+def test_the_size_of_the_slices_of_learning_changes_no_bit(tmp_path):
     text = engine_text(load_config("small"), 3)
     assert (
         run_in_node("hedon.wasm", text, tmp_path, 1024, 1)["digest"]
@@ -156,11 +156,11 @@ SHORT = ["learning.rollout_steps=256", "population.capacity=90"]
 
 @pytest.fixture(scope="module")
 def handled(tmp_path_factory):
-    """What hand.mjs did to a world with short windows."""
+    """What edit.mjs did to a world with short windows."""
     if shutil.which("node") is None:
         pytest.skip("needs Node 20 or newer")
     text = engine_text(load_config("small", overrides=SHORT), 1)
-    return in_node("hand.mjs", "hedon.wasm", text, tmp_path_factory.mktemp("hand"))
+    return in_node("edit.mjs", "hedon.wasm", text, tmp_path_factory.mktemp("edit"))
 
 
 def test_a_world_can_be_changed_by_hand_where_there_is_room(handled):
@@ -168,7 +168,7 @@ def test_a_world_can_be_changed_by_hand_where_there_is_room(handled):
     assert (more - first, again - first) == (1, 0)
     assert handled["death"] == [300, 300]
     assert [count - handled["foods"][0] for count in handled["foods"]] == [0, 1, 0]
-    assert (handled["untouched"], handled["byHand"]) == (False, True)
+    assert (handled["untouched"], handled["edited"]) == (False, True)
     for refusal in (handled["overlap"], handled["wall"]):
         assert refusal.startswith("there is no room: something is in the way")
     assert handled["full"] == "there is no room: population.capacity is 90"
@@ -192,4 +192,4 @@ def test_a_world_that_was_kept_goes_on_with_the_same_bits(handled):
 def test_nobody_is_added_where_children_inherit_late(tmp_path):
     text = engine_text(load_config("small", "released"), 1)
     with pytest.raises(AssertionError, match="inherit at the end of a window"):
-        in_node("hand.mjs", "hedon.wasm", text, tmp_path, "add")
+        in_node("edit.mjs", "hedon.wasm", text, tmp_path, "add")

@@ -19,7 +19,7 @@ export class AgentPanel {
 
   update(source: Source, frame: Frame | undefined, chosen: number): void {
     if (this.host.hidden) return;
-    const key = `${chosen} ${frame?.step} ${source.lives.size} ${source.mind()?.id}`;
+    const key = `${chosen} ${frame?.step} ${source.lives.size} ${source.agentProbe()?.id}`;
     if (key === this.last) return;
     this.last = key;
     if (chosen < 0) return this.invite();
@@ -156,12 +156,12 @@ function smells(source: Source, frame: Frame, at: number): HTMLElement {
 }
 
 function answer(source: Source): HTMLElement {
-  const mind = source.mind();
-  if (!mind) {
+  const probe = source.agentProbe();
+  if (!probe) {
     const why = source.live ? "…" : "Networks are not recorded. In a live world you see what they say.";
     return element("p", { text: why, class: "quiet" });
   }
-  const [left, right, value] = mind.output;
+  const [left, right, value] = probe.output;
   const share = (action: number) => `${(100 / (1 + Math.exp(-action))).toFixed(0)} %`;
   return table([
     ["left motor", share(left!)],

@@ -257,7 +257,7 @@ export class App {
     });
     const { source } = this;
     const digest = source.digest();
-    const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.byHand ? ", changed by hand" : ""}` })] : [];
+    const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.edited ? ", changed by hand" : ""}` })] : [];
     if (made.length > 0) made[0]!.id = "digest";
     const kernel = source instanceof Live ? [element("div", { text: `${source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "kernel portable"}, ${source.threads > 1 ? `${source.threads} threads` : "1 thread"}` })] : [];
     by("legend").replaceChildren(element("div", { text: this.coloring.label }), bar, element("div", {}, ...foods), ...kernel, ...made);
@@ -290,7 +290,7 @@ export class App {
     const { source } = this;
     if (source instanceof Live) {
       const same = command(source.world, source.changes, source.seed, source.last);
-      const said = source.byHand ? "It was changed by hand: no command makes the same world. It began as" : "The same world, with the same digest:";
+      const said = source.edited ? "It was changed by hand: no command makes the same world. It began as" : "The same world, with the same digest:";
       lines.push(element("p", { text: said }), element("code", { text: same }));
     }
     box.replaceChildren(...lines);

@@ -234,8 +234,8 @@ export class Engine {
   }
 
   /** Whether the world has been changed by hand. */
-  get byHand() {
-    return this.exports.hedon_by_hand() === 1;
+  get edited() {
+    return this.exports.hedon_edited() === 1;
   }
 
   /** Keeps the world as it is now, instead of the one kept before. */
@@ -289,8 +289,8 @@ export class Engine {
   }
 
   /** What the agent in a slot senses now, and its network's answer. @param {number} slot */
-  mind(slot) {
-    const at = this.exports.hedon_mind(slot) >>> 0;
+  probeAgent(slot) {
+    const at = this.exports.hedon_probe(slot) >>> 0;
     const { buffer } = this.memory;
     return {
       reading: new Float32Array(buffer, at, 32).slice(),

@@ -1,9 +1,9 @@
 // A world that the engine runs in this page, as a source of moments.
 import { Lives } from "./lives";
-import type { Deed, Moment, Order, Report } from "./live.worker";
+import type { Edit, Moment, Order, Report } from "./live.worker";
 import { columnOf, Series } from "./series";
 import type { Source } from "./source";
-import type { Frame, Life, LiveWorld, Mind, Place } from "./types";
+import type { Frame, Life, LiveWorld, AgentProbe, Place } from "./types";
 
 const SAMPLE_STEPS = 256; // between two points of the plots
 const KEPT_FRAMES = 2000; // that can be looked back at
@@ -34,14 +34,14 @@ export class Live implements Source {
   error = "";
   over = false;
   obstacles: Place[][] = [];
-  byHand = false;
+  edited = false;
   kept = -1; // step of the snapshot
-  refused = ""; // why the last deed was not done
+  refused = ""; // why the last edit was not done
   private ready = false;
   private busy = false;
   private learning = 0;
   private known = "";
-  private seen: Mind | undefined;
+  private seen: AgentProbe | undefined;
   private readonly frames: Frame[] = [];
   private sampled = { step: 0, births: 0, deaths: 0 };
   private measured = { time: performance.now(), steps: 0 };
@@ -78,7 +78,7 @@ export class Live implements Source {
     return this.known;
   }
 
-  mind(): Mind | undefined {
+  agentProbe(): AgentProbe | undefined {
     return this.seen?.id === this.chosen ? this.seen : undefined;
   }
 
@@ -91,11 +91,11 @@ export class Live implements Source {
   }
 
   /** Changes the world by hand, keeps it, or goes back to what was kept. */
-  act(deed: Deed): void {
+  act(edit: Edit): void {
     if (!this.ready || this.error) return;
     this.refused = "";
     this.busy = true;
-    this.send({ type: "do", deed, chosen: this.chosen, digest: true });
+    this.send({ type: "do", edit, chosen: this.chosen, digest: true });
   }
 
   /** Looks again without a step: for another chosen agent, or for the digest. */
@@ -130,8 +130,8 @@ export class Live implements Source {
     this.learning = moment.learning;
     this.known = moment.digest;
     this.over = moment.over;
-    this.seen = moment.mind;
-    this.byHand = moment.byHand;
+    this.seen = moment.agentProbe;
+    this.edited = moment.edited;
     this.kept = moment.kept;
     if (moment.refused) this.refused = moment.refused;
     if (moment.back) this.rewind(frame.step, moment.counts);

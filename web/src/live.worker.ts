@@ -1,17 +1,17 @@
 // Runs a world away from the page's thread, a little at a time, and answers with what is to be drawn.
 import { compile, Engine, EngineError, type Post } from "./engine.js";
 import { LastMeals } from "./meals";
-import type { Frame, Layout, Life, Mind, Place } from "./types";
+import type { Frame, Layout, Life, AgentProbe, Place } from "./types";
 
 /** What a person does to a world by hand. A type is a species, or a food after all species. */
-export type Deed =
+export type Edit =
   | { type: "add"; kind: number; x: number; y: number }
   | { type: "remove"; x: number; y: number; slack: number }
   | { type: "keep" }
   | { type: "back" };
 export type Order =
   | { type: "make"; text: string; layout: Layout; threads: number }
-  | { type: "do"; deed: Deed; chosen: number; digest: boolean }
+  | { type: "do"; edit: Edit; chosen: number; digest: boolean }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean };
 
 export interface Moment {
@@ -19,15 +19,15 @@ export interface Moment {
   lives: Life[];
   dead: Life[];
   counts: Record<string, number>;
-  mind?: Mind;
+  agentProbe?: AgentProbe;
   learning: number; // agents that still have to learn before the next step
   done: number; // steps of this order
   over: boolean;
   digest: string; // "" unless it was asked for and no window is being learned
-  byHand: boolean; // whether the world has been changed by hand
+  edited: boolean; // whether the world has been changed by hand
   kept: number; // step of the snapshot, -1 for none
   back: boolean; // whether the world has just gone back to its snapshot
-  refused: string; // why the deed was not done
+  refused: string; // why the edit was not done
 }
 export type Report = { type: "made"; fused: boolean; bytes: number; threads: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
 
@@ -111,13 +111,13 @@ function genome(row: Float32Array, species: number): number[] {
 }
 
 function lives(world: Engine, prefix: string, rows: ArrayLike<number>): Life[] {
-  const column = (name: string) => world.view(`${prefix === "life" ? "life" : "event"}.${name}`)!;
+  const column = (name: string) => world.view(`${prefix === "life" ? "life" : "death_log"}.${name}`)!;
   const [id, parent, generation] = [column("agent_id"), column("parent_id"), column("generation")];
   const [birth, death, energy] = [column("birth_step"), column("death_step"), column("energy")];
   const [children, reward] = [column("children"), column("reward")];
-  const eaten = world.view(prefix === "life" ? "eaten" : "event_eaten") as Int32Array;
-  const genomes = world.view(prefix === "life" ? "genome" : "event_genome") as Float32Array;
-  const species = prefix === "life" ? undefined : world.view("event_species")!;
+  const eaten = world.view(prefix === "life" ? "eaten" : "death_log_eaten") as Int32Array;
+  const genomes = world.view(prefix === "life" ? "genome" : "death_log_genome") as Float32Array;
+  const species = prefix === "life" ? undefined : world.view("death_log_species")!;
   const [kinds, genes] = [layout!.meals.length, Math.max(...layout!.species.map((each) => each.genes.length))];
   return Array.from(rows, (row) => ({
     id: Number(id[row]),
@@ -183,11 +183,11 @@ function advance(world: Engine, steps: number, milliseconds: number): number {
 }
 
 /** Does it; returns why it cannot be done, or "". */
-function act(world: Engine, deed: Deed): string {
+function act(world: Engine, edit: Edit): string {
   try {
-    if (deed.type === "add") world.add(deed.kind, deed.x, deed.y);
-    else if (deed.type === "remove") world.remove(deed.x, deed.y, deed.slack);
-    else if (deed.type === "keep") {
+    if (edit.type === "add") world.add(edit.kind, edit.x, edit.y);
+    else if (edit.type === "remove") world.remove(edit.x, edit.y, edit.slack);
+    else if (edit.type === "keep") {
       world.keep();
       kept = { step: world.number("head.step"), meals: meals.copy() };
     } else {
@@ -210,8 +210,8 @@ interface Told {
 
 function moment(world: Engine, { done, refused, back }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
-  const waiting = world.number("head.event_count");
-  const dead = lives(world, "event", Array.from({ length: waiting }, (_, i) => i));
+  const waiting = world.number("head.death_log_count");
+  const dead = lives(world, "death_log", Array.from({ length: waiting }, (_, i) => i));
   world.takeDeaths();
   const here = frame(world, living);
   const at = here.id.indexOf(chosen);
@@ -222,12 +222,12 @@ function moment(world: Engine, { done, refused, back }: Told, { chosen, digest }
     lives: lives(world, "life", living),
     dead,
     counts,
-    mind: at >= 0 ? { id: chosen, ...world.mind(living[at]!) } : undefined,
+    agentProbe: at >= 0 ? { id: chosen, ...world.probeAgent(living[at]!) } : undefined,
     learning,
     done,
     over: living.length === 0,
     digest: learning || !digest ? "" : world.digest(),
-    byHand: world.byHand,
+    edited: world.edited,
     kept: kept?.step ?? -1,
     back,
     refused,
@@ -241,8 +241,8 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
       const told = { done: 0, refused: "", back: false };
       if (data.type === "advance") told.done = advance(engine, data.steps, data.milliseconds);
       else {
-        told.refused = act(engine, data.deed);
-        told.back = data.deed.type === "back" && told.refused === "";
+        told.refused = act(engine, data.edit);
+        told.back = data.edit.type === "back" && told.refused === "";
       }
       self.postMessage({ type: "moment", moment: moment(engine, told, data) } satisfies Report);
     }

@@ -98,7 +98,7 @@ export class Replay implements Source {
     return this.index.digests[this.world] ?? "";
   }
 
-  mind(): undefined {
+  agentProbe(): undefined {
     return undefined;
   }
 

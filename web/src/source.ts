@@ -1,7 +1,7 @@
 // What the page shows: records, or a live world.
 import type { Lives } from "./lives";
 import type { Series } from "./series";
-import type { Frame, Layout, Mind, Place } from "./types";
+import type { Frame, Layout, AgentProbe, Place } from "./types";
 
 /** Where moments come from: records, or a world that runs. */
 export interface Source {
@@ -14,7 +14,7 @@ export interface Source {
   readonly series: Series;
   /** The moments at or before `step` and after it, where they are known; asks for what is not. */
   around(step: number): { before?: Frame; after?: Frame };
-  mind(): Mind | undefined;
+  agentProbe(): AgentProbe | undefined;
   status(): string;
   /** The world's digest, or "" where it is not known. */
   digest(): string;

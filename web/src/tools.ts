@@ -8,7 +8,7 @@ import type { Setting } from "./types";
 
 export class Tools {
   private readonly host = by<HTMLDivElement>("world-panel");
-  private readonly hand = element("select");
+  private readonly edit = element("select");
   private readonly back = element("button");
   private readonly refused = element("p", { class: "problem" });
   private readonly kept = element("p", { class: "quiet" });
@@ -23,13 +23,13 @@ export class Tools {
       return;
     }
     this.refused.setAttribute("role", "alert");
-    this.hand.id = "hand";
+    this.edit.id = "edit";
     this.back.id = "back";
     this.back.addEventListener("click", () => live.act({ type: "back" }));
     const keep = this.button("keep", "Keep it as it is now", () => live.act({ type: "keep" }));
     this.host.replaceChildren(
       element("h3", { text: "by hand" }),
-      element("label", {}, "A click in the arena ", this.hand),
+      element("label", {}, "A click in the arena ", this.edit),
       this.refused,
       element("p", { text: "Who is added has a founder's energy, new genes and a new network. After a change by hand no config gives this world.", class: "quiet" }),
       element("h3", { text: "snapshot" }),
@@ -40,19 +40,19 @@ export class Tools {
       element("h3", { text: "side by side" }),
       ...this.pair(live, beside, alone),
     );
-    this.hand.append(option("choose", "chooses an agent"));
+    this.edit.append(option("choose", "chooses an agent"));
     live.layout.types.slice(0, live.layout.species.length + live.layout.foods.length).forEach((name, type) => {
-      this.hand.append(option(String(type), `adds ${type < live.layout.species.length ? "" : "food "}${name}`));
+      this.edit.append(option(String(type), `adds ${type < live.layout.species.length ? "" : "food "}${name}`));
     });
-    this.hand.append(option("remove", "removes what is there"));
+    this.edit.append(option("remove", "removes what is there"));
     this.update();
   }
 
   /** Does by hand what was chosen; false if a click chooses an agent. */
   click(source: Source, x: number, y: number, pixel: number): boolean {
-    if (!this.live || source !== this.live || this.hand.value === "choose") return false;
-    if (this.hand.value === "remove") this.live.act({ type: "remove", x, y, slack: 3 * pixel });
-    else this.live.act({ type: "add", kind: Number(this.hand.value), x, y });
+    if (!this.live || source !== this.live || this.edit.value === "choose") return false;
+    if (this.edit.value === "remove") this.live.act({ type: "remove", x, y, slack: 3 * pixel });
+    else this.live.act({ type: "add", kind: Number(this.edit.value), x, y });
     return true;
   }
 

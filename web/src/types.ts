@@ -64,7 +64,7 @@ export interface Life {
 }
 
 /** What an agent senses now and how its network answers; only a live world knows it. */
-export interface Mind {
+export interface AgentProbe {
   id: number;
   reading: Float32Array; // distance + 1, 0 for nothing
   type: Uint8Array;

@@ -2,13 +2,13 @@
 // So many agents learn at a time, as in the page. Without THREADS, the memory is not shared.
 import { make } from "./make.mjs";
 
-const [module, text, steps, portion, threads] = process.argv.slice(2);
+const [module, text, steps, workSlice, threads] = process.argv.slice(2);
 const engine = await make(module, text, Number(threads ?? 0));
 const begun = performance.now();
 for (let left = Number(steps); left > 0; ) {
   const done = engine.run(left);
   left -= done;
-  while (engine.mustLearn) engine.learn(Number(portion));
+  while (engine.mustLearn) engine.learn(Number(workSlice));
   if (done === 0) break;
 }
 const seconds = (performance.now() - begun) / 1000;

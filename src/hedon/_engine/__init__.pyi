@@ -51,7 +51,7 @@ class Simulation:
 
     def take_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """
-        Columns of the agents that died since the last call, the oldest first: the newest `event` rows of them. `head` says before how many older ones are lost (`events_lost`).
+        Columns of the agents that died since the last call, the oldest first: the newest of them, as many as `death_log` has rows. `head` says before how many older ones are lost (`death_log_lost`).
         """
 
     def living_rows(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
@@ -73,17 +73,17 @@ class Simulation:
         Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers).
         """
 
-    def command(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:
+    def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:
         """
         Tells the agents of an external species what to do from now on: (worlds, slots, 2).
         """
 
-    def show(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
+    def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
         """
         Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …).
         """
 
-    def pay(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
+    def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
         """The same without what they sense."""
 
     def meals(self, species: int) -> numpy.typing.NDArray[numpy.int64]:

@@ -50,7 +50,12 @@ class Response:
     sure: bool = True
 
     def value(self, world: WorldRecord, common: Common) -> float | None:
-        """The figure of a world; None where it has none or, for a ratio, where it is not above 0."""
+        """The figure of a world; None where it has none or, for a ratio, where it is not above 0.
+
+        Args:
+            world: a world with its records.
+            common: what the responses of one world share, computed once.
+        """
         value = self.measure(world, common)
         return None if value is None or not math.isfinite(value) or (self.ratio and value <= 0) else value
 
@@ -89,7 +94,13 @@ def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
 
 
 def figures(world: WorldRecord, common: Common, responses: Sequence[Response]) -> dict[str, float | None]:
-    """All figures of one world, by name."""
+    """All figures of one world, by name.
+
+    Args:
+        world: a world with its records.
+        common: what the responses of one world share, computed once.
+        responses: what is measured.
+    """
     return {response.name: response.value(world, common) for response in responses}
 
 

@@ -31,7 +31,15 @@ class ResultTable:
 def table(
     name: str, title: str, rows: Iterable[Mapping[str, Any]], note: str = "", *, shown: bool = True
 ) -> ResultTable:
-    """A table from one mapping per row; NaN becomes null. A table without rows has no columns either."""
+    """Makes a table from one mapping per row; NaN becomes null. A table without rows has no columns either.
+
+    Args:
+        name: of its file.
+        title: above it.
+        rows: values by column; columns appear in the order in which rows first name them.
+        note: below it.
+        shown: whether pages print it, or only its file has it.
+    """
     frame = pl.DataFrame(list(rows), infer_schema_length=None).fill_nan(None)
     return ResultTable(name, title, frame, note, shown)
 

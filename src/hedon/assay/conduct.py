@@ -29,6 +29,10 @@ class AssayRuns:
 def conduct(plans: Sequence[RunPlan], show: Show) -> AssayRuns:
     """Makes runs one after the other; stops where one is interrupted.
 
+    Args:
+        plans: of the runs; each folder is empty, or holds the same run.
+        show: how the progress of a run is shown.
+
     Raises:
         RecordError: A folder holds a run with other settings, founders or seeds.
         HedonError: As `run` and `resume`.

@@ -157,7 +157,14 @@ def measure_contest(run: Run, groups: tuple[str, str]) -> Contest:
 
 
 def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, steps: int) -> Contest:
-    """What the numbers in some worlds say; see `Contest`."""
+    """Estimates what the numbers of two groups in some worlds tell; see `Contest`.
+
+    Args:
+        groups: names of the first and the second group.
+        lines: numbers over time, one entry per world.
+        config: of all the worlds.
+        steps: of each world [step].
+    """
     rng = np.random.default_rng(_SEED)
     worlds = len(lines)
     change = np.array([each.share[-1] - each.share[0] for each in lines])

@@ -41,6 +41,10 @@ def read_ends(path: Path, config: Config) -> list[End]:
     Of a reproduction with several conditions only the rows of the config's own condition count, if there are any; of a
     run with several species, the species that the config has first.
 
+    Args:
+        path: a run's folder, a `summary.json` or a `reproduction.json`.
+        config: of the assay; of several species, its first one counts.
+
     Raises:
         AssayError: There are none, or the file cannot be read.
         RecordError: A run cannot be read.
@@ -116,5 +120,10 @@ def paper_ends(config: Config) -> list[End]:
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:
-    """The ends that have both genes, with their points."""
+    """The ends that have both genes, with their points.
+
+    Args:
+        ends: mean weights at the ends of runs.
+        genes: columns of the two genes.
+    """
     return [(end, (end.weights[genes[0]], end.weights[genes[1]])) for end in ends if set(genes) <= end.weights.keys()]

@@ -69,8 +69,8 @@ def flatness(terms: Floats, fitness: Floats, world: Ints, rng: np.random.Generat
 
     Args:
         terms: of the regression, (n, p).
-        fitness: as for `gene_effects`.
-        world: as for `gene_effects`.
+        fitness: relative to the mean of the own world, (n,).
+        world: of each founder, from 0 on, (n,).
         rng: source of chance.
     """
     x, _ = np.linalg.qr(within(terms, world))

@@ -103,6 +103,12 @@ def spread_founders(config: Config, spread: Spread, species: str | None = None, 
     """A table of genomes spread over all genes, independently; the same for the same arguments.
 
     With a species, only its genes; those of the others are drawn as the config says.
+
+    Args:
+        config: with the genes and their limits.
+        spread: the law that all genes are drawn from; values beyond a gene's limit are clipped.
+        species: whose genes; None for those of all.
+        rows: genomes in the table.
     """
     names = gene_columns(config) if species is None else layouts(config)[species].gene_names
     rng = np.random.default_rng(_SEED)
@@ -116,7 +122,7 @@ def spread_founders(config: Config, spread: Spread, species: str | None = None, 
     return make_founders([prefix + name for name in names], values, ["spread"] * rows)
 
 
-def read_outcomes(runs: Sequence[Run], species: str | None = None) -> tuple[list[WorldRecord], pl.DataFrame]:
+def _read_outcomes(runs: Sequence[Run], species: str | None = None) -> tuple[list[WorldRecord], pl.DataFrame]:
     """The worlds of an assay, or one species of them, and a row per founder: world (from 0 on), seed, agent_id, genes,
     measures."""
     worlds = [world for world in read_worlds(runs) if species is None or world.condition.endswith(f": {species}")]
@@ -140,7 +146,7 @@ def measure_landscape(run: Run, genes: tuple[str, str], species: str | None = No
     Raises:
         AssayError: all worlds died out before anything could be measured.
     """
-    worlds, outcomes = read_outcomes([run], species)
+    worlds, outcomes = _read_outcomes([run], species)
     names = worlds[0].weight_names
     surfaces = {}
     for measure in MEASURES:

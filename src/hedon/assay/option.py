@@ -18,6 +18,10 @@ from hedon.text import brief
 def choose_genes(text: str | None, config: Config) -> tuple[str, str]:
     """The columns of two genes from a text such as "food,action", which is also the default.
 
+    Args:
+        text: two names with a comma between them; None for the default.
+        config: that has the genes.
+
     Raises:
         AssayError: They are not two genes of the config.
     """
@@ -34,6 +38,11 @@ def choose_genes(text: str | None, config: Config) -> tuple[str, str]:
 
 def parse_spread(text: str, sd: float | None, config: Config) -> Spread:
     """How founders are spread, from a range such as "-8:8", or normally if `sd` is given.
+
+    Args:
+        text: LOW:HIGH.
+        sd: standard deviation of a normal law around 0, which then holds instead of the range; or None.
+        config: with the limit of weights.
 
     Raises:
         AssayError: It is not a range within the weight limit, or the standard deviation is not above 0.
@@ -86,6 +95,11 @@ def assay_plan(
 def competitors(sources: Sequence[str], shares: Sequence[float], config: Config) -> tuple[Founders, tuple[str, str]]:
     """Founders from two sources, and the names of their groups.
 
+    Args:
+        sources: two, each as `hedon run --founders` takes it.
+        shares: of both among the founders.
+        config: of the world that they compete in.
+
     Raises:
         FounderError: A source cannot be used.
         RecordError: A run cannot be read.
@@ -98,6 +112,11 @@ def competitors(sources: Sequence[str], shares: Sequence[float], config: Config)
 
 def knocked_out(source: str, gene: str, config: Config) -> tuple[Founders, tuple[str, str]]:
     """The living of a run with one gene set to 0, against themselves, and the names of both groups.
+
+    Args:
+        source: the living of a run, RUN or RUN@STEP.
+        gene: its column, its kind of food, or `action`.
+        config: of the world that they compete in.
 
     Raises:
         AssayError: The run has no such gene.
@@ -113,7 +132,12 @@ def knocked_out(source: str, gene: str, config: Config) -> tuple[Founders, tuple
 
 
 def condition_of(given: str | None, sources: Sequence[str]) -> str:
-    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline."""
+    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline.
+
+    Args:
+        given: a preset or a file; None if the user gave none.
+        sources: of the founders; some may be runs.
+    """
     if given is not None:
         return given
     folders = [Path(source.rpartition("@")[0] or source) for source in sources]
@@ -128,6 +152,10 @@ def still(config: Config) -> Config:
 
 def start_config(config: Config, point: Mapping[str, float]) -> Config:
     """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
+
+    Args:
+        config: of the condition.
+        point: means of the founders' genes, by column; other genes keep theirs.
 
     Raises:
         AssayError: The point has a neutral marker.

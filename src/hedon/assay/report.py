@@ -93,5 +93,10 @@ def world_line(runs: Sequence[Run]) -> str:
 
 
 def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
-    """A row with a value and its interval."""
+    """A row with a value and its interval.
+
+    Args:
+        labels: the first columns.
+        estimate: value, low and high.
+    """
     return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}

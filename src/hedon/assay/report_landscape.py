@@ -20,12 +20,26 @@ OUTCOMES = "founders-outcome.csv"
 
 
 def landscape_tables(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
-    """What is printed: the surfaces, each gene by itself, and fitness at the ends of runs."""
+    """What is printed: the surfaces, each gene by itself, and fitness at the ends of runs.
+
+    Args:
+        landscape: what was measured.
+        ends: mean weights at the ends of runs.
+    """
     return [_surfaces(landscape), _effects(landscape), *_ends(landscape, ends)]
 
 
 def write_landscape(landscape: Landscape, run: Run, ends: Sequence[End], folder: Path) -> list[Path]:
     """Writes the summary, the page, the figure and the founders' outcomes into a folder.
+
+    Args:
+        landscape: what was measured.
+        run: that it was measured in.
+        ends: mean weights at the ends of runs.
+        folder: is made if it is missing.
+
+    Returns:
+        The files.
 
     Raises:
         RecordError: A file cannot be written.
@@ -39,13 +53,13 @@ def write_landscape(landscape: Landscape, run: Run, ends: Sequence[End], folder:
         ]
     )
     figure = draw_landscape(landscape, ends)
-    files = write_assay(folder, "landscape", [run], landscape.config, landscape_json(landscape), tables, intro, figure)
+    files = write_assay(folder, "landscape", [run], landscape.config, _landscape_json(landscape), tables, intro, figure)
     rows = landscape.outcomes.write_csv().encode()
     write_atomically(folder / OUTCOMES, lambda file: file.write(rows))
     return [*files, folder / OUTCOMES]
 
 
-def landscape_json(landscape: Landscape) -> dict[str, Any]:
+def _landscape_json(landscape: Landscape) -> dict[str, Any]:
     """What the summary holds besides the tables."""
     surfaces = {}
     for name, found in landscape.surfaces.items():

@@ -18,7 +18,13 @@ Ints = NDArray[np.int64]
 
 
 def world_draws(worlds: int, rng: np.random.Generator, replicates: int = REPLICATES) -> Floats:
-    """How often each world is drawn in each bootstrap sample, (replicates, worlds)."""
+    """How often each world is drawn in each bootstrap sample, (replicates, worlds).
+
+    Args:
+        worlds: how many there are, and are drawn.
+        rng: source of chance.
+        replicates: bootstrap samples.
+    """
     return rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
 
 
@@ -31,6 +37,9 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
     Args:
         values: one per replicate, (replicates, …). There is no interval where more than one in twenty is not finite.
         worlds: how many were drawn.
+
+    Returns:
+        Lower and upper bound, (2, …).
     """
     if worlds < FEWEST_WORLDS:
         return np.full((2, *values.shape[1:]), np.nan)
@@ -43,7 +52,15 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
 
 
 def within(values: Floats, world: Ints) -> Floats:
-    """Deviations from the mean of the own world, shape as given; (n,) or (n, columns)."""
+    """Deviations from the mean of the own world.
+
+    Args:
+        values: (n,) or (n, columns).
+        world: the world of each row, from 0 on, (n,).
+
+    Returns:
+        The shape of `values`.
+    """
     count = np.bincount(world)
     columns = values if values.ndim > 1 else values[:, None]
     means = np.stack([np.bincount(world, column) / np.maximum(count, 1) for column in columns.T], axis=1)
@@ -52,13 +69,25 @@ def within(values: Floats, world: Ints) -> Floats:
 
 
 def relative(values: Floats, world: Ints) -> Floats:
-    """Values over the mean of the own world, (n,); NaN in a world whose mean is not above 0."""
+    """Values over the mean of the own world, (n,); NaN in a world whose mean is not above 0.
+
+    Args:
+        values: (n,).
+        world: the world of each, from 0 on, (n,).
+    """
     mean = (np.bincount(world, values) / np.maximum(np.bincount(world), 1))[world]
     return np.where(mean > 0, values / np.where(mean > 0, mean, 1.0), np.nan)
 
 
 def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int = PERMUTATIONS) -> Floats:
-    """Values exchanged among the founders of each world, (n, times): what is expected if genes do nothing."""
+    """Values exchanged among the founders of each world, (n, times): what is expected if genes do nothing.
+
+    Args:
+        values: one per founder, (n,).
+        world: the world of each, from 0 on, (n,).
+        rng: source of chance.
+        times: how many permutations.
+    """
     found = np.empty((len(values), times))
     for index in np.unique(world):
         mine = np.flatnonzero(world == index)
@@ -71,8 +100,8 @@ def chance(observed: Floats, null: Floats) -> Floats:
     """Two-sided chance of a value at least so far from 0 under the null.
 
     Args:
-        observed: (…).
-        null: (…, times).
+        observed: (…,).
+        null: draws under the null, (…, times).
     """
     beyond = (np.abs(null) >= np.abs(observed)[..., None] * (1 - 1e-12)).sum(axis=-1)
     return (1.0 + beyond) / (1.0 + null.shape[-1])

@@ -40,7 +40,7 @@ class Quadratic:
         curvature: second derivative along each gene; negative where fitness has a maximum.
         interaction: mixed second derivative.
         optimum: where the slope is 0, of each gene; NaN unless it is a maximum.
-        coefficients: β1, β2, Γ11, Γ22, Γ12.
+        coefficients: β1, β2, Γ11, Γ22, Γ12, (5,).
     """
 
     slope: tuple[Estimate, Estimate]
@@ -64,7 +64,7 @@ class Smooth:
         freedom: effective number of parameters; 3 is a twisted plane.
         coefficients, draws: of the spline, (K²,), and in each bootstrap sample, (replicates, K²).
         shift: puts the mean over founders to 1; for the estimate and each sample, (1 + replicates,).
-        knots: of each gene.
+        knots: of each gene, (2, K + degree + 1).
         worlds: that entered.
     """
 
@@ -124,11 +124,11 @@ def fit_smooth(
     """Fits the smooth surface within bounds.
 
     Args:
-        z: as for `fit_quadratic`, and so are the next two.
-        fitness: relative to the mean of the own world.
-        world: of each founder.
-        rng: source of chance.
+        z: the two genes of each founder, (n, 2).
+        fitness: relative to the mean of the own world, (n,).
+        world: of each founder, from 0 on, (n,).
         bounds: lower and upper bound of the two genes, (2,) each; founders beyond count as if they were at the bound.
+        rng: source of chance.
     """
     knots = np.stack([_knots(low, high) for low, high in zip(*bounds, strict=True)])
     inside = np.clip(z, *bounds)

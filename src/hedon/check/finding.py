@@ -50,10 +50,10 @@ def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapp
     for what, wrong in rules.items():
         found = rows.filter(wrong)
         if found.height:
-            yield Finding(table, f"{name_rows(found, keys)}: {what}")
+            yield Finding(table, f"{_name_rows(found, keys)}: {what}")
 
 
-def name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
+def _name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
     """The first rows by their keys, and how many more there are."""
     words = [key.removesuffix("_id") for key in keys]
     names = [

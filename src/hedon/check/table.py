@@ -15,7 +15,12 @@ from hedon.record.part import load_part, value_faults
 
 
 def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
-    """Compares the parts on disk with their SHA-256 in a checkpoint."""
+    """Compares the parts on disk with their SHA-256 in a checkpoint.
+
+    Args:
+        folder: of the run.
+        parts: by table, the SHA-256 of each part in order, in hexadecimal digits.
+    """
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
             path = part_path(folder, table, index)
@@ -29,7 +34,12 @@ def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[
 
 
 def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
-    """Names the parts that are missing between the first and the last."""
+    """Names the parts that are missing between the first and the last.
+
+    Args:
+        folder: of the run.
+        table: its name.
+    """
     paths = part_paths(folder, table)
     expected = [part_path(folder, table, index) for index in range(len(paths))]
     if paths != expected:
@@ -40,7 +50,13 @@ def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
 def read_parts(
     folder: Path, table: Table, manifest: Manifest | None
 ) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
-    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong."""
+    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong.
+
+    Args:
+        folder: of the run.
+        table: its schema.
+        manifest: of the run; None if it cannot be read, then values are not compared with it.
+    """
     paths = part_paths(folder, table.name)
     if table.name == "agents" and (folder / LIVING).exists():
         paths.append(folder / LIVING)

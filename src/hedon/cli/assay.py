@@ -103,7 +103,12 @@ def landscape(
 
 
 def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | None":
-    """The runs of an assay, made or read; None if one was interrupted, which it says."""
+    """The runs of an assay, made or read; None if one was interrupted, which it says.
+
+    Args:
+        plans: Of its runs.
+        console: Where it prints.
+    """
     from hedon.assay.conduct import conduct
 
     made = conduct(plans, _shower(console))
@@ -114,7 +119,13 @@ def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | N
 
 
 def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Console") -> None:
-    """Prints the tables, and where they were written."""
+    """Prints the tables, and where they were written.
+
+    Args:
+        tables: Of the assay.
+        files: That were written.
+        console: Where it prints.
+    """
     from hedon.cli.display.analysis import analysis_group
 
     console.print(analysis_group({table.name: table for table in tables}))

@@ -10,7 +10,6 @@ import typer
 
 from hedon.cli import assay, assay_contest, assay_start, config, sweep
 from hedon.cli.analyze import analyze
-from hedon.cli.bench import bench
 from hedon.cli.branch import branch
 from hedon.cli.check import check
 from hedon.cli.demography import demography
@@ -18,9 +17,9 @@ from hedon.cli.export import export
 from hedon.cli.output import OutputError, give_up, guard
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
-from hedon.cli.reproduce import reproduce
 from hedon.cli.resume import resume
 from hedon.cli.run import run
+from hedon.cli.study import reproduce
 from hedon.cli.video import video
 from hedon.cli.view import view
 from hedon.error import HedonError
@@ -32,6 +31,12 @@ NO_MEMORY = (
 )
 ADDRESSES = 2_000_000_000
 """Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
+
+GONE = {
+    "bench": "the benchmarks are no part of the package any more: call `uv run python -m benchmarks` in a checkout",
+}
+"""Commands that there were once, with what stands in their place."""
+
 
 app = typer.Typer(
     name="hedon",
@@ -55,7 +60,6 @@ app.command()(export)
 app.command()(check)
 app.command()(replay_fault)
 app.command()(config.presets)
-app.command()(bench)
 assay_contest.add_to(assay.app)
 assay_start.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
@@ -93,17 +97,18 @@ def _hedon(
       hedon sweep run cost.toml
       hedon presets
       hedon config show baseline --set food.normal.growth_rate=0.5
-      hedon bench
     """
 
 
-def main() -> None:
-    """Runs the command line; a problem that the user can fix ends in one message and exit code 2."""
+def main(command: typer.Typer = app) -> None:
+    """Runs a command line; a problem that the user can fix ends in one message and exit code 2."""
     sys.stdout, sys.stderr = guard(sys.stdout), guard(sys.stderr)
     _require_addresses()
+    if command is app and (gone := sys.argv[1:2]) and gone[0] in GONE:
+        fail(f"there is no command {gone[0]!r}: {GONE[gone[0]]}")
     try:
         try:
-            app()
+            command()
         finally:
             sys.stdout.flush()  # here, since at its end Python would print a traceback of its own
     except HedonError as error:

@@ -97,7 +97,14 @@ def run(
 
 
 def conduct(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "", *, report: bool) -> None:
-    """Prints what will be run, shows progress while `go` runs it, and reports; `begun` says where the run continues."""
+    """Prints what will be run, shows progress while it runs, and reports.
+
+    Args:
+        plan: What is run.
+        go: Runs it, with a display.
+        begun: Where the run continues, as text to follow the number of steps.
+        report: Whether the run ends with a report.
+    """
     from hedon.cli.display.run import duration, make_display
     from hedon.record.schema import columns_of
 

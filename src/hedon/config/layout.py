@@ -82,8 +82,8 @@ class RewardTerm:
 
     @property
     def name(self) -> str:
-        """What is paid: `normal`, `action`, `see_predator`, or `relief`."""
-        return "relief" if self.input == "relief" else self.gene.removeprefix("w_")
+        """What is paid: `normal`, `action`, `see_predator`, or `drive_reduction`."""
+        return "drive_reduction" if self.input == "drive_reduction" else self.gene.removeprefix("w_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,7 @@ RULE_INPUTS = (
 def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, ...]:
     """Names of the fields of the record that a rule of a species gets of each agent, in order.
 
-    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `relief`.
+    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or `drive_reduction`.
     What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth. Where there are
     other inner states than energy, they stand before it, each as it was at the start of the step and as it is.
     """
@@ -323,7 +323,7 @@ def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
             name = set_point_of(state)
             meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
             made.add_gene(name, "reward", meaning, getattr(genome, name))
-        made.terms.append(RewardTerm("relief", 0, SET_POINT, SET_POINT, reward.relief_coef))
+        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.relief_coef))
     for name, law in genome.family.items():
         made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], law)
     for name, law in genome.learning.items():

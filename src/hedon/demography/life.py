@@ -24,37 +24,72 @@ def hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDAr
     """Chance of death.
 
     Args:
-        config: The hazard's constants.
-        age: [step], broadcast with `energy`.
-        energy: [energy].
+        config: the hazard's constants.
+        age: [step], any shape that broadcasts with `energy`.
+        energy: [energy], any shape.
 
     Returns:
-        kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·energy))) + alpha_age·exp(beta_age·age) [1/step].
+        kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·energy))) + alpha_age·exp(beta_age·age) [1/step], in the
+        shape of both together.
     """
     age = np.asarray(age, dtype=np.float64)
     return energy_hazard(config, energy) + config.alpha_age * np.exp(config.beta_age * age)
 
 
 def energy_hazard(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
-    """The part of the chance of death that depends on energy [energy], not on age [1/step]."""
+    """The part of the chance of death that depends on energy [energy], not on age [1/step].
+
+    Args:
+        config: the hazard's constants.
+        energy: [energy], any shape.
+
+    Returns:
+        kappa·odds/(1 + odds), odds = alpha_energy·exp(−beta_energy·energy) [1/step], in the shape of `energy`.
+    """
     odds = config.alpha_energy * np.exp(-config.beta_energy * np.asarray(energy, dtype=np.float64))
     return config.kappa * odds / (1.0 + odds)
 
 
 def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
-    """Chance of trying to have a child: kappa/(1 + exp(delay − beta·energy)) [1/step]."""
+    """Chance of trying to have a child: kappa/(1 + exp(delay − beta·energy)) [1/step].
+
+    Args:
+        config: the constants of births.
+        energy: [energy], any shape.
+
+    Returns:
+        Chances per step, in the shape of `energy`.
+    """
     return config.kappa / (1.0 + np.exp(config.delay - config.beta * np.asarray(energy, dtype=np.float64)))
 
 
 def cumulative_hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":
-    """The hazard summed from birth to an age [step] at constant energy [energy]; no unit."""
+    """The hazard summed from birth to an age [step] at constant energy [energy]; no unit.
+
+    Args:
+        config: the hazard's constants.
+        age: [step], any shape that broadcasts with `energy`.
+        energy: [energy], any shape.
+
+    Returns:
+        The expected number of deaths until then, in the shape of both together.
+    """
     age = np.asarray(age, dtype=np.float64)
     by_age = age if config.beta_age == 0 else np.expm1(config.beta_age * age) / config.beta_age
     return energy_hazard(config, energy) * age + config.alpha_age * by_age
 
 
 def survival(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":
-    """Share of the newborn that reach an age [step] at constant energy [energy]."""
+    """Share of the newborn that reach an age [step] at constant energy [energy].
+
+    Args:
+        config: the hazard's constants.
+        age: [step], any shape that broadcasts with `energy`.
+        energy: [energy], any shape.
+
+    Returns:
+        exp(−`cumulative_hazard`), in the shape of both together.
+    """
     return np.exp(-cumulative_hazard(config, age, energy))
 
 

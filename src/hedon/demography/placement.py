@@ -30,7 +30,7 @@ def placement_success(config: Config, sizes: Sequence[int], rng: np.random.Gener
         scenes: how many random scenes are averaged.
 
     Returns:
-        One chance per size.
+        One chance per size, (sizes,).
     """
     return np.mean([_scene_success(config, sizes, rng) for _ in range(scenes)], axis=0)
 
@@ -53,7 +53,7 @@ def is_free(config: Config, places: Floats, agents: Floats, foods: Floats) -> ND
     return free
 
 
-def birth_distance(config: Config) -> float:
+def _birth_distance(config: Config) -> float:
     """Standard deviation of a child's place around its parent, along x and y [u]."""
     unit = config.arena.width if config.birth.distance_unit == "arena_width" else 1.0
     return config.birth.distance_sd * unit
@@ -66,7 +66,7 @@ def _scene_success(config: Config, sizes: Sequence[int], rng: np.random.Generato
     agents, shares, attempts = np.empty((0, 2)), [], config.birth.attempts
     for count in sizes:
         agents = _fill(config, agents, foods, count, size, rng)
-        tried = agents[:, None] + birth_distance(config) * rng.normal(size=(len(agents), attempts, 2))
+        tried = agents[:, None] + _birth_distance(config) * rng.normal(size=(len(agents), attempts, 2))
         free = is_free(config, tried.reshape(-1, 2), agents, foods).reshape(-1, attempts)
         shares.append(float(free.any(axis=1).mean()) if len(agents) else 0.0)
     return shares

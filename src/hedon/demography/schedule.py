@@ -11,7 +11,13 @@ from hedon.config.schedule import ScheduleConfig
 
 
 def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLike) -> NDArray[np.float64]:
-    """The factor of a setting in each step, the same shape as `step`; 1 where it has no schedule."""
+    """The factor of a setting in each step, the same shape as `step`; 1 where it has no schedule.
+
+    Args:
+        schedules: of one section, by the name of the setting.
+        name: of the setting.
+        step: times [step], any shape.
+    """
     time = np.asarray(step, np.float64)
     schedule = schedules.get(name)
     if schedule is None or not schedule.points:
@@ -26,7 +32,12 @@ def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLik
 
 
 def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
-    """The mean factor of a setting over the steps of a period, exactly; without a period the last one, which stays."""
+    """The mean factor of a setting over the steps of a period, exactly; without a period the last one, which stays.
+
+    Args:
+        schedules: of one section, by the name of the setting.
+        name: of the setting.
+    """
     schedule = schedules.get(name)
     if schedule is None or not schedule.points:
         return 1.0
@@ -38,7 +49,12 @@ def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
 
 
 def factor_range(schedules: Mapping[str, ScheduleConfig], name: str) -> tuple[float, float]:
-    """The smallest and the largest factor that a setting ever has."""
+    """The smallest and the largest factor that a setting ever has.
+
+    Args:
+        schedules: of one section, by the name of the setting.
+        name: of the setting.
+    """
     schedule = schedules.get(name)
     factors = [factor for _, factor in schedule.points] if schedule is not None else []
     return min(factors, default=1.0), max(factors, default=1.0)
@@ -50,5 +66,10 @@ def mean_hazard(hazard: HazardConfig) -> HazardConfig:
 
 
 def scaled_hazard(hazard: HazardConfig, factor: float) -> HazardConfig:
-    """A hazard with all chances times a factor, and without a schedule."""
+    """A hazard with all chances times a factor, and without a schedule.
+
+    Args:
+        hazard: the constants.
+        factor: of kappa and alpha_age, and so of every chance of death.
+    """
     return replace(hazard, kappa=factor * hazard.kappa, alpha_age=factor * hazard.alpha_age, schedule={})

@@ -21,6 +21,18 @@ from hedon.text import brief
 class Batch:
     """Worlds whose agents, all or those of some species, are driven by the caller; the others learn by themselves.
 
+    Args:
+        config: Settings of the worlds.
+        seeds: One world per seed.
+        species: Whose agents the caller drives; None as for `batch`.
+        threads: As in `hedon.Simulation`.
+        kernel: As in `hedon.Simulation`.
+
+    Attributes:
+        config: The config, with the policy `external` for the species that are driven.
+        groups: The driven agents, by the name of their species.
+        simulation: The worlds themselves, to be read between steps; `reset` makes a new one.
+
     Example:
         >>> import hedon, hedon.env
         >>> worlds = hedon.env.batch(hedon.load_config("baseline"), seeds=[1, 2])
@@ -28,18 +40,13 @@ class Batch:
         >>> agents.actions[...] = 0.5  # or a policy of agents.observations
         >>> worlds.step()
         >>> agents.rewards[agents.alive].mean()
-
-    Attributes:
-        config: The config, with the policy `external` for the species that are driven.
-        groups: The driven agents, by the name of their species.
-        simulation: The worlds themselves, to be read between steps; `reset` makes a new one.
     """
 
     def __init__(
         self, config: Config, seeds: Sequence[int], species: str | Sequence[str] | None, threads: int, kernel: str
     ) -> None:
         names = driven(config, species)
-        self.config = with_callers(config, names)
+        self.config = _with_callers(config, names)
         self._threads, self._kernel = threads, kernel
         self.simulation = Simulation(self.config, seeds, threads, kernel)
         every = list(config.agents)
@@ -133,6 +140,10 @@ def batch(
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
     """The names of the species that the caller drives.
 
+    Args:
+        config: With the species.
+        species: A name, several, or None for those whose policy is `external`, or all where there are none.
+
     Raises:
         ArgumentError: There is no such species.
     """
@@ -156,7 +167,7 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
     return tuple(name for name in known if name in wanted)
 
 
-def with_callers(config: Config, names: Sequence[str]) -> Config:
+def _with_callers(config: Config, names: Sequence[str]) -> Config:
     """The config with the policy `external` for these species."""
 
     def external(species: SpeciesConfig) -> SpeciesConfig:

@@ -39,6 +39,13 @@ class Group:
     Each array is allocated once. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
     "The steps" are those of the last call of `Batch.step`, one or `repeat`.
 
+    Args:
+        index: Of the species in the config's order.
+        columns: Names of the entries of an observation.
+        meal_names: What can be eaten.
+        worlds: How many there are.
+        slots: Of the species in each world.
+
     Attributes:
         columns: Names of the entries of an observation.
         meal_names: What can be eaten: the kinds of food, then, where agents eat agents, the species.
@@ -126,7 +133,7 @@ class Group:
             world, slot, motor = np.argwhere(~np.isfinite(self.actions))[0]
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]})"
             raise ArgumentError(f"{place} = {self.actions[world, slot, motor]}: must be a finite number")
-        engine.command(self._index, self.actions)
+        engine.set_actions(self._index, self.actions)
 
     def _begin(self) -> None:
         """What follows is counted from here."""
@@ -136,7 +143,7 @@ class Group:
 
     def _look(self, engine: Any) -> None:
         """Reads what there is after the only step since `_begin`."""
-        engine.show(self._index, self.observations, self.rewards, self.ids)
+        engine.read_observations(self._index, self.observations, self.rewards, self.ids)
         self._finish(engine)
 
     def _count(self, engine: Any, *, last: bool) -> None:
@@ -146,9 +153,9 @@ class Group:
         late = self._late = np.zeros_like(self.rewards) if self._late is None else self._late
         acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
         if last:
-            engine.show(self._index, self.observations, paid, self.ids)
+            engine.read_observations(self._index, self.observations, paid, self.ids)
         else:
-            engine.pay(self._index, paid, self.ids)
+            engine.read_rewards(self._index, paid, self.ids)
         old = acting == self.ids_before
         self.rewards[old] += paid[old]
         late[~old] += paid[~old]

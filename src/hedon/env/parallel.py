@@ -67,7 +67,15 @@ class World(ParallelEnv[str, Any, Any]):
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Values, dict[str, dict[str, Any]]]:
-        """Begins again: with this seed, or with that of the last time."""
+        """Begins again: with this seed, or with that of the last time.
+
+        Args:
+            seed: Of the new world; None for the same world again.
+            options: None are known; PettingZoo has the argument.
+
+        Returns:
+            By the names of the founders: observations (entries,), and empty infos.
+        """
         self._batch.reset(None if seed is None else [seed])
         self._spaces.clear()
         self._begun = True
@@ -178,7 +186,14 @@ def parallel_env(
     max_steps: int = 0,
     threads: int = 1,
 ) -> World:
-    """A world as PettingZoo's Parallel API has it; the arguments are those of `World`.
+    """Makes a world with PettingZoo's Parallel API.
+
+    Args:
+        config: As for `World`, like all that follow.
+        species: Whose agents the caller drives.
+        seed: Of the world until `reset` is given one.
+        max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
+        threads: Changes no result.
 
     Raises:
         ConfigError: A setting is wrong.

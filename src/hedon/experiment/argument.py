@@ -21,6 +21,12 @@ MAX_SECONDS = 1e9
 def integer(name: str, value: Any, low: int, high: int) -> int:
     """A whole number within bounds; NumPy's integers are valid too.
 
+    Args:
+        name: What the error calls it.
+        value: What a caller gave.
+        low: Smallest that is allowed.
+        high: Largest that is allowed.
+
     Raises:
         ArgumentError: It is not.
     """
@@ -33,6 +39,12 @@ def integer(name: str, value: Any, low: int, high: int) -> int:
 def number(name: str, value: Any, low: float, high: float) -> float:
     """A number within bounds.
 
+    Args:
+        name: What the error calls it.
+        value: What a caller gave.
+        low: Smallest that is allowed.
+        high: Largest that is allowed.
+
     Raises:
         ArgumentError: It is not.
     """
@@ -44,6 +56,10 @@ def number(name: str, value: Any, low: float, high: float) -> float:
 
 def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
     """Seeds, one per world.
+
+    Args:
+        values: What a caller gave.
+        largest: Seed that is allowed.
 
     Raises:
         ArgumentError: It is not a list of whole numbers, it is empty or too long, or a seed is out of bounds.
@@ -73,6 +89,10 @@ def different(seeds: tuple[int, ...]) -> tuple[int, ...]:
 
 def folder(name: str, value: Any) -> Path:
     """A path, from a path or a text.
+
+    Args:
+        name: What the error calls it.
+        value: What a caller gave.
 
     Raises:
         ArgumentError: It is neither, or empty, or has a null character.

@@ -68,7 +68,23 @@ def plan_branch(
     frames: int | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> BranchPlan:
-    """Plans a branch of a run; changes nothing. Arguments and errors as for `branch`."""
+    """Plans a branch of a run; changes nothing.
+
+    Args:
+        folder: Of the run to branch from.
+        out: Folder of the new run; None for one beside the old one, named after the step.
+        overrides: Settings to change, each as PATH=VALUE.
+        at: Step of one of the run's checkpoints; None for the newest.
+        steps: Steps of each world in all; None for those that the old run was planned with.
+        threads: Threads to use; 0 for all processors.
+        frames: Steps between two frames; None for those of the old run.
+        checkpoint_seconds: Time between two checkpoints [s].
+
+    Raises:
+        RecordError: It is not a run, has no such checkpoint or a damaged one, or has come further than `steps`.
+        ConfigError: A setting is wrong, or fixes the shape of the saved worlds.
+        ArgumentError: Another argument is wrong.
+    """
     folder = argument.folder("folder", folder)
     old = open_run(folder).manifest
     config = load_config(folder / CONFIG)
@@ -98,7 +114,12 @@ def plan_branch(
 
 
 def begin_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
-    """Begins a branch that `plan_branch` planned; see `branch`."""
+    """Begins a branch that `plan_branch` planned; see `branch`.
+
+    Args:
+        plan: From `plan_branch`.
+        display: Shows progress.
+    """
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.kernel, plan.run.rules)

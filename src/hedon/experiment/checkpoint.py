@@ -25,6 +25,12 @@ SHOWN = 5
 def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], name: str) -> None:
     """Compares a checkpoint with the run that is to continue from it.
 
+    Args:
+        head: Of the checkpoint.
+        config: Of the run.
+        seeds: Of the run.
+        name: What errors call the checkpoint.
+
     Raises:
         RecordError: The version, a setting or the seeds differ; the message says which.
     """
@@ -71,6 +77,11 @@ def same_kernel(kernel: str | None) -> str:
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
     """Puts the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
+
+    Args:
+        simulation: A new one, with the config and the seeds of the checkpoint.
+        checkpoint: The worlds.
+        name: What errors call it.
 
     Returns:
         Where the simulation now is.

@@ -63,6 +63,11 @@ def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
 def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     """Refuses a run that does not fit.
 
+    Args:
+        config: Of all worlds.
+        worlds: How many there are.
+        threads: That run them; 0 for all processors.
+
     Raises:
         MemoryNeedError: It needs more than there is; the message says what for.
     """

@@ -104,7 +104,12 @@ class Recorder:
             self.writer.append("frames", *rows)
 
     def checkpoint(self, step: int, seconds: float) -> None:
-        """Saves a checkpoint to continue from. Deaths and frames of this step must be written before."""
+        """Saves a checkpoint to continue from. Deaths and frames of this step must be written before.
+
+        Args:
+            step: Completed by every world that lives [step].
+            seconds: Spent on steps so far, over all sessions [s].
+        """
         self.living()
         self.writer.save_checkpoint(*self._saved(step, seconds))
 
@@ -136,7 +141,13 @@ class Recorder:
         return head, arrays
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
-        """What a display shows after `step` of `steps` steps, `seconds` into the session."""
+        """What a display shows.
+
+        Args:
+            step: Completed so far [step].
+            steps: Of the whole run [step].
+            seconds: Spent in this session [s].
+        """
         extinct = tuple(sampler.world.extinct_step for sampler in self.samplers)
         window = self.simulation.config.learning.rollout_steps
         return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct, window)

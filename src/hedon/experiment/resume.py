@@ -137,6 +137,10 @@ def resume(
 def make(plan: RunPlan, display: Display | None = None) -> Manifest:
     """Makes the run of a plan: begins it, goes on with it, or only reads it where it is finished.
 
+    Args:
+        plan: Of the run.
+        display: Shows progress.
+
     Raises:
         RecordError: The folder holds a run with other settings, founders or seeds.
         HedonError: As `run` and `resume`.
@@ -152,7 +156,12 @@ def make(plan: RunPlan, display: Display | None = None) -> Manifest:
 
 
 def is_finished(manifest: Manifest, steps: int) -> bool:
-    """Whether a run has so many steps, or all its worlds have died out."""
+    """Whether a run has its steps, or all its worlds have died out.
+
+    Args:
+        manifest: Of the run.
+        steps: That it should have [step].
+    """
     over = bool(manifest.extinct_steps) and None not in manifest.extinct_steps
     return manifest.status == "finished" and (over or max(manifest.steps_done) >= steps)
 
@@ -173,7 +182,20 @@ def require_same(plan: RunPlan) -> None:
 
 
 def go_on(found: Resumption, display: Display | None = None) -> Manifest:
-    """Continues a run that `hold` has locked; see `resume`."""
+    """Continues a run that `hold` has locked; see `resume`.
+
+    Args:
+        found: From `hold`, while the folder is locked.
+        display: Shows progress.
+
+    Returns:
+        The manifest as it was saved at the end.
+
+    Raises:
+        RecordError: The checkpoint does not fit, or the folder cannot be written.
+        MemoryNeedError: It needs more memory than there is.
+        EngineError: A world reports an error.
+    """
     plan, checkpoint = found.plan, found.checkpoint
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)

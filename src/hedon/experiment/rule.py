@@ -193,7 +193,12 @@ def _rule(config: Config, name: str, use: str, source: RuleSource) -> Rule:
 
 
 def pinned(config: Config, found: Sequence[Rule]) -> Config:
-    """The config with the names and digests of its rules' files, without the folders that they are in."""
+    """The config with the names and digests of its rules' files, without the folders that they are in.
+
+    Args:
+        config: Whose rules name files, by any path.
+        found: All of its rules, as `rules` gives them.
+    """
     if not found:
         return config
     agents = dict(config.agents)

@@ -33,10 +33,15 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
     Ctrl-C or SIGTERM ends it after the current window, a second one immediately; both keep all results.
     `hedon.experiment.resume.resume` continues it, even if it was killed.
 
+    Args:
+        plan: What to run, and where its records go.
+        display: Shows progress.
+
     Returns:
         The manifest as it was saved at the end.
 
     Raises:
+        ArgumentError: The plan is not a `RunPlan`.
         RecordError: The folder holds a run already, is in use, or cannot be written.
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error; what was recorded before stays readable.
@@ -51,7 +56,16 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
 
 
 def give_beginning(simulation: Simulation, plan: RunPlan) -> None:
-    """Gives the founders of a new simulation the genomes and the networks that the plan has for them."""
+    """Gives the founders of a new simulation the genomes and the networks that the plan has for them.
+
+    Args:
+        simulation: At step 0.
+        plan: With its founders and networks; a plan without them changes nothing.
+
+    Raises:
+        FounderError: The founders do not fit the simulation.
+        NetworkError: The networks do not.
+    """
     if plan.founders is not None:
         simulation.set_founders(plan.founders)
     if plan.networks is not None:
@@ -66,7 +80,23 @@ def begin(
     display: Display | None,
     interrupted: Interrupts,
 ) -> Manifest:
-    """Makes a new folder for a simulation that is at `start`, and runs it; see `run`."""
+    """Locks and makes the folder of a run, and runs it; see `run`.
+
+    Args:
+        simulation: That is where `start` says.
+        plan: What to run, and where its records go.
+        manifest: From `first_manifest`.
+        start: At step 0, or for a branch at a later one.
+        display: Shows progress.
+        interrupted: Counts the signals to stop.
+
+    Returns:
+        The manifest as it was saved at the end.
+
+    Raises:
+        RecordError: The folder holds a run already, is in use, or cannot be written.
+        EngineError: A world reports an error.
+    """
     with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, beginning=_beginning(plan)) as writer:
         return drive(simulation, plan, manifest, writer, start, display, interrupted)
 
@@ -90,7 +120,24 @@ def drive(
     display: Display | None,
     interrupted: Interrupts,
 ) -> Manifest:
-    """Advances a simulation from `start` to the end of the plan and records it; see `run`."""
+    """Advances a simulation to the end of its plan, or until it is interrupted or extinct, and records it; see `run`.
+
+    Args:
+        simulation: That is where `start` says.
+        plan: With the total number of steps.
+        manifest: Of the session that begins.
+        writer: Open on the run's folder, with the parts up to `start`.
+        start: Step, seconds and samples that this session continues from.
+        display: Shows progress.
+        interrupted: Counts the signals to stop: one after the current window, two at once.
+
+    Returns:
+        The manifest as it was saved at the end.
+
+    Raises:
+        EngineError: A world reports an error; its state is in the folder `fault`, unless that cannot be written either.
+        RecordError: The folder cannot be written.
+    """
     recorder = Recorder(simulation, writer, plan.frames, start)
     begun = time.perf_counter()
     seconds, step, status = start.seconds, start.step, "failed"

@@ -17,7 +17,12 @@ Rows = dict[str, Any]
 
 
 def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
-    """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`)."""
+    """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`).
+
+    Args:
+        world: The world that they live or lived in.
+        lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals).
+    """
     columns = columns_of(world.config)
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
     steps = np.maximum(end - lives["birth_step"], 1)
@@ -31,7 +36,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
         "mean_force_left": lives["force_left"] / steps,
         "mean_force_right": lives["force_right"] / steps,
         "reward_sum": lives["reward"],
-        **gene_rows(world.config, lives),
+        **_gene_rows(world.config, lives),
     }
     if columns.several:
         rows["species"] = np.array(columns.species)[lives["species"]]
@@ -40,7 +45,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     return rows
 
 
-def gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
+def _gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
     """The genes of agents by the names of their columns; NaN where a species lacks a gene."""
     made = list(layouts(config).values())
     rows: Rows = {}
@@ -95,7 +100,7 @@ class PopulationSampler:
         generation = lives["generation"]
         row["generation_mean"] = generation.mean() if len(generation) else np.nan
         row["generation_max"] = generation.max() if len(generation) else -1
-        for name, weight in gene_rows(world.config, lives).items():
+        for name, weight in _gene_rows(world.config, lives).items():
             row[f"{name}_mean"] = weight.mean() if len(weight) else np.nan
             row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
         for k, kind in enumerate(world.config.food):

@@ -14,7 +14,13 @@ from hedon.record.writer import Writer
 
 
 def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) -> Manifest:
-    """The manifest of a run that begins now, at step 0 or, for a branch, at a later one."""
+    """The manifest of a run that begins now, at step 0 or, for a branch, at a later one.
+
+    Args:
+        plan: What is run.
+        simulation: Made from the plan.
+        from_step: Where it begins [step].
+    """
     config = plan.config
     manifest = Manifest(
         **asdict(columns_of(config)),
@@ -47,7 +53,14 @@ def _places(simulation: Simulation) -> tuple[tuple[tuple[tuple[float, float], ..
 
 
 def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, from_step: int) -> Manifest:
-    """The manifest of a run that continues now: as before, with a new session at the end of the list."""
+    """The manifest of a run that continues now: as before, with a new session at the end of the list.
+
+    Args:
+        manifest: As the session before left it.
+        plan: With the total number of steps from now on.
+        simulation: Made from the plan, at `from_step`.
+        from_step: Where it continues [step].
+    """
     here = replace(
         manifest,
         kernel=simulation.engine.kernel,
@@ -67,7 +80,18 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
 
 
 def last_manifest(manifest: Manifest, simulation: Simulation, status: str, seconds: float, writer: Writer) -> Manifest:
-    """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk."""
+    """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk.
+
+    Args:
+        manifest: As the session has it.
+        simulation: Where it stopped.
+        status: "finished", "interrupted" or "failed".
+        seconds: Spent on steps, over all sessions [s].
+        writer: Open on the run's folder.
+
+    Raises:
+        RecordError: The rows or the manifest cannot be written.
+    """
     now = utc_now()
     digests: tuple[str, ...] = ()
     records = None

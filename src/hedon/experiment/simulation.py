@@ -144,6 +144,14 @@ class World:
     """One world of a simulation, read between runs."""
 
     def __init__(self, engine: Any, index: int, config: Config, seed: int) -> None:
+        """A simulation makes its worlds.
+
+        Args:
+            engine: The compiled simulation, with all worlds.
+            index: Of the world in it.
+            config: Of the world.
+            seed: Of the world.
+        """
         self._engine = engine
         self.index = index
         self.config = config
@@ -174,12 +182,12 @@ class World:
     def waiting_deaths(self) -> float:
         """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
         head = self._engine.head(self.index)
-        return (head["event_count"] + head["events_lost"]) / len(self.view("event.birth_step"))
+        return (head["death_log_count"] + head["death_log_lost"]) / len(self.view("death_log.birth_step"))
 
     @property
     def lost_deaths(self) -> int:
         """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
-        return self._engine.head(self.index)["events_lost"]
+        return self._engine.head(self.index)["death_log_lost"]
 
     @property
     def counters(self) -> dict[str, Any]:
@@ -202,7 +210,7 @@ class World:
         return self.view("living")[: self.alive]
 
     def view(self, path: str) -> NDArray[Any]:
-        """A read-only view of one array of the state, by slot; valid until the next `run`.
+        """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.
 
         Args:
             path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`
@@ -240,7 +248,7 @@ class World:
         """
         lost = self.lost_deaths
         if lost and not partial:
-            room = len(self.view("event.birth_step"))
+            room = len(self.view("death_log.birth_step"))
             raise EngineError(
                 f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
                 "call World.deaths more often, or take those that are left with World.deaths(partial=True)"

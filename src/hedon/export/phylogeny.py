@@ -51,7 +51,12 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
-    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended."""
+    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended.
+
+    Args:
+        run: with its manifest.
+        agents: table `agents` of one of its worlds.
+    """
     done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
     events = agents.select(pl.max_horizontal(pl.col("birth_step").max(), pl.col("death_step").max())).item()
     return max(done, events)
@@ -59,6 +64,10 @@ def last_step(run: Run, agents: pl.DataFrame) -> int:
 
 def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     """The pedigree in the ALife data standard for phylogenies (Lalejini et al. 2019).
+
+    Args:
+        agents: table `agents` of one world.
+        genes: columns to keep.
 
     Returns:
         `id`; `ancestor_list`, "[NONE]" for founders, with both parents where there are two; `origin_time` and

@@ -22,6 +22,10 @@ class ExportError(HedonError):
 def table_of(run: Run, name: TableName) -> pl.LazyFrame:
     """A table of all worlds of a run.
 
+    Args:
+        run: whose records are read.
+        name: of the table.
+
     Raises:
         ExportError: the run has no frames.
         RecordError: a part of the table is damaged.
@@ -61,6 +65,10 @@ def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> Non
 
 def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
     """Writes a file that is not there yet, whole or not at all.
+
+    Args:
+        out: the file.
+        write: writes its content into an open file.
 
     Raises:
         ExportError: it is there already, or cannot be written.

@@ -75,7 +75,12 @@ class Film:
         return self._canvas.buffer_rgba()
 
     def pixel(self, x: float, y: float) -> tuple[int, int]:
-        """The column and the row of a place in the world [u], in the picture drawn last."""
+        """The column and the row of a place in the world [u], in the picture drawn last.
+
+        Args:
+            x: place along the arena's first axis [u].
+            y: place along its second axis [u].
+        """
         column, above = self._axes.transData.transform((x, y))
         return int(column), self.height - 1 - int(above)
 

@@ -52,7 +52,14 @@ def draw_history(
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
-    """One panel per reward weight and one for the neutral genes, all with the same axes; see `draw_histories`."""
+    """One panel per reward weight and one for the neutral genes, all with the same axes; see `draw_histories`.
+
+    Args:
+        population: table `population` of one or more worlds.
+        reward_names: columns of the weights that enter the reward.
+        neutral_names: columns of the genes without effect.
+        colors: of each food kind.
+    """
     return draw_histories([HistoryRow(population)], reward_names, neutral_names, colors)
 
 

@@ -80,7 +80,12 @@ def styled() -> Iterator[None]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure [inch] that belongs to no window and lays its parts out by itself."""
+    """An empty figure [inch] that belongs to no window and lays its parts out by itself.
+
+    Args:
+        width: [inch].
+        height: [inch].
+    """
     figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH)
     figure.set_layout_engine("constrained", wspace=0.05, hspace=0.05)
     FigureCanvasAgg(figure)
@@ -88,7 +93,12 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Writes a figure as PNG, atomically, and returns its path."""
+    """Writes a figure as PNG, atomically, and returns its path.
+
+    Args:
+        figure: what to write.
+        path: of the file; its folder is there.
+    """
     with styled():
         _lay_out(figure)
         write_atomically(path, FigureCanvasAgg(figure).print_png)
@@ -124,13 +134,23 @@ def _lay_out(figure: Figure) -> None:
 
 
 def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind: the wanted ones, where they are given, else the defaults in order."""
+    """A color per food kind: the wanted ones, where they are given, else the defaults in order.
+
+    Args:
+        food_kinds: names, in the order of the config.
+        wanted: a color for each; else none of them counts.
+    """
     given = wanted if len(wanted) == len(food_kinds) else [FOOD_COLORS[i % 8] for i in range(len(food_kinds))]
     return dict(zip(food_kinds, given, strict=True))
 
 
 def meal_colors(config: Config, prey: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind of a config, and per species that is eaten."""
+    """A color per food kind of a config, and per species that is eaten.
+
+    Args:
+        config: with the colors of its foods.
+        prey: names of the species that are eaten.
+    """
     foods = food_colors(list(config.food), [food.color for food in config.food.values()])
     return foods | {name: PREY_COLORS[i % len(PREY_COLORS)] for i, name in enumerate(prey)}
 
@@ -150,7 +170,13 @@ def step_unit(last_step: float) -> tuple[float, str]:
 
 
 def head(axes: Axes, title: str, remark: str = "") -> None:
-    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty."""
+    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty.
+
+    Args:
+        axes: to write above.
+        title: one line.
+        remark: one line or more.
+    """
     lines = remark.count("\n") + 1 if remark else 0
     if title:
         axes.set_title(title, pad=8.0 + 11.0 * lines)
@@ -160,7 +186,12 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
 
 
 def legend_above(axes: Axes, columns: int = 2) -> None:
-    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn."""
+    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn.
+
+    Args:
+        axes: with everything drawn.
+        columns: of the legend.
+    """
     legend = axes.legend(loc="upper left", ncols=columns, borderaxespad=0.2)
     rows = -(-len(legend.get_texts()) // columns)
     low, high = axes.get_ylim()
@@ -177,7 +208,12 @@ def number_log_axis(axis: Axis) -> None:
 
 
 def say_empty(axes: Axes, text: str) -> None:
-    """Writes into the middle of axes why there is nothing to see."""
+    """Writes into the middle of axes why there is nothing to see.
+
+    Args:
+        axes: to write into.
+        text: the reason.
+    """
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
 
 
@@ -192,7 +228,12 @@ def draw_message(text: str) -> Figure:
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
-    """What the panel of each weight is called: those that enter the reward, and the first neutral marker."""
+    """What the panel of each weight is called: those that enter the reward, and the first neutral marker.
+
+    Args:
+        reward_names: columns of the weights that enter the reward.
+        neutral_names: columns of the genes without effect.
+    """
     return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
 
 

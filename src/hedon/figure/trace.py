@@ -66,6 +66,10 @@ def draw_traces(
 def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mean over worlds at each time.
 
+    Args:
+        history: a row per world and bin of time, with the columns bin and step.
+        column: what is averaged; null is left out.
+
     Returns:
         Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than three worlds), each
         (bins,).
@@ -81,7 +85,13 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
 
 
 def draw_time_axis(axes: Axes, history: pl.DataFrame, end: float = 0.0) -> None:
-    """Labels the x axis in a unit that suits the length of the run, from 0 on to its end or a later one [step]."""
+    """Labels the x axis in a unit that suits the length of the run, from 0 on to its end or a later one [step].
+
+    Args:
+        axes: to label.
+        history: a row per world and bin of time, with the column step.
+        end: a time that the axis reaches at least [step].
+    """
     last = max(last_step(history), end)
     unit, name = step_unit(last)
     axes.set_xlabel(f"time [{name}]")

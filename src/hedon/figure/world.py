@@ -99,7 +99,13 @@ def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray
 
 
 def draw_walls(axes: Axes, walls: np.ndarray, linewidth: float = 2.4) -> None:
-    """Draws walls, shape (w, 4) [u], and the floor that they enclose."""
+    """Draws walls, and the floor that they enclose.
+
+    Args:
+        axes: to draw on.
+        walls: ends x1, y1, x2, y2 of each [u], shape (w, 4).
+        linewidth: [pt].
+    """
     outline = wall_outline(walls)
     if outline is not None:
         axes.add_patch(Polygon(outline, closed=True, facecolor=_FLOOR, edgecolor="none", zorder=0))
@@ -108,13 +114,24 @@ def draw_walls(axes: Axes, walls: np.ndarray, linewidth: float = 2.4) -> None:
 
 
 def draw_obstacles(axes: Axes, obstacles: np.ndarray) -> None:
-    """Draws obstacles, shape (o, corners, 2) [u], as solid polygons."""
+    """Draws obstacles as solid polygons.
+
+    Args:
+        axes: to draw on.
+        obstacles: places of the corners [u], shape (o, corners, 2).
+    """
     polygons = [Polygon(corners, closed=True) for corners in obstacles]
     axes.add_collection(PatchCollection(polygons, facecolor=OBSTACLE_COLOR, edgecolor=_WALL, linewidth=0.8, zorder=2))
 
 
 def draw_foods(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> None:
-    """Draws the foods as discs, each in its kind's color."""
+    """Draws the foods as discs, each in its kind's color.
+
+    Args:
+        axes: to draw on.
+        snapshot: with the foods.
+        colors: of each food kind.
+    """
     places = np.stack([snapshot.food_x, snapshot.food_y], axis=-1)
     for i, kind in enumerate(snapshot.food_kinds):
         mine = places[snapshot.food_kind == i]
@@ -131,6 +148,9 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
 
     Returns:
         The discs.
+
+    Raises:
+        ValueError: Nobody lives.
     """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
     discs = None
@@ -158,7 +178,13 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
 
 
 def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
-    """Draws a ring around the agent at this index of the snapshot."""
+    """Draws a ring around the agent at this index of the snapshot.
+
+    Args:
+        axes: to draw on.
+        snapshot: with the agents.
+        index: of the agent in the snapshot.
+    """
     center = np.array([[snapshot.x[index], snapshot.y[index]]])
     radius = float(snapshot.radius[snapshot.species[index]]) + 1.5
     _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz file as `numpy.savez` writes it, by name.
+    """The arrays of an npz file as `numpy.savez` writes it, by name, any shape.
 
     Raises:
-        Exception: the file is missing, damaged, or holds anything but plain numbers: whatever reading it raises.
+        ValueError: the file holds anything but plain numbers, or more than it could.
+        Exception: the file is missing or damaged: whatever reading it raises.
     """
     members: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(path) as archive:

@@ -64,19 +64,28 @@ class CheckpointHead:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """A head and the arrays of all worlds: "0/params" is the engine's array `params` of world 0."""
+    """A moment of a run, from which it can continue.
+
+    Attributes:
+        head: what is known of the worlds without their arrays.
+        arrays: of all worlds, in the engine's shapes: "0/params" is its array `params` of world 0.
+    """
 
     head: CheckpointHead
     arrays: dict[str, NDArray[Any]]
 
     def world(self, index: int) -> dict[str, NDArray[Any]]:
-        """The arrays of one world, as the engine names them."""
+        """The arrays of one world, as the engine names and shapes them."""
         prefix = f"{index}/"
         return {name.removeprefix(prefix): array for name, array in self.arrays.items() if name.startswith(prefix)}
 
 
 def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
     """Writes a checkpoint of a run atomically, then removes all but the newest ones.
+
+    Args:
+        folder: of the run.
+        checkpoint: what to save.
 
     Raises:
         OSError: as the file system raises it; the earlier checkpoints are then unchanged.
@@ -88,6 +97,10 @@ def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """Writes one checkpoint atomically; makes its folder if it is missing.
+
+    Args:
+        path: of the file.
+        checkpoint: what to write.
 
     Raises:
         OSError: as the file system raises it.

@@ -12,6 +12,10 @@ class RecordError(HedonError):
 class InUseError(RecordError):
     """A folder that another process has locked.
 
+    Args:
+        folder: of the run.
+        owner: who has locked it, as text to follow "by another run"; may be empty.
+
     Attributes:
         owner: what is known of the process, in brackets after a space; empty if nothing is.
     """

@@ -88,22 +88,43 @@ def require_no_run(folder: Path) -> None:
 
 
 def part_path(folder: Path, table: str, index: int) -> Path:
-    """The path of one part of a table."""
+    """The path of one part of a table.
+
+    Args:
+        folder: of the run.
+        table: its name.
+        index: of the part, from 0 on.
+    """
     return folder / table / f"part-{index:06d}.parquet"
 
 
 def part_paths(folder: Path, table: str) -> list[Path]:
-    """The finished parts of a table, in the order in which they were written."""
+    """The finished parts of a table, in the order in which they were written.
+
+    Args:
+        folder: of the run.
+        table: its name.
+    """
     return sorted((folder / table).glob("part-*.parquet"))
 
 
 def checkpoint_path(folder: Path, step: int) -> Path:
-    """The path of the checkpoint after this number of steps."""
+    """The path of the checkpoint after this number of steps.
+
+    Args:
+        folder: of the run.
+        step: completed [step].
+    """
     return folder / CHECKPOINTS / f"step-{step:010d}.npz"
 
 
 def fault_path(folder: Path, step: int) -> Path:
-    """The path of the checkpoint of a run that stopped at a fault after this number of steps."""
+    """The path of the checkpoint of a run that stopped at a fault after this number of steps.
+
+    Args:
+        folder: of the run.
+        step: completed [step].
+    """
     return folder / FAULT / f"step-{step:010d}.npz"
 
 

@@ -69,6 +69,10 @@ class Founders:
 
         Each group gets its share of the founders, rounded so that the sum is right. Within a group rows are taken in an
         order that depends on the seed; a group with fewer rows than founders gives each row several times.
+
+        Args:
+            seed: of the world.
+            count: of founders.
         """
         exact = {group: share * count for group, share in self.share.items()}
         number = {group: math.floor(part) for group, part in exact.items()}
@@ -84,7 +88,12 @@ class Founders:
         return np.array([founders[i] for i in order], np.int64)
 
     def groups(self, seed: int, count: int) -> list[str]:
-        """The group of each founder of a world, by agent_id."""
+        """The group of each founder of a world, by agent_id.
+
+        Args:
+            seed: of the world.
+            count: of founders.
+        """
         return [self.group[row] for row in self.draw(seed, count)]
 
     def genomes(self, seed: int, count: int, names: Sequence[str]) -> NDArray[np.float32]:
@@ -109,13 +118,22 @@ class Founders:
         return replace(self, genes=genes, values=self.values[:, mine])
 
     def changed(self, gene: str, value: float) -> "Founders":
-        """The same table with one gene, which it must have, at one value."""
+        """The same table with one gene, which it must have, at one value.
+
+        Args:
+            gene: its column.
+            value: for all rows.
+        """
         values = self.values.copy()
         values[:, self.genes.index(gene)] = value
         return replace(self, values=values)
 
     def require(self, config: Config, origin: str = "founders") -> None:
         """Checks that the genes are those of a config, and within its limit.
+
+        Args:
+            config: that the founders are for.
+            origin: what errors call the table.
 
         Raises:
             FounderError: One is not.
@@ -136,7 +154,14 @@ class Founders:
 def make_founders(
     genes: Sequence[str], values: NDArray[np.floating], group: Sequence[str], share: Mapping[str, float] | None = None
 ) -> Founders:
-    """A table from genomes, (rows, genes); without shares each row counts equally."""
+    """Makes a table from genomes.
+
+    Args:
+        genes: columns.
+        values: genomes, (rows, genes); NaN for a gene that is drawn as the config says.
+        group: of each row.
+        share: of each group among the founders; None for shares by the groups' rows.
+    """
     weights = dict(share) if share is not None else dict(Counter(group))
     total = math.fsum(weights.values())
     parts = {name: weight / total for name, weight in weights.items()}
@@ -144,7 +169,13 @@ def make_founders(
 
 
 def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[float]) -> Founders:
-    """One table from several, each of which becomes one group; a gene that one lacks is drawn as the config says."""
+    """One table from several, each of which becomes one group; a gene that one lacks is drawn as the config says.
+
+    Args:
+        tables: one or more.
+        labels: a name for the group of each.
+        shares: of each group among the founders, in any unit.
+    """
     genes = tuple(dict.fromkeys(gene for table in tables for gene in table.genes))
     values, group = [], []
     for table, label in zip(tables, labels, strict=True):
@@ -161,6 +192,10 @@ def column_of(config: Config, name: str) -> str | None:
 
     `food` is the first kind, unless a kind has this name. A gene of only one species begins with the name of the
     species, as in `prey.action`.
+
+    Args:
+        config: that has the gene, or not.
+        name: as a user gives it.
     """
     species, dot, gene = name.rpartition(".")
     if dot:
@@ -171,7 +206,12 @@ def column_of(config: Config, name: str) -> str | None:
 
 
 def unknown_gene(config: Config, name: str) -> str:
-    """Says that there is no such gene, which there are, and which is near."""
+    """Says that there is no such gene, which there are, and which is near.
+
+    Args:
+        config: that lacks the gene.
+        name: as a user gave it.
+    """
     columns = gene_columns(config)
     shown = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
     neutral = f", neutral_1 to neutral_{config.genome.neutral_count}" if config.genome.neutral_count else ""

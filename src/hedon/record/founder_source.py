@@ -46,7 +46,16 @@ def read_founders(text: str, config: Config) -> Founders:
 
 
 def read_source(text: str, config: Config) -> Founders:
-    """Founders from one source; see `read_founders`."""
+    """Founders from one source; see `read_founders`.
+
+    Args:
+        text: a table (.csv), a point (GENE=VALUE,…), RUN or RUN@STEP.
+        config: that the founders are for.
+
+    Raises:
+        FounderError: There is no such source, or it does not fit the config.
+        RecordError: A run cannot be read.
+    """
     if text.endswith(".csv"):
         return read_table(Path(text), config)
     if "=" in text:
@@ -65,6 +74,11 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
     Where the run has several species, each gives its genes to the species of the same name; a species of which nobody
     lives, or that the run lacks, is drawn as the config says. Neutral markers that the config has no room for are left
     out; those that the run lacks are drawn as it says.
+
+    Args:
+        folder: of the run.
+        step: after which [step]; None for the end of the run.
+        config: that the founders are for.
 
     Raises:
         FounderError: Nobody lived then, the run has not come so far, or it has a gene that the config lacks.
@@ -128,6 +142,10 @@ def source_label(text: str) -> str:
 
 def parse_point(text: str, config: Config) -> dict[str, float]:
     """Genes and their values from a text such as "food=5,action=0", by column.
+
+    Args:
+        text: GENE=VALUE, with commas between several.
+        config: that has the genes.
 
     Raises:
         FounderError: A gene is unknown or given twice, or a value is not allowed.

@@ -69,6 +69,10 @@ def read_table(path: Path, config: Config) -> Founders:
 def load_founders(folder: Path, config: Config) -> Founders | None:
     """The table of a run, from its folder; None if its founders are drawn as the config says.
 
+    Args:
+        folder: of the run.
+        config: of the run, which has the table's digest.
+
     Raises:
         FounderError: The table is missing or was changed.
     """

@@ -64,6 +64,11 @@ class Networks:
 
         The networks are taken in an order that depends on the seed; where there are fewer than founders, each is taken
         several times.
+
+        Args:
+            name: of the species.
+            seed: of the world.
+            count: of founders.
         """
         params = self.params[name]
         order = sorted(range(len(params)), key=lambda i: hashlib.sha256(f"network {name} {seed} {i}".encode()).digest())
@@ -72,6 +77,10 @@ class Networks:
     def require(self, config: Config, origin: str = "networks") -> None:
         """Checks that there are networks for each species that acts by networks without learning, and that they read
         what it observes.
+
+        Args:
+            config: that the networks are for.
+            origin: what errors call the networks.
 
         Raises:
             NetworkError: A species has none, or they read something else.
@@ -101,6 +110,10 @@ def frozen_species(config: Config) -> list[str]:
 
 def load_networks(folder: Path, config: Config) -> Networks | None:
     """The networks that a run began with, from its folder; None if it began with new ones.
+
+    Args:
+        folder: of the run.
+        config: of the run, which has the digest of the networks.
 
     Raises:
         NetworkError: They are missing, damaged, or not those that the config names.

@@ -20,6 +20,10 @@ _UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError,
 def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
     """The rows of a file as they are, with the table's columns, or with all that it has.
 
+    Args:
+        path: of the file.
+        table: its schema; None for all columns.
+
     Raises:
         RecordError: it cannot be read; the message names it.
     """
@@ -31,6 +35,11 @@ def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
 def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
     """The rows of a file, which no reader stumbles over.
 
+    Args:
+        path: of the file.
+        table: its schema.
+        manifest: of the run, which values are compared with.
+
     Raises:
         RecordError: it cannot be read, or it holds what no run writes; the message names it.
     """
@@ -39,6 +48,11 @@ def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
 
 def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFrame, int | None]:
     """The living, and how many parts hold the deaths before that moment; None for all existing parts.
+
+    Args:
+        path: of the file.
+        table: the schema of `agents`.
+        manifest: of the run, which values are compared with.
 
     Raises:
         RecordError: as `read_part`.

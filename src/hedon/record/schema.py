@@ -151,7 +151,7 @@ def agent_table(columns: Columns) -> Table:
     )
 
 
-def population_table(columns: Columns) -> Table:
+def _population_table(columns: Columns) -> Table:
     """One row per world and interval: state at its end, counts and the energy ledger over it."""
     return _table(
         "population",
@@ -206,7 +206,7 @@ def population_table(columns: Columns) -> Table:
     )
 
 
-def frame_table(columns: Columns) -> Table:
+def _frame_table(columns: Columns) -> Table:
     """One row per agent or food and frame; written only if frames were asked for."""
     kinds = (*columns.species, *columns.food_kinds)
     return _table(
@@ -227,8 +227,8 @@ def run_tables(columns: Columns) -> dict[str, Table]:
     """All tables of a run by name: agents, population and frames."""
     tables = (
         agent_table(columns),
-        population_table(columns),
-        frame_table(columns),
+        _population_table(columns),
+        _frame_table(columns),
     )
     return {table.name: table for table in tables}
 

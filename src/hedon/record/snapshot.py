@@ -99,6 +99,10 @@ class Snapshot:
 def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
     """Writes `final.npz` into a run's folder, atomically.
 
+    Args:
+        folder: of the run.
+        snapshot: what to write.
+
     Raises:
         RecordError: it cannot be written.
     """

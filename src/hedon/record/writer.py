@@ -107,6 +107,10 @@ class Writer:
     def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
 
+        Args:
+            head: without the digests of parts.
+            arrays: of all worlds, by "world/name", in the engine's shapes.
+
         Raises:
             RecordError: as `append`.
         """
@@ -115,6 +119,10 @@ class Writer:
 
     def save_fault(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Saves the state of a run that stopped at a fault, in its own folder, after all rows are on disk.
+
+        Args:
+            head: without the digests of parts.
+            arrays: of all worlds, by "world/name", in the engine's shapes.
 
         Raises:
             RecordError: as `append`.

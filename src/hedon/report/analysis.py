@@ -38,6 +38,10 @@ class Analysis:
 def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS)) -> Analysis:
     """Answers some topics about all runs together; runs of equal configs count as one condition.
 
+    Args:
+        runs: Of one condition or several.
+        topics: Keys of `TOPICS`, in the order of their tables.
+
     Raises:
         RecordError, ConfigError: a run cannot be read.
     """
@@ -48,13 +52,17 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS)) -> Analy
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
     """Writes `analysis.json` and one CSV file per table into a folder, over those that are there.
 
+    Args:
+        analysis: What to write.
+        folder: Is made if it is missing.
+
     Returns:
         The files.
 
     Raises:
         RecordError: the folder cannot be written.
     """
-    text = json.dumps(analysis_json(analysis), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(_analysis_json(analysis), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     contents = {"analysis.json": text.encode()}
     for name, table in analysis.tables.items():
         buffer = io.BytesIO()
@@ -69,7 +77,7 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
     return [folder / name for name in contents]
 
 
-def analysis_json(analysis: Analysis) -> dict[str, Any]:
+def _analysis_json(analysis: Analysis) -> dict[str, Any]:
     """The content of `analysis.json`: runs with their manifests, worlds, and every table with its rows."""
     worlds = [
         {

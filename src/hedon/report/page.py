@@ -51,13 +51,23 @@ class FigureFile:
 
 
 def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str, str]:
-    """The report as HTML that needs no other file, and as Markdown, with the figures as files beside it."""
+    """The report as HTML that needs no other file, and as Markdown, with the figures as files beside it.
+
+    Args:
+        analysis: The numbers.
+        figures: Written beside the page.
+    """
     context = _context(analysis, figures)
     return render("report.html.j2", context), render("report.md.j2", context)
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
-    """A page from one of the templates; whatever a template prints is escaped, but for what it calls `verbatim`."""
+    """A page from one of the templates; whatever a template prints is escaped, but for what it calls `verbatim`.
+
+    Args:
+        template: A file of the folder `template`, for HTML if it ends with .html.j2.
+        context: Values by the names that the template uses; a missing one is an error.
+    """
     is_html = template.endswith(".html.j2")
     environment = Environment(
         loader=PackageLoader("hedon.report", "template"),
@@ -112,7 +122,12 @@ def runs_context(runs: Sequence[Run]) -> dict[str, Any]:
 
 
 def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any]:
-    """What a page says of some worlds of one setting, and of the setting."""
+    """What a page says of some worlds of one setting, and of the setting.
+
+    Args:
+        name: Of the condition.
+        worlds: All of one config.
+    """
     config = worlds[0].run_config
     changes: list[tuple[str, Any, Any]] = []
     if config.preset in PRESETS:

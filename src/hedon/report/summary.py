@@ -21,8 +21,8 @@ from hedon.analysis.world.record import gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config.load import parse_config
 from hedon.record.reader import Run
-from hedon.replication.paper import paper_figures
 from hedon.statistic.interval import mean_interval
+from hedon_studies.kanagawa_doya_2024.paper import paper_figures
 
 _OVER_WORLDS = {
     "mean_lifetime": "mean_lifetime",

@@ -38,7 +38,12 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
-    """Whether a shown column holds numbers, which are aligned to the right."""
+    """Whether a shown column holds numbers, which are aligned to the right.
+
+    Args:
+        rows: Texts as they are shown.
+        column: Index.
+    """
     return all(not row[column] or row[column][0] in "0123456789-" for row in rows)
 
 

@@ -7,7 +7,7 @@ from hedon.analysis.table import ResultTable
 from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
 from hedon.error import HedonError
-from hedon.replication.claim.table import verdict
+from hedon.study.verdict_table import verdict
 
 TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "verdict": verdict,
@@ -55,7 +55,12 @@ ONE_PARENT = ("genealogy", "price", "drift", "reversion", "mutation")
 
 
 def run_topics(conditions: Conditions, names: Sequence[str] = tuple(TOPICS)) -> list[ResultTable]:
-    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed."""
+    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed.
+
+    Args:
+        conditions: Worlds by condition.
+        names: Keys of `TOPICS`, in the order of their tables.
+    """
     trees = {
         condition: alone
         for condition, worlds in conditions.items()

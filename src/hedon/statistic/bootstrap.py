@@ -43,7 +43,15 @@ def resampled_sums(
 
 
 def percentile_interval(values: NDArray[np.float64], level: float = LEVEL) -> NDArray[np.float64]:
-    """Lower and upper bound over the first axis of the replicates, shape (2, …); NaN where one is not finite."""
+    """The percentile interval of bootstrap replicates; NaN where a replicate is not finite.
+
+    Args:
+        values: (replicates, …).
+        level: of confidence.
+
+    Returns:
+        Lower and upper bound, (2, …).
+    """
     tail = 0.5 * (1.0 - level)
     return np.quantile(values, (tail, 1.0 - tail), axis=0)
 

@@ -36,7 +36,16 @@ def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
 
 
 def difference_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
-    """Difference of two means, the first minus the second, with Welch's (1947) interval; each of two values or more."""
+    """Difference of two means, the first minus the second, with Welch's (1947) interval; each of two values or more.
+
+    Args:
+        values: first group, (n,).
+        others: second group, (m,).
+        level: of confidence.
+
+    Returns:
+        Difference, lower and upper bound.
+    """
     found = stats.ttest_ind(values, others, equal_var=False).confidence_interval(level)
     return float(values.mean() - others.mean()), float(found.low), float(found.high)
 
@@ -45,6 +54,14 @@ def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) 
     """Ratio of two standard deviations, the first over the second, with its interval from the F law.
 
     It takes both groups as normally distributed; with heavy tails it is too narrow. NaN where the second does not vary.
+
+    Args:
+        values: first group, (n,).
+        others: second group, (m,).
+        level: of confidence.
+
+    Returns:
+        Ratio, lower and upper bound.
     """
     spread = float(others.std(ddof=1))
     ratio = float(values.std(ddof=1)) / spread if spread > 0 else math.nan

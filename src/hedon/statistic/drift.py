@@ -50,7 +50,12 @@ class ScoreTest:
 
 
 def rank_score(value: float, null: Floats) -> float:
-    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half."""
+    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half.
+
+    Args:
+        value: what is judged.
+        null: independent draws under the null hypothesis, (draws,).
+    """
     below = np.count_nonzero(null < value) + 0.5 * np.count_nonzero(null == value)
     return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
 
@@ -78,7 +83,12 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
 
 
 def sign_flip_p(values: Floats, rng: np.random.Generator) -> float:
-    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign."""
+    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign.
+
+    Args:
+        values: one per world, (n,).
+        rng: source of chance, used where there are too many signs to try them all.
+    """
     n = len(values)
     if n <= _EXACT:
         signs = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))

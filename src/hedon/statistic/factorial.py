@@ -112,7 +112,12 @@ def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> Fa
 
 
 def all_effects(factors: int, order: int | None = None) -> list[Factors]:
-    """All effects of some factors up to an order, by order."""
+    """All effects of some factors up to an order, by order.
+
+    Args:
+        factors: how many.
+        order: of the highest interaction; None for all.
+    """
     orders = range(1, (factors if order is None else order) + 1)
     return [group for k in orders for group in itertools.combinations(range(factors), k)]
 

@@ -49,7 +49,15 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Inter
 
 
 def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
-    """Mean and bounds of `mean_interval`, with NaN for what has no value."""
+    """Mean and bounds of `mean_interval`, with NaN for what has no value.
+
+    Args:
+        values: one per world; None and NaN are left out.
+        level: of confidence.
+
+    Returns:
+        Mean, lower and upper bound.
+    """
     found = mean_interval(values, level)
     mean, low, high = (math.nan if number is None else number for number in (found.mean, found.low, found.high))
     return mean, low, high
@@ -62,6 +70,14 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
     and Pearson's (1934) covers at least so often and is wider: five of five give 0.62 … 1 instead of 0.48 … 1. At no
     world and at all worlds the outer bound is 0 or 1. Source: Brown, Cai and DasGupta (2001), Statistical Science 16,
     101–133, section 4.1.
+
+    Args:
+        count: how many have it.
+        of: how many there are.
+        level: of confidence.
+
+    Returns:
+        Lower and upper bound.
     """
     tail = 0.5 * (1.0 - level)
     low, high = (float(stats.beta.ppf(q, count + 0.5, of - count + 0.5)) for q in (tail, 1.0 - tail))
@@ -69,13 +85,29 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
 
 
 def spread_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:
-    """Standard deviation and its interval from the chi-squared law, if the values are normally distributed."""
+    """Standard deviation and its interval from the chi-squared law, if the values are normally distributed.
+
+    Args:
+        values: (n,), two or more.
+        level: of confidence.
+
+    Returns:
+        Standard deviation, lower and upper bound.
+    """
     sd = float(values.std(ddof=1))
     return sd, *_scale_bounds(sd, len(values) - 1, level)
 
 
 def distance_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:
-    """Root mean square and its interval from the chi-squared law, if the values are normal around 0."""
+    """Root mean square and its interval from the chi-squared law, if the values are normal around 0.
+
+    Args:
+        values: (n,), one or more.
+        level: of confidence.
+
+    Returns:
+        Root mean square, lower and upper bound.
+    """
     distance = math.sqrt(float(np.mean(values**2)))
     return distance, *_scale_bounds(distance, len(values), level)
 

@@ -62,7 +62,7 @@ def modes(values: Floats) -> Modes:
     """Tests one mode against more.
 
     Args:
-        values: one per world; NaN is left out.
+        values: one per world, (n,); NaN is left out.
     """
     values = np.sort(values[np.isfinite(values)])
     count = len(values)

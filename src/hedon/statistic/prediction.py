@@ -39,7 +39,12 @@ class Prediction:
 
 
 def prediction(predicted: Iterable[float], seen: Iterable[float]) -> Prediction:
-    """Compares pairs; those without both values are left out."""
+    """Compares pairs; those without both values are left out.
+
+    Args:
+        predicted: what was expected of each.
+        seen: what happened, in the same order.
+    """
     x, y = (np.array(list(values), np.float64) for values in (predicted, seen))
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]

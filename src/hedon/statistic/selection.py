@@ -35,7 +35,7 @@ def within_strata(values: Floats) -> Floats:
     """Deviations from the mean of contemporaries, shape as given (n, p); 0 for a trait that does not vary.
 
     Args:
-        values: traits in the order of birth.
+        values: traits in the order of birth, (n, p).
     """
     parts = [values[part] - values[part].mean(axis=0) for part in _strata(len(values)) if len(part)]
     z = np.concatenate(parts) if parts else values

@@ -29,9 +29,9 @@ class SurvivalCurve:
         age: ages at which somebody died [step], ascending, shape (k,).
         share: that live on after each age, shape (k,).
         low, high: bounds of its pointwise interval, Greenwood's variance on the log-log scale; NaN where
-            nobody is left at risk.
-        at_risk: agents known to reach each age.
-        deaths: at each age.
+            nobody is left at risk; shape (k,).
+        at_risk: agents known to reach each age, shape (k,).
+        deaths: at each age, shape (k,).
     """
 
     age: Floats
@@ -106,6 +106,10 @@ def restricted_mean(curve: SurvivalCurve, until: float) -> RestrictedMean:
     """The area under the curve from birth to an age [step], with Greenwood's variance.
 
     Its variance is the sum over ages at death of (area right of the age)² · d/(n·(n − d)).
+
+    Args:
+        curve: share alive by age.
+        until: the age where the area ends [step].
     """
     within = curve.age < until
     age, share = curve.age[within], curve.share[within]
@@ -120,6 +124,10 @@ def restricted_mean(curve: SurvivalCurve, until: float) -> RestrictedMean:
 
 def exposure_mean(duration: Floats, died: NDArray[np.bool_]) -> float | None:
     """Steps lived by all over deaths [step]: the mean lifetime if the chance of death did not depend on age.
+
+    Args:
+        duration: how long each was seen [step], (n,).
+        died: whether its life ended then, (n,).
 
     Returns:
         None where nobody died.

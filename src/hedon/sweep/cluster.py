@@ -12,17 +12,16 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from hedon.error import HedonError
 from hedon.experiment.interrupt import count_interrupts
-from hedon.replication.run.conduct import Display
-from hedon.replication.run.work import Outcome
+from hedon.jobs.process import Display
+from hedon.jobs.work import Outcome, attempt
 from hedon.sweep.conduct import open_batches, tasks
 from hedon.sweep.error import SweepError
 from hedon.sweep.hold import hold
 from hedon.sweep.loss import Losses
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.store import Store
-from hedon.sweep.work import Task, make_batch
+from hedon.sweep.work import Task
 
 LOCAL = "local"
 """The address of a cluster that is started on this machine, for the sweep alone."""
@@ -96,8 +95,8 @@ def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Displa
     """Submits batches and awaits them; those whose process is lost again, as long as that leads further."""
     lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
     # Ray's own tries have no end where memory runs out, and do not see whether a batch gets further.
-    remote = ray.remote(num_cpus=1, max_retries=0)(answer)
-    waiting = {remote.remote(job): job for job in jobs}
+    remote = ray.remote(num_cpus=1, max_retries=0)(attempt)
+    waiting = {remote.remote(job, 1): job for job in jobs}
     outcomes: dict[str, Outcome] = {}
     with count_interrupts() as interrupted:
         told = 0
@@ -110,7 +109,7 @@ def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Displa
                     if interrupted.count:  # it was called off
                         continue
                     if isinstance(error, lost) and losses.may_go_on(job):
-                        waiting[remote.remote(job)] = job
+                        waiting[remote.remote(job, 1)] = job
                         continue
                     outcome = Outcome("failed", losses.reason(job, error) if isinstance(error, lost) else str(error))
                 outcomes[job.batch.name] = outcome
@@ -120,11 +119,3 @@ def _see_through(ray: Any, jobs: Sequence[Task], losses: Losses, display: Displa
                 for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
                     ray.cancel(each, force=told > 1)
     return outcomes
-
-
-def answer(task: Task) -> Outcome:
-    """Makes a batch where Ray wants it made. A fault of the batch is an outcome."""
-    try:
-        return Outcome(make_batch(task, 1, None))
-    except HedonError as error:
-        return Outcome("failed", str(error))

@@ -19,6 +19,10 @@ TABLE = "table.parquet"
 def read_results(plan: SweepPlan, store: Store) -> list[dict[str, Any]]:
     """The results of all batches that are done, in the plan's order.
 
+    Args:
+        plan: Of the sweep.
+        store: Where the sweep lives.
+
     Raises:
         SweepError: one cannot be read.
     """
@@ -32,7 +36,7 @@ def read_results(plan: SweepPlan, store: Store) -> list[dict[str, Any]]:
     return results
 
 
-def sweep_table(plan: SweepPlan, results: Sequence[dict[str, Any]]) -> pl.DataFrame:
+def _sweep_table(plan: SweepPlan, results: Sequence[dict[str, Any]]) -> pl.DataFrame:
     """One row per world, by condition and repetition: keys, settings that vary, digest, summary; the extinct too.
 
     What a condition does not have, such as a food of another preset, is null.
@@ -46,8 +50,16 @@ def sweep_table(plan: SweepPlan, results: Sequence[dict[str, Any]]) -> pl.DataFr
 
 
 def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
-    """Writes the table `table.parquet` of all worlds so far, and returns it."""
-    table = sweep_table(plan, read_results(plan, store))
+    """Writes the table `table.parquet` of all worlds so far, and returns it.
+
+    Args:
+        plan: Of the sweep.
+        store: Where the sweep lives.
+
+    Raises:
+        SweepError: A result cannot be read, or the table cannot be written.
+    """
+    table = _sweep_table(plan, read_results(plan, store))
     buffer = io.BytesIO()
     table.write_parquet(buffer)
     store.write(TABLE, buffer.getvalue())

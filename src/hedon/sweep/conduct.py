@@ -1,16 +1,16 @@
 """Runs a sweep on one machine: a process per batch, as many at a time as there are workers."""
 
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from hedon.experiment.plan import Moment
-from hedon.replication.run.conduct import Display, side_by_side
-from hedon.replication.run.work import Outcome
+from hedon.jobs.process import Display, conduct
+from hedon.jobs.work import Outcome
 from hedon.sweep.hold import hold
 from hedon.sweep.plan import Batch, SweepPlan
 from hedon.sweep.store import Store
-from hedon.sweep.work import RESULTS, WORK, Task, make_task, work
+from hedon.sweep.work import RESULTS, WORK, Task, make_task
 
 
 def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) -> list[Batch]:
@@ -29,7 +29,15 @@ def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) 
 def tasks(
     plan: SweepPlan, store: Store, batches: Iterable[Batch], scratch: Path, checkpoint_seconds: float
 ) -> list[Task]:
-    """What a process is given for each batch: runs are made in the sweep's folder, or else in `scratch`."""
+    """What a process is given for each batch: runs are made in the sweep's folder, or else in `scratch`.
+
+    Args:
+        plan: Of the sweep.
+        store: Where the sweep lives.
+        batches: Those that are not done.
+        scratch: A local folder, for a sweep that lives at a URL.
+        checkpoint_seconds: Time between two checkpoints [s].
+    """
     place = scratch if store.folder is None else store.folder.absolute() / WORK
     where = store.location if store.folder is None else str(store.folder.absolute())
     return [make_task(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
@@ -43,7 +51,7 @@ def run_sweep(
     checkpoint_seconds: float,
     part: tuple[int, int] = (1, 1),
 ) -> dict[str, Outcome]:
-    """Makes all batches that have no result, one thread each.
+    """Makes all batches that have no result, one thread each; the last one gets all that are free.
 
     Ctrl-C or SIGTERM ends it after the current windows, a second one immediately; what was done is kept. A batch that
     fails does not end the others.
@@ -64,20 +72,26 @@ def run_sweep(
     """
     with hold(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
         jobs = tasks(plan, store, open_batches(plan, store, part), Path(scratch), checkpoint_seconds)
-        outcomes = side_by_side(jobs, workers, display, work, _one_each)
+        outcomes = conduct(jobs, workers, display)
     names = {job.folder: job.batch.name for job in jobs}
     return {names[folder]: outcome for folder, outcome in outcomes.items()}
-
-
-def _one_each(waiting: Sequence[Task], taken: Sequence[int], workers: int) -> int:
-    return 1 if waiting and len(taken) < workers else 0
 
 
 class Silent:
     """A display that shows nothing."""
 
     def update(self, job: Task, moment: Moment) -> None:
-        """Shows nothing."""
+        """Shows nothing.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
 
     def end(self, job: Task, outcome: Outcome) -> None:
-        """Shows nothing."""
+        """Shows nothing.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """

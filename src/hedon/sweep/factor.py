@@ -54,7 +54,14 @@ class Factor:
 def read_factor(name: str, said: Any) -> Factor | Problem:
     """A factor from its entry: a list of values, or a table with `values`, or with `range` or `log` and `count`.
 
-    With `count` a range gives so many values, evenly apart, both ends included. Without, values are drawn from it.
+    With `count` a range gives that many values, evenly apart, both ends included. Without, values are drawn from it.
+
+    Args:
+        name: The setting's path.
+        said: The entry, as TOML gives it.
+
+    Returns:
+        The factor, or what is wrong with the entry.
     """
     place = f"factor.{name}"
     table = {"values": said} if isinstance(said, list) else said

@@ -30,7 +30,12 @@ class Losses:
         return count < TRIES
 
     def reason(self, task: Task, error: Exception) -> str:
-        """Why a batch is given up: which worlds, what was seen last, and what to do."""
+        """Why a batch is given up: which worlds, what was seen last, and what to do.
+
+        Args:
+            task: Of the batch.
+            error: What was seen last.
+        """
         settings = ", ".join(f"{name} = {format_value(value)}" for name, value in task.settings.items())
         worlds = f"{settings or 'all settings'}, seed {', '.join(map(str, task.batch.seeds))}"
         first = str(error).strip().partition("\n")[0]

@@ -113,6 +113,10 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
 
     Configs come first and the plan last: where there is a plan, all of it is there.
 
+    Args:
+        file: The sweep as its file describes it.
+        store: Where the sweep lives.
+
     Raises:
         SweepError: another sweep lives there, or it cannot be written.
     """
@@ -156,7 +160,16 @@ def load_plan(store: Store) -> SweepPlan:
 
 
 def load_condition(store: Store, index: int) -> Config:
-    """The config of a condition. SweepError: it is missing."""
+    """The config of a condition.
+
+    Args:
+        store: Where the sweep lives.
+        index: Of the condition in the plan.
+
+    Raises:
+        SweepError: It is missing.
+        ConfigError: It cannot be read.
+    """
     name = _config_name(index)
     content = store.read(name)
     if content is None:
@@ -165,7 +178,15 @@ def load_condition(store: Store, index: int) -> Config:
 
 
 def load_rules(store: Store, config: Config) -> tuple[RuleSource, ...]:
-    """The texts of the rules that a condition is pinned to. SweepError: one is missing."""
+    """The texts of the rules that a condition is pinned to.
+
+    Args:
+        store: Where the sweep lives.
+        config: Of the condition.
+
+    Raises:
+        SweepError: One is missing or damaged.
+    """
     return tuple(_load_rule(store, place) for place in rule_places(config))
 
 

@@ -41,6 +41,11 @@ class Point:
 def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str]) -> dict[str, str]:
     """Columns to show and what they are called: those asked for, or the usual ones and the mean of each weight.
 
+    Args:
+        table: A row per world.
+        asked: Columns that the user names; none for the usual ones.
+        factors: Columns of what was varied.
+
     Raises:
         SweepError: one is not a column of numbers.
     """
@@ -70,23 +75,35 @@ def _weight_title(column: str) -> str:
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
-    """The mean of a response at each combination of some factors' values, over all else that varies."""
+    """The mean of a response at each combination of some factors' values, over all else that varies.
+
+    Args:
+        table: A row per world.
+        factors: Columns, one or two.
+        response: A column of numbers.
+    """
     made = []
     for at, rows in table.sort(*factors).group_by(*factors, maintain_order=True):
-        made.append(Point(tuple(at), response_interval(rows[response])))
+        made.append(Point(tuple(at), _response_interval(rows[response])))
     return made
 
 
 def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
-    """Means over groups of neighbors along a factor that was drawn from a range."""
+    """Means over groups of neighbors along a factor that was drawn from a range.
+
+    Args:
+        table: A row per world.
+        factor: A column.
+        response: A column of numbers.
+    """
     rows = table.sort(factor)
     count = min(BINS, max(1, rows.height // 4))
     edges = [round(i * rows.height / count) for i in range(count + 1)]
     groups = [rows[low:high] for low, high in pairwise(edges) if high > low]
-    return [Point((_mean(group[factor]),), response_interval(group[response])) for group in groups]
+    return [Point((_mean(group[factor]),), _response_interval(group[response])) for group in groups]
 
 
-def response_interval(values: pl.Series) -> Interval:
+def _response_interval(values: pl.Series) -> Interval:
     """Mean over worlds: Student's t interval; of yes and no a share, with Jeffreys' interval."""
     known = values.drop_nulls()
     if values.dtype != pl.Boolean:

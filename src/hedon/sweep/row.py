@@ -22,6 +22,12 @@ def world_rows(
 
     Nested values get names joined by "_": weights.w_action.mean is w_action_mean. Where there are several species, what
     is of one of them begins with its name and a dot, as in prey.alive_mean, and sums over all are totals: total_alive.
+
+    Args:
+        batch: Whose worlds they are.
+        settings: What the sweep varies, by path.
+        summary: Of the run, as `summarize` gives it.
+        digests: Of the worlds' ends, in the order of the seeds.
     """
     varied = {name: _plain(value) for name, value in settings.items()}
     rows = []

@@ -34,7 +34,12 @@ class Status:
 
 
 def sweep_status(plan: SweepPlan, store: Store) -> Status:
-    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way."""
+    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way.
+
+    Args:
+        plan: Of the sweep.
+        store: Where the sweep lives.
+    """
     results, missing = read_results(plan, store), open_batches(plan, store)
     worlds = [world for result in results for world in result["worlds"]]
     begun = {}

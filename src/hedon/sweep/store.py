@@ -31,7 +31,15 @@ class Store(Protocol):
         ...
 
     def write(self, name: str, content: bytes) -> None:
-        """Writes a content, whole or not at all; the last one of several counts."""
+        """Writes a content, whole or not at all; the last one of several counts.
+
+        Args:
+            name: Parts of a path, with "/" between them.
+            content: All of it.
+
+        Raises:
+            SweepError: It cannot be written.
+        """
         ...
 
     def read(self, name: str) -> bytes | None:
@@ -56,7 +64,15 @@ class FolderStore:
         self._root = folder
 
     def write(self, name: str, content: bytes) -> None:
-        """Writes a content; see `Store`."""
+        """Writes a content; see `Store`.
+
+        Args:
+            name: Parts of a path below the folder.
+            content: All of it.
+
+        Raises:
+            SweepError: It cannot be written.
+        """
         path = self._root / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -65,7 +81,11 @@ class FolderStore:
             raise SweepError(f"cannot write {path}: {error.strerror}") from error
 
     def read(self, name: str) -> bytes | None:
-        """A content, or None; see `Store`."""
+        """A content, or None; see `Store`.
+
+        Raises:
+            SweepError: It is there and cannot be read.
+        """
         try:
             return (self._root / name).read_bytes()
         except (FileNotFoundError, NotADirectoryError):
@@ -88,6 +108,9 @@ class UrlStore:
 
     An object store shows an object only when all of it has arrived, other file systems show a file as it grows. So
     contents get a passing name first; what a writer that was killed leaves there, nobody reads.
+
+    Raises:
+        SweepError: A package is missing, or the URL names no such file system.
     """
 
     def __init__(self, url: str) -> None:
@@ -106,7 +129,15 @@ class UrlStore:
         self._made: set[str] = set()
 
     def write(self, name: str, content: bytes) -> None:
-        """Writes a content; see `Store`."""
+        """Writes a content; see `Store`.
+
+        Args:
+            name: Parts of a path below the URL.
+            content: All of it.
+
+        Raises:
+            SweepError: It cannot be written.
+        """
         path = self._path(name)
         parent, _, last = path.rpartition("/")
         passing = f"{parent}/{PASSING}{secrets.token_hex(8)}-{last}"

@@ -12,7 +12,6 @@ import zipfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 from hedon.experiment.plan import Display, Moment, RunPlan
@@ -22,7 +21,6 @@ from hedon.record.folder import LOCK, checkpoint_paths
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
-from hedon.replication.run.work import answer
 from hedon.report.summary import summarize
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
@@ -58,9 +56,31 @@ class Task:
     folder: Path
     checkpoint_seconds: float
 
+    @property
+    def threads(self) -> int:
+        """One: what a sweep gains by more processors is more batches at a time."""
+        return 1
+
+    def make(self, threads: int, display: Display | None) -> str:
+        """Makes the batch; see `make_batch`.
+
+        Args:
+            threads: That the process may use.
+            display: Shows progress.
+        """
+        return make_batch(self, threads, display)
+
 
 def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
-    """What a process is given to make a batch of a plan; see `Task`."""
+    """What a process is given to make a batch of a plan; see `Task`.
+
+    Args:
+        location: Of the sweep's store, as a process in another folder finds it.
+        plan: Of the sweep.
+        batch: To make.
+        folder: Where its run is made.
+        checkpoint_seconds: Time between two checkpoints [s].
+    """
     settings = plan.settings[batch.condition]
     return Task(location, batch, settings, plan.steps, plan.keep, folder, checkpoint_seconds)
 
@@ -70,13 +90,13 @@ def result_name(batch: Batch) -> str:
     return f"{RESULTS}/{batch.name}.json"
 
 
-def work(task: Task, threads: int, link: Connection) -> None:
-    """Makes a batch in a new process; see `hedon.replication.run.work.answer`."""
-    answer(link, lambda display: make_batch(task, threads, display))
-
-
 def make_batch(task: Task, threads: int, display: Display | None) -> str:
     """Makes a batch, from where it is, and writes its result.
+
+    Args:
+        task: What to make.
+        threads: That the process may use.
+        display: Shows progress.
 
     Returns:
         "finished", or "interrupted".
@@ -154,7 +174,12 @@ class _Carrying:
 
 
 def newest_checkpoint(store: Store, task: Task) -> str:
-    """The name of the last checkpoint from which a batch would go on; empty where there is none."""
+    """The name of the last checkpoint from which a batch would go on; empty where there is none.
+
+    Args:
+        store: Where the sweep lives.
+        task: Of the batch.
+    """
     if store.folder is not None:
         return _newest(task.folder)
     with suppress(SweepError, zipfile.BadZipFile):

@@ -41,6 +41,11 @@ class Footage:
 
         Frames are read part by part, so a long run needs no more memory than a short one.
 
+        Args:
+            first: [step].
+            last: [step].
+            speed: steps from one moment to the next.
+
         Raises:
             RecordError: a frame is damaged.
         """

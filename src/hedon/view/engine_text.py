@@ -9,10 +9,15 @@ from hedon.config.native import engine_config
 
 
 def engine_text(config: Config, seed: int) -> str:
-    """One `path=value` per line: the seed, the walls, and every setting of the engine."""
+    """One `path=value` per line: the seed, the walls, and every setting of the engine.
+
+    Args:
+        config: of the world.
+        seed: of the world.
+    """
     lines = [f"seed={seed}", f"outer_walls={outer_count(config.arena)}"]
     lines += ["wall=" + ",".join(repr(float(value)) for value in wall) for wall in walls(config.arena)]
-    lines += [f"{path}={engine_value(value)}" for path, value in engine_settings(config).items()]
+    lines += [f"{path}={_engine_value(value)}" for path, value in engine_settings(config).items()]
     return "\n".join(lines) + "\n"
 
 
@@ -21,7 +26,7 @@ def engine_settings(config: Config) -> dict[str, Any]:
     return dict(_flat(engine_config(config), ""))
 
 
-def engine_value(value: Any) -> str:
+def _engine_value(value: Any) -> str:
     """A value as the text has it."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 

@@ -19,7 +19,11 @@ PYTHON = ("reward.memory",)
 
 
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
-    """What `live_world` says of a preset or file, and of all presets after it.
+    """What `live_world` gives for a preset or file, and for all presets after it.
+
+    Args:
+        first: a preset or a file; empty for the presets alone.
+        fidelity: of them all; None for the config's own.
 
     Raises:
         ConfigError: There is no such preset or file, or something in it is wrong.
@@ -30,6 +34,10 @@ def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, 
 
 def live_world(config: Config, source: str) -> dict[str, Any]:
     """One world that the page can make.
+
+    Args:
+        config: of the world.
+        source: the preset or the file that it comes from.
 
     Returns:
         `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if no preset is
@@ -82,7 +90,13 @@ def _reached(config: Config, path: str, setting: Setting, value: Any, before: di
 
 
 def changed(config: Any, path: str, value: Any) -> Any:
-    """A config, or a part of one, with one setting replaced, unchecked."""
+    """A config, or a part of one, with one setting replaced, unchecked.
+
+    Args:
+        config: a config, a section, or a mapping of sections.
+        path: of the setting within it.
+        value: the new one.
+    """
     name, _, rest = path.partition(".")
     if isinstance(config, dict):
         return {**config, name: changed(config[name], rest, value)}

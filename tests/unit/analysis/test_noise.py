@@ -6,10 +6,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.gene.bias import compare, gene_drift
-from hedon.analysis.gene.noise import mutations, noise_table
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
+from hedon_studies.kanagawa_doya_2024.analysis.bias import compare, gene_drift
+from hedon_studies.kanagawa_doya_2024.analysis.noise import mutations, noise_table
 
 WINDOW = 1024
 GENE = "neutral_1"

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from worlds import QUICK, make_simulation
 
-from hedon.benchmark import growth
-from hedon.benchmark.bench import DEFAULT_PARTS, PARTS, choose
-from hedon.benchmark.check import CheckError, check_same_lives, check_world
-from hedon.benchmark.floor import network_flop, step_floor
-from hedon.benchmark.machine import Calibration, drifts
-from hedon.benchmark.measure import spread
-from hedon.benchmark.plan import PlanError, make_plan
-from hedon.benchmark.scene import Scene, go_on_from_peopled, peopled, scene_of
+from benchmarks import growth
+from benchmarks.bench import DEFAULT_PARTS, PARTS, choose
+from benchmarks.check import CheckError, check_same_lives, check_world
+from benchmarks.floor import network_flop, step_floor
+from benchmarks.machine import Calibration, drifts
+from benchmarks.measure import spread
+from benchmarks.plan import PlanError, make_plan
+from benchmarks.scene import Scene, go_on_from_peopled, peopled, scene_of
 from hedon.config.load import load_config
 from hedon.experiment.simulation import Simulation
 

@@ -24,7 +24,15 @@ def with_cohorts(agents: pl.DataFrame, last_step: int, windows: int) -> pl.DataF
 
 
 def window_bounds(last_step: int, windows: int) -> np.ndarray:
-    """The steps between which the windows lie [step], shape (windows + 1,)."""
+    """The steps between which windows of equal length lie.
+
+    Args:
+        last_step: the end of the last window [step]; at least `windows`, or that is taken.
+        windows: how many.
+
+    Returns:
+        Bounds from 0 on [step], rounded, (windows + 1,) int64.
+    """
     return np.linspace(0.0, max(last_step, windows), windows + 1).round().astype(np.int64)
 
 

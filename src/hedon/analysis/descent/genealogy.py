@@ -22,7 +22,7 @@ class Genealogy:
 
     Attributes:
         parent: position of the parent, −1 for founders and for those whose parent is not recorded, (n,).
-        birth, death: [step]; `ALIVE` for those who live, (n,).
+        birth, death: [step], (n,); a death of `ALIVE` for those who live.
         gaps: agents that have a parent of whom there is no record: a damaged part is missing.
     """
 
@@ -38,7 +38,7 @@ class Genealogy:
 
     @property
     def alive(self) -> Flags:
-        """Who lives at the end of the records."""
+        """Who lives at the end of the records, (n,)."""
         return self.death == ALIVE
 
 
@@ -86,7 +86,7 @@ def ancestry(tree: Genealogy, agents: Ints) -> Flags:
 
     Args:
         tree: the pedigree.
-        agents: positions.
+        agents: positions, (m,).
     """
     marked = np.zeros(tree.size, bool)
     current = np.unique(agents)
@@ -103,7 +103,7 @@ def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
 
     Args:
         tree: the pedigree.
-        agents: positions.
+        agents: positions, (m,).
     """
     line = ancestry(tree, agents)
     if not len(agents) or np.count_nonzero(line & (tree.parent < 0)) != 1:
@@ -117,12 +117,28 @@ def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
 
 
 def living_at(tree: Genealogy, step: int) -> Ints:
-    """Positions of those alive after a step."""
+    """Positions of those alive after a step.
+
+    Args:
+        tree: the pedigree.
+        step: after which [step]; who is born in it lives, who dies in it does not.
+
+    Returns:
+        Ascending positions, (alive,).
+    """
     return np.flatnonzero((tree.birth <= step) & (tree.death > step))
 
 
 def families(tree: Genealogy, steps: Ints) -> Ints:
-    """Founders that have living descendants, or live themselves, after each of some steps, (len(steps),)."""
+    """How many founders live, or have living descendants, after each of some steps.
+
+    Args:
+        tree: the pedigree.
+        steps: times [step], (times,).
+
+    Returns:
+        Numbers of founders, (times,).
+    """
     last = np.full(tree.size, -1, np.int64)
     np.maximum.at(last, founder(tree), tree.death)
     ends = np.sort(last[last >= 0])

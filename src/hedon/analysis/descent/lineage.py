@@ -32,7 +32,15 @@ class Coalescence:
 
 
 def coalescence(tree: Genealogy, step: int) -> Coalescence:
-    """Common descent of those alive after a step."""
+    """Common descent of those alive after a step.
+
+    Args:
+        tree: the pedigree.
+        step: after which the living are taken [step].
+
+    Returns:
+        Numbers of agents and of their founders, and their common ancestor; NaN where there is none.
+    """
     alive = living_at(tree, step)
     if not len(alive):
         return Coalescence(step, 0, 0, np.nan, np.nan, np.nan)
@@ -44,7 +52,7 @@ def coalescence(tree: Genealogy, step: int) -> Coalescence:
 
 
 def survivors(tree: Genealogy) -> NDArray[np.int64]:
-    """Those alive at the end of the records, or born last where nobody is: whose lines are followed."""
+    """Positions of those alive at the end of the records, (n,); of the one born last where nobody is."""
     alive = np.flatnonzero(tree.alive)
     return alive if len(alive) or not tree.size else np.array([int(np.argmax(tree.birth))])
 
@@ -61,7 +69,7 @@ def lines_through_time(
         tree: the pedigree.
         agents: table `agents` of the same world, by agent_id.
         names: genome columns.
-        steps: times, ascending [step].
+        steps: times, ascending [step], (times,).
 
     Returns:
         By step and weight: step, weight, lines (how many lead to the survivors), alive, line_mean (mean

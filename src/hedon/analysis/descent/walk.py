@@ -50,7 +50,15 @@ class MutationLaw:
     probability: float = 1.0
 
     def draw(self, rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.float64]:
-        """Noise of scale 1."""
+        """Draws noise of scale 1; 0 where a gene does not mutate.
+
+        Args:
+            rng: source of chance.
+            shape: of the result.
+
+        Returns:
+            Independent values, of the given shape, float64.
+        """
         if self.noise == "student_t":
             noise = rng.standard_t(self.df, shape)
         elif self.noise == "normal":
@@ -63,7 +71,12 @@ class MutationLaw:
 
 
 def mutation_law(config: Config, gene: Gene) -> MutationLaw:
-    """The law of one gene of a run."""
+    """The law of one gene of a run.
+
+    Args:
+        config: of the run.
+        gene: one of a species' layout.
+    """
     return MutationLaw(
         mean=gene.law.initial_mean,
         sd=gene.law.initial_sd,
@@ -87,7 +100,7 @@ def neutral_means(
 
     Args:
         tree: the pedigree, without gaps.
-        sample: positions of agents.
+        sample: positions of agents, (n,).
         law: of founding and mutation.
         rng: source of chance.
         walks: how many genes, each independent of the others.
@@ -108,7 +121,7 @@ def neutral_courses(
 
     Args:
         tree: the pedigree, without gaps.
-        living: positions of the living at each time; somebody at all of them.
+        living: positions of the living at each time, (alive,) each; somebody at all of them.
         law: of founding and mutation.
         rng: source of chance.
         walks: how many genes, each independent of the others.
@@ -188,6 +201,11 @@ def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.
 
     Where genomes are drawn at a window's end, an agent that died in the window of its birth never had one of its own,
     and one born in a window that goes on has none yet.
+
+    Args:
+        tree: the pedigree.
+        law: of founding and mutation.
+        last_step: the end of the records [step].
     """
     born = tree.parent >= 0
     if not law.late:
@@ -202,6 +220,11 @@ def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
 
     Frozen noise depends on a birth's index within its window of learning and on a number of births: that of the window
     itself if genomes are drawn at its end (`late`), else that of the window before.
+
+    Args:
+        tree: the pedigree.
+        window: its length [step].
+        late: whether genomes are drawn at a window's end.
 
     Returns:
         Numbers from 0 without gaps, in the order of (births, index); 0 for founders, shape (n,).

@@ -88,12 +88,17 @@ class DriftTest:
 
 
 def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
-    """Each weight of a world against walks along its pedigree.
+    """Compares each weight of a world with neutral walks along its pedigree.
+
+    Args:
+        world: a world with its agents.
+        rng: source of chance for the walks.
+        walks: how many neutral genes walk for each law of mutation.
 
     Returns:
-        None at all where there is no pedigree, or one with gaps, whose walks would have no beginning; nor where the
-        founders come from a table, whose law the walks do not know, or where children have two parents, or where noise
-        is fixed by the number of a birth among those of several species.
+        A result for each weight. An empty list where there is no pedigree, or one with gaps, whose walks would have no
+        beginning; where the founders come from a table, whose law the walks do not know; where children have two
+        parents; and where noise is fixed by the number of a birth among those of several species.
     """
     tree = genealogy(world.agents)
     if tree.gaps or not tree.size or world.config.genome.founders or world.config.birth.mating == "pairs":

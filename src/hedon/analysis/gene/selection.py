@@ -139,7 +139,15 @@ def curvature(
 ) -> list[Curvature]:
     """Curvature along each weight within one birth cohort, all other weights held fixed by their linear parts.
 
-    Arguments and order as for `selection`.
+    Args:
+        cohort: rows of the table `agents` of one world.
+        names: genome columns.
+        last_step: the end of the records [step].
+        rng: source of chance for the bootstrap.
+        replicates: bootstrap samples.
+
+    Returns:
+        For each measure of fitness a row per weight; NaN with fewer agents than `FEWEST`.
     """
     traits = _Traits(cohort, names, last_step)
     tables = np.full((len(FITNESS), 3, len(names)), np.nan)

@@ -39,7 +39,12 @@ def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
 
 
 def last_mean(weight: str, world: WorldRecord) -> float | None:
-    """Mean of a weight over the 5000 agents of a world that were born last; None without agents."""
+    """Mean of a weight over the 5000 agents of a world that were born last; None without agents.
+
+    Args:
+        weight: a genome column.
+        world: a world with its agents.
+    """
     values = last_agents(world.agents)[weight].to_numpy()
     return float(values.mean(dtype=float)) if len(values) else None
 

@@ -50,7 +50,13 @@ def complete_cohorts(rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def world_means(rows: pl.DataFrame, by: Sequence[str], quantities: Sequence[str]) -> pl.DataFrame:
-    """Means over the cohorts of each world, for each group of rows."""
+    """Means over the cohorts of each world, for each group of rows.
+
+    Args:
+        rows: a row per cohort, with the columns condition and seed.
+        by: further columns that tell groups apart.
+        quantities: columns to average; null is left out.
+    """
     if rows.is_empty():
         return rows
     groups = rows.group_by("condition", "seed", *by, maintain_order=True)

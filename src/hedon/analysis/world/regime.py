@@ -103,7 +103,15 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
 
 
 def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
-    """The regime over some rows of the table `population` of one species of a world that follow one another."""
+    """The regime over some rows of the table `population` of one species of a world that follow one another.
+
+    Args:
+        rows: of the table `population`, in order.
+        config: whose first species is the one of the rows.
+
+    Raises:
+        ArgumentError: The rows are of several species.
+    """
     require_one_species(rows)
     sums = {name: float(rows[name].sum()) for name in _SUMMED}
     steps, lived = int(rows["steps"].sum()), sums["agent_steps"]

@@ -54,6 +54,9 @@ def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
     Args:
         columns: of the run. Where there is one species, all of them are its own.
         config: of the run; needed where there are several species.
+
+    Raises:
+        ArgumentError: There are several species and no config.
     """
     if not columns.several:
         only = Kind(columns.food_kinds, columns.prey, columns.reward_names, columns.neutral_names)

@@ -37,7 +37,13 @@ class FilmDisplay:
             self._status.__exit__(None, None, None)
 
     def update(self, number: int, pictures: int, step: int) -> None:
-        """Shows how far the video is, if enough time has passed."""
+        """Shows how far the video is, if enough time has passed.
+
+        Args:
+            number: Pictures made so far.
+            pictures: Of the whole video.
+            step: That the last one shows.
+        """
         now = time.monotonic()
         if now < self._due:
             return

@@ -11,7 +11,7 @@ from hedon.config import Config
 from hedon.demography.forecast import Forecast
 
 
-def forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
+def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
     """The tables of a forecast, by name."""
     levels = [
         {
@@ -39,6 +39,11 @@ def forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
 
 
 def forecast_group(config: Config, found: Forecast) -> Group:
-    """What `hedon demography` prints."""
+    """What `hedon demography` prints.
+
+    Args:
+        config: With the settings of the population.
+        found: What they predict.
+    """
     warnings = [Text.assemble(("! ", "bold"), text) for text in found.warnings]
-    return Group(analysis_group(forecast_tables(config, found)), *warnings)
+    return Group(analysis_group(_forecast_tables(config, found)), *warnings)

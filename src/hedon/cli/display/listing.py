@@ -5,13 +5,18 @@ from rich.text import Text
 
 from hedon.cli.display.run import duration
 from hedon.cli.display.table import PrintedTable
-from hedon.replication.item.item import Item
-from hedon.replication.request import Request
-from hedon.replication.run.cost import RequestCost
+from hedon.study.cost import RequestCost
+from hedon.study.item import Item
+from hedon.study.request import Request
 
 
 def listing(request: Request, cost: RequestCost) -> Group:
-    """What `hedon reproduce list` prints."""
+    """What `hedon reproduce list` prints.
+
+    Args:
+        request: The items that the user asked for.
+        cost: What their runs take [s].
+    """
     rows = [
         (item.name, item.kind, item.title, _needs(request, item), _time(its.total), _time(its.left))
         for item, its in zip(request.items, cost.items, strict=True)

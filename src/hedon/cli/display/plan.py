@@ -13,8 +13,8 @@ from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.replication.run.plan import Job
-from hedon.replication.run.work import Outcome
+from hedon.jobs.run import RunJob
+from hedon.jobs.work import Outcome
 
 SPAN = 60.0
 """Time over which the speed is measured, so that the forecast follows the sizes of the populations [s]."""
@@ -30,7 +30,7 @@ class PlanDisplay(Screen):
         jobs: the plan.
     """
 
-    def __init__(self, console: Console, jobs: Sequence[Job]) -> None:
+    def __init__(self, console: Console, jobs: Sequence[RunJob]) -> None:
         super().__init__(console)
         self._total = sum(job.world_steps for job in jobs)
         self._count = len(jobs)
@@ -40,12 +40,17 @@ class PlanDisplay(Screen):
         self._ended = 0
         self._seen: deque[tuple[float, int]] = deque()
 
-    def update(self, job: Job, moment: Moment) -> None:
-        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
+    def update(self, job: RunJob, moment: Moment) -> None:
+        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
         self._moments[job.folder] = moment
         living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.
-        self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
+        self._done[job.folder] = max(0, job.world_steps - living * (job.plan.steps - moment.step))
         if not self.is_due():
             return
         now = time.monotonic()
@@ -54,8 +59,13 @@ class PlanDisplay(Screen):
             self._seen.popleft()
         self.show(lambda: f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", self._draw)
 
-    def end(self, job: Job, outcome: Outcome) -> None:
-        """Notes the end of a run and prints a line that says how it ended."""
+    def end(self, job: RunJob, outcome: Outcome) -> None:
+        """Notes the end of a run and prints a line that says how it ended.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """
         moment = self._moments.pop(job.folder, None)
         self._ended += 1
         if outcome.status == "finished":
@@ -93,10 +103,10 @@ class PlanDisplay(Screen):
         return Group(Text(self._head()), bar, table, hint)
 
 
-def _ends(job: Job, moment: Moment) -> dict[int, int | None]:
+def _ends(job: RunJob, moment: Moment) -> dict[int, int | None]:
     """The step at which the world of each seed died out, or None."""
-    species = len(moment.extinct) // len(job.seeds)
-    return dict(zip(job.seeds, moment.extinct[::species], strict=True))
+    species = len(moment.extinct) // len(job.plan.seeds)
+    return dict(zip(job.plan.seeds, moment.extinct[::species], strict=True))
 
 
 def _alive(moment: Moment) -> str:

@@ -56,7 +56,13 @@ def _head(moment: Moment, speed: float | None, gap: str) -> str:
 
 
 class LineDisplay:
-    """Plain lines from time to time, for logs."""
+    """Plain lines from time to time, for logs.
+
+    Args:
+        stream: To print on.
+        columns: Of the run's tables.
+        seeds: One per world.
+    """
 
     def __init__(self, stream: IO[str], columns: Columns, seeds: tuple[int, ...]) -> None:
         self._stream = stream
@@ -102,7 +108,13 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
 
 
 class LiveDisplay:
-    """A progress bar and a table of the worlds, updated on a terminal."""
+    """A progress bar and a table of the worlds, updated on a terminal.
+
+    Args:
+        console: A terminal.
+        columns: Of the run's tables.
+        seeds: One per world.
+    """
 
     def __init__(self, console: Console, columns: Columns, seeds: tuple[int, ...]) -> None:
         self._weights = columns.shown_names
@@ -157,7 +169,13 @@ class LiveDisplay:
 
 
 def make_display(console: Console, columns: Columns, seeds: tuple[int, ...]) -> LiveDisplay | LineDisplay:
-    """The display that fits the output: a terminal or not."""
+    """The display that fits the output: a terminal or not.
+
+    Args:
+        console: Where it shows the run.
+        columns: Of the run's tables.
+        seeds: One per world.
+    """
     if console.is_terminal:
         return LiveDisplay(console, columns, seeds)
     return LineDisplay(console.file, columns, seeds)

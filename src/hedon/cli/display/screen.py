@@ -37,7 +37,12 @@ class Screen:
         return time.monotonic() >= self._due
 
     def show(self, line: Callable[[], str], picture: Callable[[], RenderableType]) -> None:
-        """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made."""
+        """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made.
+
+        Args:
+            line: Makes the line.
+            picture: Makes the picture.
+        """
         self._due = time.monotonic() + (LINE_SECONDS if self._live is None else TERMINAL_SECONDS)
         if self._live is None:
             self._console.print(line(), soft_wrap=True)

@@ -9,9 +9,9 @@ from rich.text import Text
 
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
-from hedon.replication.paper import STEPS
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
+from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 _QUANTITIES = {  # key of the summary: name, key among the paper's figures
     "mean_lifetime": ("mean lifetime of the dead [step]", "mean_lifetime"),

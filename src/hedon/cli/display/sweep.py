@@ -8,7 +8,7 @@ from rich.text import Text
 from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.experiment.plan import Moment
-from hedon.replication.run.work import Outcome
+from hedon.jobs.work import Outcome
 from hedon.sweep.work import Task
 from hedon.text import printable
 
@@ -30,14 +30,24 @@ class SweepDisplay(Screen):
         self._ended = self._done = self._made = 0
 
     def update(self, job: Task, moment: Moment) -> None:
-        """Notes a moment of a batch."""
+        """Notes a moment of a batch.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
         worlds = len(job.batch.seeds)
         self._current[job.batch.name] = (moment.step * worlds, (moment.step - moment.first) * worlds)
         if self.is_due():
             self._show()
 
     def end(self, job: Task, outcome: Outcome) -> None:
-        """Notes the end of a batch; says why one failed."""
+        """Notes the end of a batch; says why one failed.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """
         self._ended += 1
         whole = job.steps * len(job.batch.seeds) if outcome.status == "finished" else 0
         # A cluster tells no moments.

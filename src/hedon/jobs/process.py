@@ -1,0 +1,157 @@
+"""Makes the runs of a plan, as many at a time as fill the processors, and passes Ctrl-C and SIGTERM on to them."""
+
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import get_context, resource_tracker
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
+
+from hedon.experiment.interrupt import SIGNALS, count_interrupts
+from hedon.experiment.plan import Moment
+from hedon.jobs.work import Job, Outcome, work
+
+_LOOK_SECONDS = 0.2
+"""Longest time between two checks for Ctrl-C [s]."""
+
+
+T = TypeVar("T", bound=Job)
+T_contra = TypeVar("T_contra", contravariant=True)
+
+
+@dataclass
+class _Worker(Generic[T]):
+    """A process that works on a job.
+
+    Attributes:
+        job: its job.
+        threads: number of threads that it uses.
+        process, pid, link: the process, its number, and our end of the pipe from it.
+        told: how many signals were passed on to it.
+        ready: whether its run has begun, so that it counts signals.
+    """
+
+    job: T
+    threads: int
+    process: BaseProcess
+    pid: int
+    link: Connection
+    told: int = 0
+    ready: bool = False
+
+
+class Display(Protocol[T_contra]):
+    """A progress display of several runs."""
+
+    def update(self, job: T_contra, moment: Moment) -> None:
+        """Shows a moment of a run; called about five times a second for each."""
+        ...
+
+    def end(self, job: T_contra, outcome: Outcome) -> None:
+        """Shows how a run ended."""
+        ...
+
+
+def conduct(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
+    """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
+
+    Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
+    not run. A run that fails does not end the others.
+
+    Args:
+        jobs: in the order in which they begin.
+        threads: to use in total.
+        display: shows every moment, and how each run ends.
+
+    Returns:
+        How each job ended, by its run's folder; jobs that never began are missing.
+    """
+    waiting, workers = list(jobs), list[_Worker[T]]()
+    outcomes: dict[Path, Outcome] = {}
+    # Python starts this helper with the first process, and unblocks signals then.
+    resource_tracker.ensure_running()
+    with count_interrupts() as interrupted:
+        while workers or (waiting and not interrupted.count):
+            while not interrupted.count and (given := next_share(waiting, [w.threads for w in workers], threads)):
+                workers.append(_start(waiting.pop(0), given))
+            for link in wait([worker.link for worker in workers], _LOOK_SECONDS):
+                worker = next(worker for worker in workers if worker.link is link)
+                if (outcome := _hear(worker, display)) is not None:
+                    worker.process.join()
+                    worker.link.close()
+                    workers.remove(worker)
+                    outcomes[worker.job.folder] = outcome
+                    display.end(worker.job, outcome)
+            for worker in workers:
+                while worker.ready and worker.told < interrupted.count:
+                    _pass_on(worker)
+    return outcomes
+
+
+def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
+    """How many threads the next job begins with: those it wants; the last job gets all free ones; 0 if it must wait.
+
+    Args:
+        waiting: the jobs that have not begun, in order.
+        taken: threads of the current runs.
+        threads: to use in total.
+    """
+    if not waiting:
+        return 0
+    free, needed = threads - sum(taken), min(waiting[0].threads, threads)
+    if free < needed:
+        return 0
+    return free if len(waiting) == 1 else needed
+
+
+def _pass_on(worker: _Worker[Any]) -> None:
+    """Passes one signal on. The system merges equal signals that wait, so the second is a different one."""
+    number = SIGNALS[min(worker.told, len(SIGNALS) - 1)]
+    worker.told += 1
+    with suppress(ProcessLookupError):  # it has just ended; its last message still waits in the pipe
+        os.kill(worker.pid, number)
+
+
+def _start(job: T, threads: int) -> _Worker[T]:
+    context = get_context("spawn")  # a fork would copy the engine's memory without its threads
+    ours, theirs = context.Pipe()
+    process = context.Process(target=work, args=(job, threads, theirs), name=job.folder.name)
+    with _blocked_signals():
+        process.start()
+    theirs.close()
+    assert process.pid is not None  # it has been started
+    return _Worker(job, threads, process, process.pid, ours)
+
+
+@contextmanager
+def _blocked_signals() -> Iterator[None]:
+    """Blocks signals, so that a new process begins with them blocked; this process gets them afterwards."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _hear(worker: _Worker[T], display: Display[T]) -> Outcome | None:
+    """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
+    try:
+        said = worker.link.recv()
+    except (EOFError, OSError):  # it ended without a message: for example, the system killed it because memory ran out
+        worker.process.join()
+        code = worker.process.exitcode or 0
+        cause = (
+            f"was killed by signal {-code}, perhaps because memory ran out"
+            if code < 0
+            else f"ended with exit code {code}"
+        )
+        return Outcome("failed", f"its process {cause}; the same command continues it")
+    if isinstance(said, Moment):
+        worker.ready = True
+        display.update(worker.job, said)
+        return None
+    return said

@@ -1,0 +1,96 @@
+"""What a job is, and one job in its own process, which reports its progress to the parent process."""
+
+import os
+import signal
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Protocol
+
+from hedon.error import HedonError
+from hedon.experiment.interrupt import SIGNALS
+from hedon.experiment.plan import Display, Moment
+
+
+class Job(Protocol):
+    """Something that makes a run; it can be pickled, and the folder of its run tells it from the others."""
+
+    @property
+    def folder(self) -> Path:
+        """Of its run."""
+        ...
+
+    @property
+    def threads(self) -> int:
+        """That it can use; the last one of several gets all that are free."""
+        ...
+
+    def make(self, threads: int, display: Display | None) -> str:
+        """Begins, continues, or only reads its run.
+
+        Returns:
+            The status of an `Outcome`.
+
+        Raises:
+            HedonError: it fails.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a job ended.
+
+    Attributes:
+        status: "finished" or "interrupted", as in the manifest; or "failed".
+        fault: why it failed; empty otherwise.
+    """
+
+    status: str
+    fault: str = ""
+
+
+class _Teller:
+    """Sends every moment to the parent; if there is no parent any more, ends the run with all results kept."""
+
+    def __init__(self, link: Connection) -> None:
+        self._link = link
+        self._alone = False
+
+    def update(self, moment: Moment) -> None:
+        if self._alone:
+            return
+        try:
+            self._link.send(moment)
+        except OSError:
+            self._alone = True
+            os.kill(os.getpid(), signal.SIGTERM)
+
+
+def work(job: Job, threads: int, link: Connection) -> None:
+    """Does a job, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
+
+    The process leaves its parent's session: a terminal sends Ctrl-C only to the parent, which passes it on as soon as
+    the run counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
+
+    Args:
+        job: to do.
+        threads: for it.
+        link: to the parent.
+    """
+    os.setsid()
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    outcome = attempt(job, threads, _Teller(link))
+    with suppress(OSError):  # the parent may have ended; what is on disk says it too
+        link.send(outcome)
+
+
+def attempt(job: Job, threads: int, display: Display | None = None) -> Outcome:
+    """Does a job in this process. A fault of the job is an outcome."""
+    try:
+        return Outcome(job.make(threads, display))
+    except HedonError as error:
+        return Outcome("failed", str(error))

@@ -1,1 +1,0 @@
-"""Makes the missing runs that items need: one process per run, with one progress display for all."""

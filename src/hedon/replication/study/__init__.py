@@ -1,1 +1,0 @@
-"""Studies of what the paper leaves open, one question per file."""

@@ -1,0 +1,93 @@
+"""What the studies share: figures of all worlds of their arms, and a note of what is missing."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from hedon.analysis.response import Response, common_to, figures
+from hedon.statistic.interval import SHOWN_FROM, Interval, mean_interval
+from hedon.study.census import missing, sentences
+from hedon.study.item import Arm, Material, Scale
+
+
+def world_rows(material: Material, arms: Sequence[Arm], responses: Sequence[Response]) -> list[dict[str, Any]]:
+    """One row per world, in the order of the arms.
+
+    Columns: arm, seed, steps, died_out, one per response, and until, the age up to which lifetimes are averaged where
+    the living are counted [step].
+    """
+    common = common_to(world for arm in arms for world in material.worlds.get(arm.label, ()))
+    return [
+        {"arm": arm.label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
+        | figures(world, common, responses)
+        | {"until": common.until}
+        for arm in arms
+        for world in material.worlds.get(arm.label, ())
+    ]
+
+
+def shown_interval(values: Sequence[float | None], response: Response | None = None) -> Interval:
+    """Mean and interval over worlds, without bounds below three worlds.
+
+    Args:
+        values: one per world; None is left out.
+        response: that they are of, so that the mean of what is compared as a ratio is geometric; None for the plain
+            mean.
+    """
+    known = [value for value in values if value is not None]
+    if response is None or not response.ratio:
+        found = mean_interval(known)
+    else:
+        logs = mean_interval([response.scaled(value) for value in known])
+        mean, low, high = (response.unscaled(number) for number in (logs.mean, logs.low, logs.high))
+        found = Interval(mean, low, high, logs.worlds)
+    return found if found.worlds >= SHOWN_FROM else Interval(found.mean, None, None, found.worlds)
+
+
+def read_change(before: str, after: str) -> str:
+    """How the rows of `change` are to be read."""
+    return (
+        f"Means over worlds; change: {after} against {before}, seed by seed, as a difference or, for lifetimes and "
+        "rates of food, a ratio (then all means are geometric); its 95 % interval is Student's t over seeds, from "
+        "three on. change_low and change_high are the least and the largest of single seeds."
+    )
+
+
+def change(rows: Sequence[dict[str, Any]], response: Response, before: str, after: str) -> Iterator[dict[str, Any]]:
+    """One response of two arms and its change seed by seed, where both arms or one of them have it.
+
+    Args:
+        rows: of `world_rows`.
+        response: one of those that the rows hold.
+        before: label of the arm that the change is against.
+        after: label of the arm that is changed.
+    """
+    by_arm = {
+        label: {row["seed"]: row[response.name] for row in rows if row["arm"] == label} for label in (before, after)
+    }
+    means = {label: shown_interval(list(values.values()), response).mean for label, values in by_arm.items()}
+    if all(mean is None for mean in means.values()):
+        return
+    changes = [
+        response.scaled(value) - response.scaled(old)
+        for seed, value in by_arm[after].items()
+        if value is not None and (old := by_arm[before].get(seed)) is not None
+    ]
+    found = shown_interval(changes)
+    low, high = (found.low, found.high) if response.sure else (None, None)
+    values = {"change": found.mean, "low": low, "high": high}
+    values |= {"change_low": min(changes, default=None), "change_high": max(changes, default=None)}
+    head = {"response": response.name} | means | {"scale": "ratio" if response.ratio else "difference"}
+    yield head | {name: response.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
+
+
+def missing_note(material: Material, arms: Sequence[Arm], scale: Scale) -> str:
+    """Names the arms without worlds, the worlds that reach less far than the study's scale, and those that died out."""
+    parts = [missing(arms, material)]
+    worlds = [(arm.label, world) for arm in arms for world in material.worlds.get(arm.label, ())]
+    short = [world.last_step for _, world in worlds if world.extinct_step is None and world.last_step < scale.steps]
+    if short:
+        reach = f"{min(short):,} to {max(short):,}" if min(short) < max(short) else f"{min(short):,}"
+        parts.append(f"{len(short)} of {len(worlds)} worlds reach only {reach} of {scale.steps:,} steps.")
+    if gone := [f"{label} (seed {world.seed})" for label, world in worlds if world.extinct_step is not None]:
+        parts.append(f"Died out, and counted: {', '.join(gone)}.")
+    return sentences(*parts)

@@ -1,0 +1,116 @@
+"""From the figures of some worlds to the figure of a claim, with its interval."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.analysis.gene.drift import standard_drift
+from hedon.analysis.world.record import WorldRecord
+from hedon.statistic.correction import holm
+from hedon.statistic.drift import score_tests
+from hedon.statistic.interval import distance_interval, mean_bounds, share_interval, spread_interval
+from hedon.statistic.mode import ENOUGH_WORLDS, modes
+from hedon_studies.kanagawa_doya_2024.claim import Claim
+
+Floats = NDArray[np.float64]
+
+NAN = math.nan
+_LEVEL = 0.05
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The figure of a claim.
+
+    Attributes:
+        value: NaN where there is none, as its bounds.
+        low, high: bounds of its 95 % interval.
+        verdict: where a test decides in the place of the interval, its answer; else empty.
+        reason: what a reader must know.
+    """
+
+    value: float = NAN
+    low: float = NAN
+    high: float = NAN
+    verdict: str = ""
+    reason: str = ""
+
+
+def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Estimate:
+    """Sums up the figures of some worlds as a claim wants it.
+
+    Args:
+        claim: the claim.
+        figures: one per world that has one, shape (n,).
+        worlds: that they are of, for the neutral genes.
+    """
+    if len(figures) == 0:
+        return Estimate()
+    if claim.over_worlds == "modes":
+        return _modes(figures)
+    if claim.over_worlds == "walk":
+        return _walk(figures)
+    if claim.over_worlds == "share":
+        count = int(np.count_nonzero(figures > 0))
+        return Estimate(count / len(figures), *share_interval(count, len(figures), claim.level))
+    if claim.over_worlds == "setting":
+        value = float(figures[0])
+        return Estimate(value, value, value)
+    if claim.over_worlds in ("spread", "distance"):
+        return _against_neutral(claim, figures, worlds)
+    logs = claim.over_worlds == "ratio"
+    value, low, high = mean_bounds(np.log(figures[figures > 0]) if logs else figures)
+    return Estimate(math.exp(value), math.exp(low), math.exp(high)) if logs else Estimate(value, low, high)
+
+
+def _modes(figures: Floats) -> Estimate:
+    """Two modes hold, one fails; either with the power of the test."""
+    found = modes(figures)
+    power = f"power {found.power:.2f}"
+    if found.answer == "two":
+        sides = f"{found.low_worlds} worlds around {found.low:.2f}, {found.high_worlds} around {found.high:.2f}"
+        return Estimate(verdict="holds", reason=f"{sides}; dip test: p {found.p:.2g}, {power}")
+    reason = f"dip test: p {found.p:.2f}, {power} to find two clear modes"
+    if found.answer == "one":
+        return Estimate(verdict="fails", reason=reason)
+    return Estimate(
+        verdict="undecided", reason=f"{reason}; a second mode can be refused from {ENOUGH_WORLDS} worlds on"
+    )
+
+
+def _walk(scores: Floats) -> Estimate:
+    """Whether scores differ from those of neutral genes: by a common direction, or by being too far out or too near.
+
+    Both tests are corrected for each other. That nothing was found does not say that the weight drifts, so the claim
+    never fails.
+    """
+    direction, distance, held = score_tests(scores)
+    p_direction, p_distance = holm([direction.p, min(1.0, 2.0 * min(held.p, distance.p))])
+    return Estimate(
+        direction.effect,
+        direction.drift_low,
+        direction.drift_high,
+        "holds" if min(p_direction, p_distance) <= _LEVEL else "undecided",
+        f"against neutral walks: direction p {p_direction:.2g}, distance p {p_distance:.2g}",
+    )
+
+
+def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]) -> Estimate:
+    """Spread or distance of scores, 1 for a neutral gene; undecided where recorded neutral genes have another one."""
+    if claim.over_worlds == "spread":
+        if len(scores) < 2:
+            return Estimate()
+        value, low, high = spread_interval(scores)
+    else:
+        value, low, high = distance_interval(scores)
+    neutral = np.array([d.score for w in worlds for d in standard_drift(w) if d.weight in w.neutral_names], np.float64)
+    if len(neutral) < 2:
+        return Estimate(value, low, high)
+    control = distance_interval(neutral)
+    said = "recorded neutral genes: {:.2f} ({:.2f} … {:.2f})".format(*control)
+    if control[1] <= 1.0 <= control[2]:
+        return Estimate(value, low, high, reason=said)
+    return Estimate(value, low, high, "undecided", f"{said}, which differ from the walks")

@@ -1,0 +1,143 @@
+"""From run folders to what items are made from: the worlds that were asked for, as far as they are there."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import polars as pl
+
+from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.config import ConfigError, digest, load_config
+from hedon.record.error import RecordError
+from hedon.record.folder import CONFIG, MANIFEST
+from hedon.record.reader import Run, open_run
+from hedon.record.snapshot import Snapshot, load_snapshot
+from hedon.study.item import Item, Material
+from hedon.study.request import Need, Request, needs, setting_name
+
+
+@dataclass(frozen=True)
+class Gathered:
+    """All that the items of a request are made from.
+
+    Attributes:
+        request: what was asked.
+        runs: that hold some of the worlds.
+        worlds: per setting's digest, seed and species, as far as their records reach.
+        frames: per setting's digest and seed the positions that were recorded.
+        snapshots: per setting's digest the last state of one world, where there is one.
+        faults: what could not be read, and why.
+    """
+
+    request: Request
+    runs: tuple[Run, ...]
+    worlds: dict[tuple[str, int, str], WorldRecord]
+    frames: dict[tuple[str, int], pl.LazyFrame]
+    snapshots: dict[str, Snapshot]
+    faults: tuple[str, ...]
+
+    def material(self, item: Item) -> Material:
+        """What one item is made from."""
+        scale, fidelity = self.request.scale(item), self.request.fidelity
+        configs = {arm.label: arm.config(fidelity) for arm in item.arms}
+        digests = {label: digest(config) for label, config in configs.items()}
+        shown = {arm.label: arm.species or next(iter(configs[arm.label].agents)) for arm in item.arms}
+        worlds = {
+            label: [
+                self.worlds[key, seed, shown[label]].until(scale.steps)
+                for seed in scale.seeds
+                if (key, seed, shown[label]) in self.worlds
+            ]
+            for label, key in digests.items()
+        }
+        snapshots = {label: self.snapshots[key] for label, key in digests.items() if key in self.snapshots}
+        until = pl.col("step") <= scale.steps
+        frames = {
+            label: [self.frames[key, seed].filter(until) for seed in scale.seeds if (key, seed) in self.frames]
+            for label, key in digests.items()
+            if item.frames
+        }
+        return Material(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
+
+    def demanded(self) -> list[WorldRecord]:
+        """Every world once, as long as the most demanding item asks for."""
+        return [
+            self.worlds[need.digest, seed, species].until(steps)
+            for need in needs(self.request)
+            for seed, steps in need.steps.items()
+            for species in need.config.agents
+            if (need.digest, seed, species) in self.worlds
+        ]
+
+
+def find_runs(folder: Path, wanted: Iterable[Need]) -> tuple[list[Run], list[str]]:
+    """The runs in a folder that hold worlds of the settings that are needed, from their beginning on.
+
+    Returns:
+        The runs by name, and what is wrong with folders that hold a run that cannot be read.
+    """
+    seeds = {need.digest: need.steps.keys() for need in wanted}
+    runs, faults = [], []
+    for path in sorted(folder.glob(f"*/{MANIFEST}")):
+        try:
+            run = open_run(path.parent)
+            mine = seeds.get(run.manifest.config_digest or "", ())
+            if run.manifest.parent is None and any(seed in mine for seed in run.manifest.seeds):
+                load_config(run.path / CONFIG)
+                runs.append(run)
+        except (RecordError, ConfigError) as error:
+            faults.append(str(error))
+    return runs, faults
+
+
+def gather(request: Request, folder: Path) -> Gathered:
+    """Reads what there is of the worlds that a request needs; what is damaged is left out and named."""
+    wanted = needs(request)
+    runs, faults = find_runs(folder, wanted)
+    damaged = {run.path.name: run.damaged_parts() for run in runs}
+    faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
+    status = {run.path.name: run.manifest.status for run in runs}
+    needed = {need.digest: need for need in wanted}
+    digests = {run.path.name: run.manifest.config_digest or "" for run in runs}
+    kept: dict[tuple[str, int, str], WorldRecord] = {}
+    # Whole runs first, since of two worlds that are equally long the first is kept.
+    for world in read_worlds(sorted(runs, key=lambda run: bool(damaged[run.path.name]))):
+        need = needed.get(digests[world.run])
+        if need is not None and world.seed in need.steps:
+            known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
+            # Equal settings can be written in several ways, so the need names them, not each run.
+            name = setting_name(need.config) + (f": {world.species}" if len(need.config.agents) > 1 else "")
+            kept[need.digest, world.seed, world.species] = replace(known, condition=name)
+    used = {world.run for world in kept.values()}
+    snapshots = _snapshots(request, runs, faults)
+    shown = tuple(run for run in runs if run.path.name in used)
+    return Gathered(request, shown, kept, _frames(needed, shown), snapshots, tuple(faults))
+
+
+def _frames(needed: Mapping[str, Need], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
+    """The positions of each world that an item needs, from the run that goes furthest."""
+    found: dict[tuple[str, int], pl.LazyFrame] = {}
+    for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
+        need = needed[run.manifest.config_digest or ""]
+        if need.frames and need.has_frames(run):
+            for index, seed in enumerate(run.manifest.seeds):
+                found[need.digest, seed] = run.frames().filter(pl.col("world") == index)
+    return found
+
+
+def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
+    """Per setting that is to be pictured the first state found in which somebody lives, or else any."""
+    wanted = {digest(arm.config(request.fidelity)) for item in request.items if item.pictures for arm in item.arms}
+    found: dict[str, Snapshot] = {}
+    for run in runs:
+        key = run.manifest.config_digest or ""
+        if key not in wanted or (key in found and len(found[key].x)):
+            continue
+        try:
+            snapshot = load_snapshot(run.path)
+        except RecordError as error:
+            faults.append(str(error))
+            continue
+        if snapshot is not None:
+            found[key] = snapshot
+    return found

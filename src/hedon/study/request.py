@@ -1,0 +1,81 @@
+"""What is asked of a reproduction: which items, at which scale, and hence which worlds."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from hedon.config import PRESETS, Config, diff, digest, load_config
+from hedon.config.problem import format_value
+from hedon.record.reader import Run
+from hedon.study.item import Item, Scale
+
+
+@dataclass(frozen=True)
+class Request:
+    """The items that are wanted, and how much is to be run for them.
+
+    Attributes:
+        items: in the order in which they are shown.
+        fidelity: of the arms that have none of their own.
+        seeds: one world each, in the place of the items' own; None for those.
+        steps: of each world, in the place of the items' own [step]; None for those.
+    """
+
+    items: tuple[Item, ...]
+    fidelity: str
+    seeds: tuple[int, ...] | None = None
+    steps: int | None = None
+
+    def scale(self, item: Item) -> Scale:
+        """How much is run of each arm of an item. A picture needs no more than it says itself."""
+        if item.pictures:
+            return item.scale
+        return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
+
+
+@dataclass
+class Need:
+    """A setting that worlds are needed of, by one item or several.
+
+    Attributes:
+        config: the setting.
+        digest: of the config: settings of equal digest share their worlds.
+        steps: of each seed [step].
+        frames: steps between two records of all positions; 0 where no item needs them.
+    """
+
+    config: Config
+    digest: str
+    steps: dict[int, int] = field(default_factory=dict)
+    frames: int = 0
+
+    def has_frames(self, run: Run) -> bool:
+        """Whether a run recorded the positions that are needed."""
+        every = run.manifest.frames
+        return self.frames == 0 or (every > 0 and self.frames % every == 0)
+
+
+def needs(request: Request) -> list[Need]:
+    """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
+    found: dict[str, Need] = {}
+    for item, config in _settings(request):
+        key = digest(config)
+        need = found.setdefault(key, Need(config, key))
+        scale = request.scale(item)
+        need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
+        for seed in scale.seeds:
+            need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
+    return list(found.values())
+
+
+def setting_name(config: Config) -> str:
+    """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
+    changes = diff(load_config(config.preset, config.fidelity), config) if config.preset in PRESETS else []
+    words = [f"{path} {format_value(new)}" for path, _, new in changes]
+    return ", ".join([f"{config.preset} ({config.fidelity})", *words])
+
+
+def _settings(request: Request) -> Iterator[tuple[Item, Config]]:
+    for item in request.items:
+        for arm in item.arms:
+            yield item, arm.config(request.fidelity)

@@ -1,0 +1,246 @@
+"""Do the paper's claims hold in these runs? The rules stand in `claim` and `order`; here they are applied.
+
+Two questions are asked apart. *Does the claim hold here?* Our figure's interval against the region of the claim.
+*Do we differ from the paper?* A test of two samples, where the paper gives a count of its worlds; it gives no spread
+for means, so that with them the question has no answer.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.analysis.world.extinction import world_extinction
+from hedon.analysis.world.record import WorldRecord, by_condition
+from hedon.config import digest, load_config
+from hedon.config.layout import hunted, of_species
+from hedon.statistic.contrast import fisher_mid_p
+from hedon.study.estimate import Estimate, estimate
+from hedon_studies.fear.claim import SEQUEL_CLAIMS, SEQUEL_ORDERS
+from hedon_studies.kanagawa_doya_2024.claim import CLAIMS, SOURCE, Claim, Role
+from hedon_studies.kanagawa_doya_2024.order import ORDERS, Order, compare
+
+HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
+DIFFERS, NOT_SHOWN = "differs", "no difference shown"
+NO_SPREAD, NO_COUNT = "the paper gives no spread", "the paper gives no count"
+FEWEST_WORLDS = 3
+TOO_FEW, CROSSES = f"fewer than {FEWEST_WORLDS} worlds", "the interval crosses the border"
+LEVEL = 0.05
+"""Level of the second question: the chance of finding a difference where there is none."""
+_UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
+"""Why the second question cannot be asked, by the way worlds are summed up; a setting is the same in every world."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What some worlds of one condition, or of two, say of one claim.
+
+    Attributes:
+        claim: its name.
+        condition: whose worlds were asked; two of them with "against" between.
+        verdict: "holds", "fails" or "undecided".
+        value: our figure; NaN where there is none, as its bounds.
+        low, high: bounds of its 95 % interval.
+        paper: what the paper reports.
+        p_paper: chance of a share as far from the paper's, or further, if both have the same; NaN where it cannot
+            be told.
+        against_paper: "differs", "no difference shown", or why it cannot be asked.
+        worlds: that the figure is made of.
+        reason: why it is undecided, or what else a reader must know.
+        text: the claim in words.
+        region_low, region_high: where it holds.
+        source: where it stands.
+    """
+
+    claim: str
+    condition: str
+    verdict: str
+    value: float
+    low: float
+    high: float
+    paper: str
+    p_paper: float
+    against_paper: str
+    worlds: int
+    reason: str
+    text: str
+    region_low: float
+    region_high: float
+    source: str = SOURCE
+
+
+def verdicts(
+    worlds: Iterable[WorldRecord],
+    claims: Sequence[Claim] = (*CLAIMS, *SEQUEL_CLAIMS),
+    orders: Sequence[Order] = (*ORDERS, *SEQUEL_ORDERS),
+) -> list[Verdict]:
+    """A verdict for each condition and each claim that is about it, then for each pair and each claim about two.
+
+    A condition is what a claim is about if its settings are those of the claim's preset, with any fidelity,
+    and nothing else is changed. Two conditions are compared if their fidelity is the same.
+    """
+    groups = by_condition(worlds)
+    found = [
+        judge(claim, condition, group)
+        for condition, group in groups.items()
+        for claim in claims
+        if digest(group[0].config) == _claim_digest(claim.preset, group[0].config.fidelity, claim.costs, claim.role)
+    ]
+    pairs = [
+        judge_order(order, first, second)
+        for order in orders
+        for first in _of_preset(order.first, order.role, groups.values())
+        for second in _of_preset(order.second, order.role, groups.values())
+        if first[0].config.fidelity == second[0].config.fidelity
+    ]
+    return found + pairs
+
+
+def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
+    """Applies a claim's rule to worlds of one condition."""
+    if claim.over_worlds == "extinction":
+        return _judge_extinction(claim, condition, worlds)
+    used, shortfall, remarks = _asked(claim, worlds)
+    figures = _figures(claim, used)
+    found = estimate(claim, figures, used)
+    name = found.verdict or place(found.low, found.high, claim.low, claim.high)
+    why = found.reason or (CROSSES if name == UNDECIDED and len(figures) else "")
+    if claim.over_worlds == "setting":
+        remarks = []
+    elif len(figures) < FEWEST_WORLDS:
+        name, why = UNDECIDED, TOO_FEW
+    elif shortfall:
+        name, why = UNDECIDED, shortfall
+    p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
+    if claim.over_worlds == "share":
+        p, against = _against_paper(claim, int(np.count_nonzero(figures > 0)), len(figures), 0)
+    return _verdict(claim, condition, name, found, p, against, len(figures), [why, *remarks])
+
+
+def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> Verdict:
+    """Applies the rule of a claim about two conditions to worlds of both."""
+    parts, remarks, shortfalls = [], [], []
+    for worlds in (first, second):
+        used, shortfall, said = _asked(order, worlds)
+        parts.append(_figures(order, used))
+        remarks += [f"{worlds[0].condition}: {remark}" for remark in said]
+        shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
+    fewest = min(map(len, parts))
+    value, low, high = compare(order.scale, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
+    name = place(low, high, order.low, order.high)
+    why = CROSSES if name == UNDECIDED else ""
+    if fewest < FEWEST_WORLDS:
+        name, why = UNDECIDED, TOO_FEW
+    elif shortfalls:
+        name, why = UNDECIDED, "; ".join(shortfalls)
+    condition = f"{first[0].condition} against {second[0].condition}"
+    found = Estimate(value, low, high)
+    return _verdict(order, condition, name, found, math.nan, NO_SPREAD, sum(map(len, parts)), [why, *remarks])
+
+
+def place(low: float, high: float, region_low: float, region_high: float) -> str:
+    """Where an interval lies: within the region, outside of it, or across its border (or without bounds)."""
+    if region_low < low and high < region_high:
+        return HOLDS
+    if high < region_low or low > region_high:
+        return FAILS
+    return UNDECIDED
+
+
+def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
+    """All worlds count, however long: those whose record ends before the step are censored there."""
+    found = world_extinction(worlds, claim.steps)
+    name = place(found.low, found.high, claim.low, claim.high) if found.worlds else UNDECIDED
+    unknown = found.worlds - found.extinct - found.followed
+    reasons = [CROSSES if name == UNDECIDED else ""]
+    if found.worlds < FEWEST_WORLDS:
+        name, reasons = UNDECIDED, [TOO_FEW]
+    if unknown:
+        reasons.append(f"{unknown} of {found.worlds} worlds live and end before step {claim.steps:,}")
+    if unknown and not found.followed:
+        reasons.append(f"the share is that by step {found.known_until:,.0f}")
+    p, against = _against_paper(claim, found.extinct, found.worlds, unknown)
+    figure = Estimate(found.share, found.low, found.high)
+    return _verdict(claim, condition, name, figure, p, against, found.worlds, reasons)
+
+
+def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
+    """The worlds to ask, why they may not decide, and who was left out.
+
+    Extinct worlds are left out, as the paper replaced them. Where some worlds are long enough, only these are asked.
+    """
+    steps, remarks, shortfall = claim.steps, list[str](), ""
+    living = [world for world in worlds if world.extinct_step is None]
+    if gone := len(worlds) - len(living):
+        remarks.append(f"{gone} extinct left out, as in the paper")
+    if claim.together and (lone := sum(world.apart_step is not None for world in living)):
+        living = [world for world in living if world.apart_step is None]
+        remarks.append(f"{lone} left out where another species died out")
+    long_enough = [world for world in living if world.last_step >= steps]
+    if living and not long_enough:
+        shortfall = f"the worlds reach {max(world.last_step for world in living):,} of {steps:,} steps"
+    elif short := len(living) - len(long_enough):
+        remarks.append(f"{short} shorter left out")
+    return long_enough or living, shortfall, remarks
+
+
+def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.float64]:
+    """The figures of the worlds that have one, (n,)."""
+    return np.array([figure for world in worlds if (figure := claim.measure(world)) is not None], np.float64)
+
+
+def _against_paper(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
+    """The second question, about a share; worlds of unknown fate are taken as what makes the difference least sure."""
+    if claim.paper_count is None:
+        return math.nan, NO_COUNT
+    if not of:
+        return math.nan, ""
+    p = max(fisher_mid_p(count + more, of, *claim.paper_count) for more in range(unknown + 1))
+    return p, DIFFERS if p <= LEVEL else NOT_SHOWN
+
+
+def _verdict(
+    claim: Claim | Order,
+    condition: str,
+    name: str,
+    found: Estimate,
+    p: float,
+    against: str,
+    worlds: int,
+    reasons: Sequence[str],
+) -> Verdict:
+    return Verdict(
+        claim.name,
+        condition,
+        name,
+        found.value,
+        found.low,
+        found.high,
+        claim.paper,
+        p,
+        against,
+        worlds,
+        "; ".join(filter(None, reasons)),
+        claim.text,
+        claim.low,
+        claim.high,
+        claim.source,
+    )
+
+
+def _of_preset(preset: str, role: Role, groups: Iterable[Sequence[WorldRecord]]) -> list[Sequence[WorldRecord]]:
+    """The groups of worlds that have a preset's settings, with any fidelity; of the species with a role."""
+    return [g for g in groups if digest(g[0].config) == _claim_digest(preset, g[0].config.fidelity, None, role)]
+
+
+@cache
+def _claim_digest(preset: str, fidelity: str, costs: tuple[float, float] | None, role: Role) -> str:
+    config = load_config(preset, fidelity)
+    if role:
+        config = of_species(config, hunted(config))
+    if costs is not None:
+        config = replace(config, energy=replace(config.energy, basic_cost=costs[0], action_cost=costs[1]))
+    return digest(config)

@@ -1,0 +1,131 @@
+"""What does the sequel claim of prey that see predators? Each claim with its rule.
+
+The rules were written before any run of full length, but after short assays and two worlds of 425,570 steps were read.
+
+Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992. A weight is
+read as its *score* in its world: where its mean ends among neutral genes of the same pedigree, in standard deviations
+of drift. So a world in which weights wander far has no more say than others. The claims are one family: each interval
+is at the level that makes one false verdict among all of them, by Bonferroni's inequality, come up in at most 5 %.
+Worlds where a species died out are left out: without predators nobody selects fear.
+"""
+
+from functools import partial
+
+from hedon.analysis.world.record import WorldRecord
+from hedon.config.layout import hunters
+from hedon_studies.kanagawa_doya_2024.claim import Claim, score
+from hedon_studies.kanagawa_doya_2024.order import Order
+
+SEQUEL = "Kanagawa & Doya, arXiv 2507.09992"
+FAR = 1.96
+"""A score further from 0 than this is in the outer 5 % of neutral genes."""
+BY_CHANCE = 0.025
+"""Share of worlds in which a neutral gene is so far out on one side."""
+OFTEN = 0.25
+"""At least this share of worlds is often: ten times as many as by chance. Our choice."""
+FAMILY = 6
+"""Verdicts that are asked together."""
+FAMILY_LEVEL = 1.0 - 0.05 / FAMILY
+
+
+def own_score(world: WorldRecord) -> float | None:
+    """Score of the weight for seeing one's own species; None without a whole pedigree."""
+    return score(f"w_see_{world.species}", world)
+
+
+def hunter_score(world: WorldRecord) -> float | None:
+    """Score of the weight for seeing who eats one's species, the lowest if there are several; None as for `score`."""
+    scores = [score(f"w_see_{name}", world) for name in hunters(world.config, world.species)]
+    return min((each for each in scores if each is not None), default=None)
+
+
+def fear(world: WorldRecord) -> float | None:
+    """Score of the dislike of seeing who eats one's species; None as for `score`."""
+    found = hunter_score(world)
+    return None if found is None else -found
+
+
+def _fear_beyond_drift(world: WorldRecord) -> float | None:
+    found = fear(world)
+    return None if found is None else found - FAR
+
+
+def _own_beyond_drift(world: WorldRecord) -> float | None:
+    found = own_score(world)
+    return None if found is None else found - FAR
+
+
+def _hunter_beyond_drift(world: WorldRecord) -> float | None:
+    found = hunter_score(world)
+    return None if found is None else found - FAR
+
+
+def _obstacle_beyond_drift(world: WorldRecord) -> float | None:
+    found = score("w_see_obstacle", world)
+    return None if found is None else -found - FAR
+
+
+_hunted_claim = partial(Claim, level=FAMILY_LEVEL, role="hunted", together=True, source=SEQUEL)
+_hunted_order = partial(Order, scale="difference", level=FAMILY_LEVEL, role="hunted", together=True, source=SEQUEL)
+
+SEQUEL_CLAIMS: tuple[Claim, ...] = (
+    _hunted_claim(
+        "fear often evolves",
+        "predator",
+        f"in more than {100 * OFTEN:g} % of worlds the weight of seeing predators is below 97.5 % of neutral genes",
+        _fear_beyond_drift,
+        "share",
+        "often < 0",
+        low=OFTEN,
+    ),
+    _hunted_claim(
+        "liking one's own kind in some worlds",
+        "predator",
+        "the weight of seeing prey is above 97.5 % of neutral genes in more worlds than by chance",
+        _own_beyond_drift,
+        "share",
+        "> 0 in some",
+        low=BY_CHANCE,
+    ),
+    _hunted_claim(
+        "liking predators in some worlds",
+        "predator",
+        "the weight of seeing predators is above 97.5 % of neutral genes in more worlds than by chance",
+        _hunter_beyond_drift,
+        "share",
+        "> 0 in some",
+        low=BY_CHANCE,
+    ),
+    Claim(
+        "no fear of weak pitfalls",
+        "pitfall-weak",
+        f"the weight of seeing obstacles is below 97.5 % of neutral genes in less than {100 * OFTEN:g} % of worlds",
+        _obstacle_beyond_drift,
+        "share",
+        "no fear",
+        high=OFTEN,
+        level=FAMILY_LEVEL,
+        source=SEQUEL,
+    ),
+)
+
+SEQUEL_ORDERS: tuple[Order, ...] = (
+    _hunted_order(
+        "larger mouths, stronger fear",
+        "predator-large-mouth",
+        "predator-small-mouth",
+        "the score of fear is higher where predators have mouths of 80 degrees than of 40",
+        fear,
+        paper="stronger",
+        low=0.0,
+    ),
+    _hunted_order(
+        "less food, less liking of one's own kind",
+        "predator-less-food",
+        "predator",
+        "the score of the weight of seeing prey is lower with three fifths of the food",
+        own_score,
+        paper="more negative",
+        high=0.0,
+    ),
+)

@@ -1,0 +1,212 @@
+"""The sequel to the paper, on predators, prey and pitfalls: what its figures show, and what we ask of the same worlds.
+
+Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992. Its claims and
+their rules stand in `hedon_studies.fear.claim`.
+"""
+
+from collections.abc import Iterator
+from functools import partial
+
+import polars as pl
+
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.group import REACH, company
+from hedon.analysis.world.population import death_rates, history
+from hedon.config.layout import hunters
+from hedon.figure.hunt import SMOOTH, draw_causes, draw_company, draw_numbers
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import draw_message
+from hedon.study.census import missing, present, stack, world_indices
+from hedon.study.item import Arm, Item, Material, Scale
+from hedon_studies.kanagawa_doya_2024.drift import make_drift
+from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
+from hedon_studies.kanagawa_doya_2024.weight_history import draw_courses
+
+SCALE = Scale((1, 2, 3, 4, 5), 2_048_000)
+"""Our choice; the sequel says of its runs only how many steps of its own they took."""
+FRAMES = 1024
+"""Steps between two records of all positions."""
+PREY, PREDATOR = "prey", "predator"
+
+MAIN = Arm("prey", "predator")
+HUNTERS = Arm("predators", "predator", species=PREDATOR)
+SQUARE = Arm("prey, square arena", "predator-square")
+MOUTHS = (
+    Arm("mouths of 40°", "predator-small-mouth"),
+    Arm("mouths of 60°", "predator"),
+    Arm("mouths of 80°", "predator-large-mouth"),
+)
+FOOD = (Arm("as usual", "predator"), Arm("less food", "predator-less-food"), Arm("no predators", "prey-alone"))
+FROZEN = (Arm("predators evolve", "predator"), Arm("predators do not mutate", "predator-frozen"))
+_READS = ("reward.see.obstacle.reads=normal",)
+PITFALLS = (
+    Arm("damage 10", "pitfall"),
+    Arm("damage 1", "pitfall-weak"),
+    Arm("damage 10, food's rays", "pitfall", _READS),
+    Arm("damage 1, food's rays", "pitfall-weak", _READS),
+)
+_SOCIAL = (("w_see_predator", "w_see_prey"),)
+_REWARDS = {
+    "w_normal": "weight of food",
+    "w_see_prey": "weight of seeing prey",
+    "w_see_predator": "weight of seeing predators",
+}
+
+
+def _courses(material: Material) -> Iterator[NamedFigure]:
+    arms = {PREY: (MAIN, SQUARE), PREDATOR: (HUNTERS,)}
+    for name, mine in arms.items():
+        yield from draw_courses(f"sequel-history-{name}", f"How do the rewards of {name} evolve?", mine, material)
+
+
+def _numbers(material: Material) -> Iterator[NamedFigure]:
+    name, question = "sequel-numbers", "How many prey and predators live together?"
+    worlds = present((MAIN, HUNTERS), material)
+    if len(worlds) < 2:
+        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), material))
+        return
+    indices = world_indices(worlds.values())
+    histories = {label: history(stack(group, "population", indices), ()) for label, group in worlds.items()}
+    caption = (
+        "Left, thin: one world; thick: the mean over worlds. Right: a line per world, by the color of its seed, to its "
+        "end at the dot."
+    )
+    yield NamedFigure(name, question, draw_numbers(histories), caption)
+
+
+def _deaths(material: Material) -> Iterator[NamedFigure | ResultTable]:
+    name, question = "sequel-deaths", "Of what do prey and predators die?"
+    worlds = present((MAIN, HUNTERS), material)
+    if not worlds:
+        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), material))
+        return
+    indices = world_indices(worlds.values())
+    rates = {label: death_rates(stack(group, "population", indices)) for label, group in worlds.items()}
+    caption = "Deaths per 10,000 steps lived, by cause: the mean over worlds, with its 95 % interval from three on."
+    yield NamedFigure(name, question, draw_causes(rates), caption)
+    rows = [
+        {"species": label, "seed": world.seed, "deaths": world.agents["death_step"].count()}
+        | {cause: (world.agents["cause"] == cause).sum() for cause in ("age_energy", "starved", "eaten")}
+        for label, group in worlds.items()
+        for world in group
+    ]
+    yield table("sequel_deaths", "Deaths by cause", rows)
+
+
+def _company(material: Material) -> Iterator[NamedFigure | ResultTable]:
+    name, question = "sequel-groups", "Do prey keep together, and away from predators?"
+    frames, worlds = material.frames.get(MAIN.label, ()), material.worlds.get(MAIN.label, ())
+    if not frames or len(frames) != len(worlds):
+        yield NamedFigure(name, question, draw_message("no positions were recorded"), missing((MAIN,), material))
+        return
+    found = {
+        world.seed: company(world, rows, hunters(world.config, world.species))
+        for world, rows in zip(worlds, frames, strict=True)
+    }
+    caption = (
+        f"A group is what hangs together by distances of centers of at most {REACH:g} u; the size is that of the group "
+        f"of a prey, itself included. Gray: as many prey placed evenly by chance. Means over {SMOOTH} frames."
+    )
+    yield NamedFigure(name, question, draw_company(found, PREY, PREDATOR), caption)
+    means = [
+        {"seed": seed, **rows.select(pl.exclude("step").mean()).row(0, named=True)} for seed, rows in found.items()
+    ]
+    yield table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
+
+
+def _item(name: str, title: str, says: str, make: partial, *arms: Arm, frames: int = 0) -> Item:
+    return Item(name, title, "sequel", says, make, arms, SCALE, frames=frames)
+
+
+def _last(name: str, question: str, arms: tuple[Arm, ...], panels: tuple[tuple[str, str], ...] = _SOCIAL) -> partial:
+    return partial(draw_last, name, question, arms, panels)
+
+
+SEQUEL: tuple[Item, ...] = (
+    _item(
+        "sequel-history",
+        "How the rewards of prey and predators evolve",
+        "Mean weights of all rewards over time, of both species.",
+        partial(_courses),
+        MAIN,
+        HUNTERS,
+        SQUARE,
+    ),
+    _item(
+        "sequel-fear",
+        "Fear and social reward",
+        "The weight for seeing predators often ends negative (fear); in other worlds those for seeing prey or "
+        "predators end positive.",
+        _last("sequel-fear", "Which rewards for seeing others evolve in prey?", (MAIN, SQUARE)),
+        MAIN,
+        SQUARE,
+    ),
+    _item(
+        "sequel-drift",
+        "Rewards of prey against drift",
+        "None of its claims: we ask which weights go further than neutral genes of the same pedigree.",
+        partial(make_drift, (MAIN, SQUARE, *MOUTHS[::2], FOOD[1], FROZEN[1]), _REWARDS, SCALE, "sequel-drift"),
+        MAIN,
+        SQUARE,
+        *MOUTHS[::2],
+        FOOD[1],
+        FROZEN[1],
+    ),
+    _item(
+        "sequel-numbers",
+        "Numbers of prey and predators",
+        "None of its claims: we ask whether both last, and whether they go round in cycles.",
+        partial(_numbers),
+        MAIN,
+        HUNTERS,
+    ),
+    _item(
+        "sequel-deaths",
+        "Causes of death",
+        "None of its claims: we ask how strong selection by predators can be.",
+        partial(_deaths),
+        MAIN,
+        HUNTERS,
+    ),
+    _item(
+        "sequel-groups",
+        "Groups of prey, and the nearest predator",
+        "None of its claims: we ask whether rewards for seeing others show in where prey are.",
+        partial(_company),
+        MAIN,
+        frames=FRAMES,
+    ),
+    _item(
+        "sequel-mouths",
+        "Mouths of predators",
+        "Predators that hunt better, by larger mouths, make fear stronger.",
+        _last("sequel-mouths", "Do larger mouths of predators make fear stronger?", MOUTHS),
+        *MOUTHS,
+    ),
+    _item(
+        "sequel-food",
+        "Less food, and no predators",
+        "With less food the weight for seeing prey is more negative.",
+        _last("sequel-food", "Does scarce food make prey dislike one another?", FOOD),
+        *FOOD,
+    ),
+    _item(
+        "sequel-frozen",
+        "Predators that do not mutate",
+        "A condition of its own, in which predators stay as they are.",
+        _last("sequel-frozen", "Do prey evolve otherwise where predators do not?", FROZEN),
+        *FROZEN,
+    ),
+    _item(
+        "sequel-pitfall",
+        "Pitfalls",
+        "No fear evolves of pitfalls that cost energy but do not kill. Its program weighs food's rays there.",
+        _last(
+            "sequel-pitfall",
+            "Do agents come to fear what costs energy, and what if the weight reads food's rays?",
+            PITFALLS,
+            (("w_see_obstacle", "w_see_agent"),),
+        ),
+        *PITFALLS,
+    ),
+)

@@ -1,0 +1,1 @@
+"""Numbers that only this study needs, one question per file."""

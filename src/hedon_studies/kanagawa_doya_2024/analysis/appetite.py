@@ -1,0 +1,88 @@
+"""How large must the weight of food be before an agent eats well?
+
+Foods eaten over steps lived, for agents that differ in their inherited weight. Only the dead have known counts, and
+those with short lives had no time to learn: a life must have `WINDOWS` windows of learning. Agents with larger weights
+were mostly born later, into other company; what is shown is who eats how much, not what the weight alone would do.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.agent.lifetime import dead_agents
+from hedon.analysis.world.record import WorldRecord
+
+WINDOWS = 5
+EDGES = (-10.0, -3.0, -1.0, -0.3, -0.1, 0.0, 0.1, 0.3, 1.0, 3.0, 10.0)
+"""Of the bins, up to the limit of weights: two to a factor of ten, since what matters spans orders of magnitude."""
+FEWEST = 20
+"""Agents that a bin of a world must have to be shown."""
+
+
+@dataclass(frozen=True)
+class AppetiteBin:
+    """The agents of one world with a weight between two bounds.
+
+    Attributes:
+        low, high: bounds of the weight; the lower one belongs to the bin.
+        agents: that died after at least `WINDOWS` windows.
+        weight: their median weight.
+        steps: that they lived together [step].
+        eaten: foods per 1000 steps.
+    """
+
+    low: float
+    high: float
+    agents: int
+    weight: float
+    steps: int
+    eaten: float
+
+
+def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = EDGES) -> list[AppetiteBin]:
+    """Food eaten by agents of one world, by their weight for it; bins with too few agents are left out.
+
+    Args:
+        world: a world with its agents.
+        kind: the food, as named in the config; its weight is the column `w_<kind>`.
+        edges: bounds of the bins of weights, ascending; what lies outside goes into the first or the last bin.
+
+    Returns:
+        A bin for each pair of neighboring edges, of the dead that lived for `WINDOWS` windows of learning or longer.
+    """
+    least = WINDOWS * world.config.learning.rollout_steps
+    lives = dead_agents(world.agents).filter(pl.col("lifetime") >= least)
+    weight, foods = lives[f"w_{kind}"].to_numpy().astype(np.float64), lives[f"eaten_{kind}"].to_numpy()
+    steps = lives["lifetime"].to_numpy()
+    at = np.clip(np.searchsorted(edges, weight, side="right") - 1, 0, len(edges) - 2)
+    bins = []
+    for i, (low, high) in enumerate(pairwise(edges)):
+        mine = at == i
+        if mine.sum() >= FEWEST:
+            lived = int(steps[mine].sum())
+            rate = 1000.0 * float(foods[mine].sum()) / lived
+            bins.append(AppetiteBin(low, high, int(mine.sum()), float(np.median(weight[mine])), lived, rate))
+    return bins
+
+
+def half_way_weight(bins: Sequence[AppetiteBin]) -> float | None:
+    """The weight at which agents eat half-way between those with negative weights and those of the best bin.
+
+    Linear between the median weights of the last bin below that rate, short of the best, and the next one.
+
+    Returns:
+        None where no bin is of negative weights, or the best is.
+    """
+    averse = [b for b in bins if b.high <= 0]
+    best = max(range(len(bins)), key=lambda i: bins[i].eaten, default=0)
+    if not averse or best < len(averse):
+        return None
+    low = sum(b.eaten * b.steps for b in averse) / sum(b.steps for b in averse)
+    middle = 0.5 * (low + bins[best].eaten)
+    below = max(i for i in range(best) if bins[i].eaten < middle)
+    last, following = bins[below], bins[below + 1]
+    share = (middle - last.eaten) / (following.eaten - last.eaten)
+    return last.weight + share * (following.weight - last.weight)

@@ -1,0 +1,156 @@
+"""Does a gene drift where the mean of a world's mutations pushes it?
+
+Each generation of a line adds one mutation. A line without selection draws it from the births as they happen, so its
+weight moves by their mean mutation, the *bias*, in each generation. Frozen noise gives all windows the same table, so
+its bias lasts and carries the weight along. With independent noise there is a mean too, but of mutations that happened
+once: it shrinks as births add up, since the limit of weights bounds each, and says nothing of the next.
+
+Three comparisons of a prediction with what was seen, one pair per world and gene: the bias with the drift per
+generation; the weight that lines without selection have after as many generations, limit included, with the
+weight of those born last; the bias of the first half of a run with that of the second.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from hedon.analysis.gene.weight import last_agents
+from hedon.analysis.world.record import WorldRecord
+from hedon.config.gene import gene_of
+from hedon.statistic.interval import LEVEL
+from hedon.statistic.prediction import Prediction, prediction
+from hedon_studies.kanagawa_doya_2024.analysis.noise import Mutations, NoiseTable, mutations, noise_table
+
+NAN = math.nan
+_LINES = 4000
+
+Floats = NDArray[np.float64]
+
+COMPARISONS = {
+    "drift per generation": ("bias", "slope"),
+    "weight at the end": ("line_mean", "end"),
+    "bias, first half and second": ("bias_first", "bias_second"),
+}
+"""What is compared: attributes of `GeneDrift`, what is predicted first."""
+
+
+@dataclass(frozen=True)
+class GeneDrift:
+    """One gene of one world: predicted and seen; NaN for what has no value.
+
+    Attributes:
+        weight: genome column.
+        births: with a known mutation.
+        numbers: of births within a window, so entries of the table.
+        bounds: entries of which only a lower bound is known, since all their children were clipped.
+        disagreement: largest difference between births of equal number that were not clipped.
+        is_table: whether they agree, so that there is a table.
+        bias: mean mutation per birth.
+        bias_first, bias_second: the same over the births of either half of the record.
+        line_mean: mean weight of lines without selection after `generations`.
+        line_low, line_high: bounds that 95 % of them lie between.
+        slope: of the mean weight of the living against their mean generation, over the run.
+        displacement: (mean weight of the living at the end − mean of the founders' law) / generations.
+        end: mean weight of the 5000 agents born last.
+        generations: mean of the 5000 agents born last.
+    """
+
+    weight: str
+    births: int
+    numbers: int
+    bounds: int
+    disagreement: float
+    is_table: bool
+    bias: float
+    bias_first: float
+    bias_second: float
+    line_mean: float
+    line_low: float
+    line_high: float
+    slope: float
+    displacement: float
+    end: float
+    generations: float
+
+
+def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> GeneDrift | None:
+    """Predicts where mutation alone carries a gene, and compares it with what happened.
+
+    Args:
+        world: a world with its agents.
+        weight: a genome column.
+        rng: source of chance for the walks.
+
+    Returns:
+        None where no birth is recorded.
+    """
+    found = mutations(world, weight)
+    if not len(found.change):
+        return None
+    table = noise_table(found)
+    newest = last_agents(world.agents)
+    generations = float(newest["generation"].to_numpy().mean())
+    gene = gene_of(world.config, weight)
+    start, limit = gene.law.initial_mean, gene.mutation.limit
+    lines = rng.normal(start, gene.law.initial_sd, _LINES)
+    pool = _pool(found, table)
+    for _ in range(round(generations)):
+        lines = np.clip(lines + rng.choice(pool, _LINES), -limit, limit)
+    low, high = np.quantile(lines, (0.5 - LEVEL / 2, 0.5 + LEVEL / 2))
+    first, second = _half_biases(world, found, table)
+    slope, displacement = _observed(world.population, weight, start)
+    return GeneDrift(
+        weight=weight,
+        births=len(found.change),
+        numbers=int(np.count_nonzero(table.births)),
+        bounds=int(table.bound.sum()),
+        disagreement=table.disagreement,
+        is_table=table.is_one,
+        bias=float(pool.mean()),
+        bias_first=first,
+        bias_second=second,
+        line_mean=float(lines.mean()),
+        line_low=float(low),
+        line_high=float(high),
+        slope=slope,
+        displacement=displacement,
+        end=float(newest[weight].to_numpy().mean(dtype=np.float64)),
+        generations=generations,
+    )
+
+
+def compare(drifts: Sequence[GeneDrift], comparison: str) -> Prediction:
+    """Correlates what is predicted with what is seen, over worlds and genes.
+
+    Args:
+        drifts: one per world and gene.
+        comparison: a key of `COMPARISONS`.
+    """
+    predicted, seen = COMPARISONS[comparison]
+    return prediction((getattr(d, predicted) for d in drifts), (getattr(d, seen) for d in drifts))
+
+
+def _pool(found: Mutations, table: NoiseTable) -> Floats:
+    """The mutations of all births: from the table, where there is one, which clipping does not shorten."""
+    return table.value[found.number] if table.is_one else found.change
+
+
+def _half_biases(world: WorldRecord, found: Mutations, table: NoiseTable) -> tuple[float, float]:
+    """Mean mutation over the births of the first and of the second half of the record."""
+    pool, is_late = _pool(found, table), found.birth_step > 0.5 * world.last_step
+    first, second = (float(pool[half].mean()) if half.any() else NAN for half in (~is_late, is_late))
+    return first, second
+
+
+def _observed(population: pl.DataFrame, weight: str, start: float) -> tuple[float, float]:
+    """Slope of the mean weight against the mean generation, and displacement per generation."""
+    known = population.drop_nulls(["generation_mean", f"{weight}_mean"])
+    generation, mean = (known[name].to_numpy().astype(np.float64) for name in ("generation_mean", f"{weight}_mean"))
+    if len(generation) < 2 or np.ptp(generation) == 0:
+        return NAN, NAN
+    slope = float(np.polyfit(generation, mean, 1)[0])
+    return slope, float((mean[-1] - start) / generation[-1]) if generation[-1] > 0 else NAN

@@ -1,0 +1,119 @@
+"""Study: over all of the paper's conditions, which weights went further, or more in one direction, than drift?"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from hedon.analysis.gene.drift import WorldDrift, drift_tests, standard_drift
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import SEED
+from hedon.figure.drift import draw_scores
+from hedon.figure.named import NamedFigure
+from hedon.statistic.interval import SHOWN_FROM
+from hedon.study.census import present, sentences
+from hedon.study.change import missing_note
+from hedon.study.item import Arm, Item, Material, Scale
+from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
+
+ARMS = (*SIZES, *PLACES[1:], POOR, POISON)
+REWARDS = {"w_normal": "weight of food", "w_action": "weight of action"}
+"""The weights that all conditions have."""
+MARKER = {"neutral_1": "neutral marker"}
+ALL = "all conditions"
+_BOUNDS = ("low", "high", "drift_low", "drift_high")
+
+_TESTS = (
+    "A score is the standard normal score of a world's mean weight (5000 agents born last) among neutral genes that "
+    "mutate along the same pedigree. direction: the mean score, 0 under drift, with Stouffer's p; distance and held: "
+    "the root mean square score, 1 under drift, below 1 where a weight was held back, with the chi-squared p of a "
+    "larger one (distance) or of a smaller one (held). Intervals are Student's t and chi-squared; drift_low and "
+    "drift_high are those of the mean score by the spread of drift itself, 1, as p takes it. p_holm is corrected for "
+    "all weights and all three tests."
+)
+_SHARED = (
+    "Worlds of one seed share founders and the mutations of agents of equal number in all conditions, so that they are "
+    "not quite independent; the neutral marker, which nothing selects, shows what that alone would do."
+)
+_DRAWN = (
+    "A point is a world, by the color of its seed; the band holds 95 % of drifting genes. Below, the mean over all "
+    "worlds with its 95 % interval."
+)
+
+Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
+"""Per arm and seed, the drift of each weight; worlds without a whole pedigree are left out."""
+
+
+def make_drift(
+    arms: Sequence[Arm], rewards: Mapping[str, str], scale: Scale, name: str, material: Material
+) -> Iterator[NamedFigure | ResultTable]:
+    """The figure and the tables of scores against drift.
+
+    Args:
+        arms: whose worlds are read.
+        rewards: the weights that are asked about and that all arms have, with what they are called.
+        scale: how much was asked for.
+        name: of the figure; begins the names of the tables.
+        material: what there is.
+    """
+    worlds = present(arms, material)
+    scores = {label: {w.seed: found for w in group if (found := standard_drift(w))} for label, group in worlds.items()}
+    note = missing_note(material, arms, scale)
+    groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
+    groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}
+    tests = {label: list(_test_rows(label, group, rewards)) for label, group in groups.items()}
+    question = "Which weights went further, or more in one direction, than drift?"
+    if groups[ALL]:
+        means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
+        yield NamedFigure(name, question, draw_scores(_points(scores), {**rewards, **MARKER}, means), _DRAWN)
+    yield table(
+        f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
+    )
+    by_condition = [row for rows in tests.values() for row in rows if row["test"] == "direction"]
+    yield table(f"{name}_condition", "Weights against drift, by condition", by_condition, _TESTS)
+    yield table(f"{name}_world", "Weights against drift, world by world", _world_rows(scores))
+
+
+def _test_rows(
+    label: str, worlds: Sequence[Sequence[WorldDrift]], rewards: Mapping[str, str]
+) -> Iterator[dict[str, Any]]:
+    """Both tests of each weight, without bounds below three worlds."""
+    names = {**rewards, **MARKER}
+    known = [[found for found in world if found.weight in names] for world in worlds]
+    for test in drift_tests(known, list(rewards), list(MARKER), np.random.default_rng(SEED)):
+        if test.test == "marker":
+            continue
+        positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
+        row = {"arm": label, "weight": test.weight, "test": test.test, "worlds": test.worlds, "positive": positive}
+        row |= {name: getattr(test, name) for name in ("effect", *_BOUNDS, "p", "p_holm")}
+        yield row if test.worlds >= SHOWN_FROM else row | dict.fromkeys(_BOUNDS)
+
+
+def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:
+    for label, by_seed in scores.items():
+        for seed, drifts in by_seed.items():
+            for found in drifts:
+                yield {"arm": label, "seed": seed} | vars(found)
+
+
+def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
+    """Per arm and seed the score of each weight."""
+    return {
+        label: {seed: {found.weight: found.score for found in drifts} for seed, drifts in by_seed.items()}
+        for label, by_seed in scores.items()
+    }
+
+
+DRIFT: tuple[Item, ...] = (
+    Item(
+        "drift",
+        "Rewards against drift",
+        "study",
+        "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
+        "the weights of food and of action?",
+        partial(make_drift, ARMS, REWARDS, PAPER_SCALE, "drift"),
+        ARMS,
+        PAPER_SCALE,
+    ),
+)

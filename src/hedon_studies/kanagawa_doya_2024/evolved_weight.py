@@ -1,0 +1,87 @@
+"""The paper's figures of evolved rewards: the weights of the agents of each world that were born last."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import draw_message
+from hedon.figure.weight import WeightGroup, against_action, draw_weight_groups
+from hedon.study.census import describe, missing, present, sentences, stack, world_indices
+from hedon.study.item import Arm, Item, Material
+from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
+
+_READ = (
+    f"A point is one of the {LAST_AGENTS} agents of a world that were born last; the neutral marker, which enters no "
+    "reward, tells what drift alone does. Worlds that died out are shown; the paper replaced them."
+)
+
+_AGAINST_ACTION = tuple(against_action(("w_normal",)))
+
+
+def draw_last(
+    name: str, question: str, arms: Sequence[Arm], panels: Sequence[tuple[str, str]], material: Material
+) -> Iterator[NamedFigure]:
+    """The weights of those born last in the worlds of some arms: the panels of each arm side by side."""
+    worlds = present(arms, material)
+    caption = sentences(_READ, missing(arms, material))
+    if not worlds:
+        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
+        return
+    indices = world_indices(worlds.values())
+    groups = [
+        WeightGroup(last_agents(stack(group, "agents", indices)), panels, label, "\n".join(describe(group)))
+        for label, group in worlds.items()
+    ]
+    neutral = next(iter(worlds.values()))[0].neutral_names
+    yield NamedFigure(name, question, draw_weight_groups(groups, neutral), caption)
+
+
+def _item(
+    name: str, title: str, paper: str, question: str, *arms: Arm, panels: Sequence[tuple[str, str]] = _AGAINST_ACTION
+) -> Item:
+    return Item(name, title, "figure", paper, partial(draw_last, name, question, arms, panels), arms, PAPER_SCALE)
+
+
+WEIGHTS: tuple[Item, ...] = (
+    _item(
+        "weights-baseline",
+        "Weights that evolve in the baseline",
+        "Food becomes rewarding, mostly with a weight above 4. The weight of action ends in one of two ways: largely "
+        "positive, or slightly negative.",
+        "Which rewards evolve in the baseline?",
+        BASELINE,
+    ),
+    _item(
+        "weights-sizes",
+        "Weights that evolve in arenas of three sizes",
+        "In the baseline and the large arena food becomes rewarding and the weight of action has two modes; in the "
+        "small arena hardly any weight leaves its start.",
+        "Does the size of the arena change which rewards evolve?",
+        *SIZES,
+    ),
+    _item(
+        "weights-places",
+        "Weights that evolve with three distributions of food",
+        "Where food lies around the center, hardly any weight leaves its start; where its place moves on, the weight "
+        "of food is positive and that of action mostly negative.",
+        "Does the place of food change which rewards evolve?",
+        *PLACES,
+    ),
+    _item(
+        "weights-poor",
+        "Weights that evolve with poor food",
+        "The weight of normal food is positive; that of food with a fifth of its energy varies widely between runs.",
+        "Does food that gives little become rewarding?",
+        POOR,
+        panels=[("w_normal", "w_poor")],
+    ),
+    _item(
+        "weights-poison",
+        "Weights that evolve with poison",
+        "The weight of normal food is positive; that of food that costs energy varies widely between runs.",
+        "Does food that harms become aversive?",
+        POISON,
+        panels=[("w_normal", "w_poison")],
+    ),
+)

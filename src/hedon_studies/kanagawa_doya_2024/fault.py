@@ -1,0 +1,173 @@
+"""Study: what do the released code's faults and its contact solver do, alone and together?"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hedon.analysis.response import RESPONSES, Response
+from hedon.analysis.table import ResultTable, table
+from hedon.figure.named import NamedFigure
+from hedon.statistic.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
+from hedon.study.census import sentences
+from hedon.study.change import missing_note, shown_interval, world_rows
+from hedon.study.item import Arm, Item, Material, Scale
+from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_effects
+
+FACTORS = {
+    "growth": "food.normal.growth_rate=1.0",
+    "noise": "genome.mutation_noise=frozen",
+    "critic": "learning.critic_target=batch_mean",
+    "solver": "physics.solver=jacobi",
+}
+"""What differs, and the override that has each. The other differences of the fidelity `released` are smaller; they are
+in no cell."""
+
+SCALE = Scale((1, 2), 512_000)
+_MAIN = ("alive", "restricted_lifetime", "food_step", "w_food", "w_action", "neutral")
+_SHOWN = tuple(response for response in RESPONSES if response.name in _MAIN)
+
+_EFFECT = (
+    "A main effect is the mean of the eight cells with a fault minus the mean of the eight without; an interaction "
+    "of A and B is A's effect with B minus A's effect without B, and that of more is likewise the interaction of all "
+    "but one with that one minus without it (coding ±1/2, products of columns; cells count alike). Lifetimes and rates "
+    "of food are compared by their logarithms, so effects are ratios and interactions ratios of ratios. Intervals and "
+    "p: Student's t with the variance of worlds within cells, pooled, and worlds less cells degrees of freedom; "
+    "p_holm is corrected for all effects on one response. seed_low and seed_high are the least and largest of the "
+    "same effect within single seeds."
+)
+_CELLS_DRAWN = (
+    "A line per combination of faults: a point is a world, hollow where it died out, and the bar is their mean, "
+    "geometric for lifetimes and rates of food. A fault matters where the lines with it lie apart from those without."
+)
+_DRAWN = "An arrow at the edge of a panel ends an interval that goes on beyond it."
+_CELL = (
+    "Means over worlds, geometric for lifetimes and rates of food. An extinct world counts as 0 alive from its end on. "
+    "Lifetimes with the living counted are means of min(lifetime, an age common to all worlds, {until:,.0f} steps); "
+    "weights are means over the 5000 agents born last."
+)
+
+
+def cell_label(cell: Cell) -> str:
+    """What a combination of faults is called."""
+    there = [name for name, is_there in zip(FACTORS, cell, strict=True) if is_there]
+    return "all" if len(there) == len(FACTORS) else " + ".join(there) or "none"
+
+
+def _in_order() -> list[Cell]:
+    """None, each alone, pairs, all; as `all_effects` has them."""
+    effects = [(), *all_effects(len(FACTORS))]
+    return [tuple(i in group for i in range(len(FACTORS))) for group in effects]
+
+
+CELLS = {cell_label(cell): cell for cell in _in_order()}
+"""All combinations, by label."""
+
+
+def _arm(label: str, cell: Cell) -> Arm:
+    overrides = tuple(setting for setting, is_there in zip(FACTORS.values(), cell, strict=True) if is_there)
+    return Arm(label, "baseline", overrides, fidelity="corrected")
+
+
+ARMS = tuple(_arm(label, cell) for label, cell in CELLS.items())
+
+
+def make_faults(material: Material) -> Iterator[NamedFigure | ResultTable]:
+    """The figures and tables of the study."""
+    rows = world_rows(material, ARMS, RESPONSES)
+    missing = missing_note(material, ARMS, SCALE)
+    fits = {response.name: _fit(rows, response) for response in RESPONSES}
+    rows_of_effects = {response.name: list(_effect_rows(response, fits[response.name])) for response in RESPONSES}
+    effects = table(
+        "fault_effects",
+        "Effects of the released code's faults",
+        [row for response in _SHOWN for row in rows_of_effects[response.name]],
+        sentences(_EFFECT, _missing_effects(fits), missing),
+    )
+    worlds = table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
+    until = max((row["until"] for row in rows), default=0.0)
+    told = set(effects.rows["effect"]) if effects.rows.height else set()
+    if rows:
+        there = [label for label in CELLS if material.worlds.get(label)]
+        cells = draw_cells(worlds.rows, there, _SHOWN)
+        yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells, _CELLS_DRAWN)
+    if told:
+        names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in told]
+        drawn = draw_effects(effects.rows, names, _SHOWN)
+        yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn, _DRAWN)
+    yield effects
+    yield table(
+        "fault_cells",
+        "Worlds with and without the faults",
+        _cell_rows(rows),
+        sentences(_CELL.format(until=until), missing),
+    )
+    everything = [row for found in rows_of_effects.values() for row in found]
+    yield table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
+    yield worlds
+
+
+def effect_name(factors: Factors) -> str:
+    """What an effect or interaction is called."""
+    names = list(FACTORS)
+    return " \N{MULTIPLICATION SIGN} ".join(names[i] for i in factors)
+
+
+def _fit(rows: list[dict[str, Any]], response: Response) -> FactorialFit:
+    cells: dict[Cell, dict[int, float]] = {}
+    for row in rows:
+        if row[response.name] is not None:
+            cells.setdefault(CELLS[row["arm"]], {})[row["seed"]] = response.scaled(row[response.name])
+    return fit_factorial(cells, len(FACTORS))
+
+
+def _effect_rows(response: Response, fit: FactorialFit) -> Iterator[dict[str, Any]]:
+    for effect in fit.effects:
+        known = {name: getattr(effect, name) for name in ("low", "high", "p", "p_holm")}
+        bounds = known if response.sure else dict.fromkeys(known)
+        values = {"estimate": effect.estimate} | bounds
+        values |= {"seed_low": effect.seed_low, "seed_high": effect.seed_high}
+        for name in ("estimate", "low", "high", "seed_low", "seed_high"):
+            values[name] = response.unscaled(values[name])
+        head = {"response": response.name, "effect": effect_name(effect.factors)}
+        yield head | {"scale": "ratio" if response.ratio else "difference"} | values | {"seeds": effect.seeds}
+
+
+def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
+    """Names what could not be estimated, and what only without interactions; responses with the same gaps together."""
+    gaps: dict[str, list[str]] = {}
+    for name, fit in fits.items():
+        narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
+        parts = [f"left out: {', '.join(map(effect_name, fit.left_out))}"] if fit.left_out else []
+        parts += [f"estimated from some cells only: {', '.join(narrow)}"] if narrow else []
+        if parts:
+            gaps.setdefault(" and ".join(parts), []).append(name)
+    told = [
+        f"Since cells are missing, {gap} (of {'all responses' if len(names) == len(fits) else ', '.join(names)})."
+        for gap, names in gaps.items()
+    ]
+    return " ".join(told)
+
+
+def _cell_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    results = []
+    for label in CELLS:
+        mine = [row for row in rows if row["arm"] == label]
+        if mine:
+            means = {r.name: shown_interval([row[r.name] for row in mine], r).mean for r in RESPONSES if r.sure}
+            results.append(
+                {"arm": label, "worlds": len(mine), "died_out": sum(row["died_out"] for row in mine)} | means
+            )
+    return results
+
+
+FAULTS: tuple[Item, ...] = (
+    Item(
+        "faults",
+        "The faults of the released code and its contact solver",
+        "study",
+        "The paper's program grew food faster than it was set to, repeated the same mutations, trained its critic "
+        "towards the mean of a batch, and let bodies overlap. What does each do, and what do they do together?",
+        make_faults,
+        ARMS,
+        SCALE,
+    ),
+)

@@ -1,0 +1,76 @@
+"""Does a gene go where its world's mutations push it? Predicted against seen, a point per world."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, PALE, VERMILION, new_figure, say_empty, styled
+from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift
+
+_COLORS = (VERMILION, BLUE, GREEN, ORANGE)
+_MARKERS = ("o", "s", "^", "D")
+_LABELS = {
+    "drift per generation": ("mean mutation per birth", "drift per generation"),
+    "weight at the end": ("weight of lines without selection", "weight of those born last"),
+    "bias, first half and second": ("mean mutation, first half", "mean mutation, second half"),
+}
+_LINEAR = 0.003
+"""Below this an axis of mutations is linear; above, logarithmic, since Cauchy numbers span orders of magnitude."""
+
+
+def draw_predictions(arms: Mapping[str, Sequence[GeneDrift]], titles: Mapping[str, str]) -> Figure:
+    """A panel per comparison; a color per arm, a mark per gene. The line is where both are equal.
+
+    Args:
+        arms: per label, all genes of all its worlds.
+        titles: per genome column.
+    """
+    colors = dict(zip(arms, _COLORS, strict=False))
+    shown = {label: drifts for label, drifts in arms.items() if drifts}
+    with styled():
+        figure = new_figure(9.0, 3.5)
+        panels = figure.subplots(1, len(COMPARISONS))
+        for axes, (comparison, (predicted, seen)) in zip(panels, COMPARISONS.items(), strict=True):
+            reach = 0.0
+            for label, drifts in shown.items():
+                for marker, weight in zip(_MARKERS, titles, strict=False):
+                    pairs = np.array([(getattr(d, predicted), getattr(d, seen)) for d in drifts if d.weight == weight])
+                    pairs = pairs.reshape(-1, 2)[np.isfinite(pairs.reshape(-1, 2)).all(axis=1)]
+                    look = {"marker": marker, "facecolors": "none", "edgecolors": colors[label], "linewidths": 1.2}
+                    axes.scatter(pairs[:, 0], pairs[:, 1], s=26, zorder=3, **look)
+                    reach = max(reach, float(np.abs(pairs).max(initial=0.0)))
+            _frame(axes, comparison, reach)
+            if not shown:
+                say_empty(axes, "no births recorded")
+        marks = [
+            Line2D([], [], color=MUTED, marker=marker, linestyle="", markerfacecolor="none", label=title)
+            for marker, title in zip(_MARKERS, titles.values(), strict=False)
+        ]
+        lines = [Line2D([], [], color=colors[label], linewidth=4, label=label) for label in shown]
+        figure.legend(handles=[*lines, *marks], loc="outside upper left", ncols=len(marks) + len(lines))
+    return figure
+
+
+def _frame(axes: Axes, comparison: str, reach: float) -> None:
+    """Equal axes around 0 and the line of equality."""
+    x, y = _LABELS[comparison]
+    axes.set_title(comparison, fontsize=9)
+    axes.set(xlabel=x, ylabel=y)
+    limit = 1.4 * reach or 1.0
+    if comparison != "weight at the end":
+        limit = max(limit, 10 * _LINEAR)
+        decades = [_LINEAR * 10**k for k in range(5) if _LINEAR * 10**k <= limit][-2:]  # more would not fit
+        ticks = [0.0, *decades, *(-t for t in decades)]
+        axes.set_xscale("symlog", linthresh=_LINEAR)
+        axes.set_yscale("symlog", linthresh=_LINEAR)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_ticks(ticks, [f"{t:g}".replace("-", "\N{MINUS SIGN}") for t in ticks])
+            axis.set_ticks([], minor=True)
+    axes.set(xlim=(-limit, limit), ylim=(-limit, limit))
+    axes.set_box_aspect(1)
+    axes.plot([-limit, limit], [-limit, limit], color=PALE, linewidth=1.2, zorder=0.5)
+    for draw in (axes.axhline, axes.axvline):
+        draw(0, color=PALE, linewidth=0.8, zorder=0.5)

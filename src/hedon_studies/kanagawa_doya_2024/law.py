@@ -1,0 +1,98 @@
+"""Items from the settings alone: the laws of death, birth and mutation."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hedon.analysis.descent.walk import mutation_law
+from hedon.analysis.world.record import SEED
+from hedon.config import Config
+from hedon.config.gene import gene_of
+from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
+from hedon.figure.law import draw_birth, draw_hazard
+from hedon.figure.named import NamedFigure
+from hedon.figure.walk import draw_walk_ends, draw_walks
+from hedon.study.census import sentences
+from hedon.study.item import Item, Material
+from hedon_studies.kanagawa_doya_2024.condition import BASELINE
+
+_ENDS = (
+    "A point is a line of descent: two of its weights after 100 and after 1,000 mutations without selection. Weights "
+    "cannot pass their limit, and mutations have heavy tails, so lines gather along the edges, and in the four "
+    "corners, where both weights are within a tenth of it; the numbers are the shares of lines there."
+)
+_LINES = (
+    "A row per number of mutations: examples of lines, with the bands that hold half and 95 % of all lines, and at the "
+    "right where all lines end."
+)
+
+
+def window_births(config: Config) -> int:
+    """The births that an arena full of agents without energy tries in a window of learning."""
+    chance = float(birth_rate(config.birth, 0.0))
+    return max(round(config.population.capacity * chance * config.learning.rollout_steps), 1)
+
+
+def _hazard(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
+    caption = (
+        f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
+        "agent can hold."
+    )
+    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(config.hazard), caption)
+
+
+def _birth(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    children = float(reproduction_number(config.hazard, config.birth, 0.0))
+    caption = (
+        f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
+        "at 1, if all of them find a place."
+    )
+    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(config), caption)
+
+
+def _walk(material: Material) -> Iterator[NamedFigure]:
+    config = BASELINE.config(material.fidelity)
+    law, births = mutation_law(config, gene_of(config, "neutral_1")), window_births(config)
+    frozen = ""
+    if law.frozen:
+        frozen = (
+            f"The noise is frozen: a world has one table of noise, an entry per birth of a window, and each mutation "
+            f"of a line is any of its entries. The tables here have {births} entries, the births that a full arena "
+            "without energy tries in a window."
+        )
+    for name, question, draw, caption in (
+        ("walk", "Where do mutations alone carry weights that nothing selects?", draw_walk_ends, _ENDS),
+        ("walk_lines", "How does a weight get there?", draw_walks, _LINES),
+    ):
+        figure = draw(law, births, np.random.default_rng(SEED))
+        yield NamedFigure(name, question, figure, sentences(caption, frozen))
+
+
+LAWS: tuple[Item, ...] = (
+    Item(
+        "hazard",
+        "The chance of death",
+        "figure",
+        "The hazard by energy and by age, and survival at constant energy. "
+        "The formula is that of the released code: as printed, it gives a mean life of 209 steps at an energy of 20.",
+        _hazard,
+    ),
+    Item(
+        "birth",
+        "The chance of a birth",
+        "figure",
+        "The chance of a birth by energy. The sign of its exponent is that of the released code: "
+        "as printed, the chance would fall with energy.",
+        _birth,
+    ),
+    Item(
+        "walk",
+        "The random walk of mutations",
+        "figure",
+        "Weights that mutate 100 and 1000 times without selection.",
+        _walk,
+    ),
+)

@@ -1,0 +1,91 @@
+"""Rows and figure of what a world's mutations predict, for the studies that ask it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import generator
+from hedon.figure.named import NamedFigure
+from hedon.statistic.interval import SHOWN_FROM
+from hedon.study.census import sentences
+from hedon.study.item import Arm, Material
+from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift, compare, gene_drift
+from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
+
+GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}
+_ALL = "all genes"
+
+_PREDICTION = (
+    "bias: mean mutation per birth, which each generation of a line without selection adds to its weight. Slopes are "
+    "of seen = slope · predicted, through the origin, with Student's t interval; p_sign is exact binomial. Genes of "
+    "one world have tables of their own but share its pedigree. A weight that has reached the limit drifts no further, "
+    "which the second comparison accounts for. A bias is there with either noise, but with independent noise it is "
+    "that of mutations that happened once, and does not recur; near the limit it leans inward, as clipping does."
+)
+_DRAWN = (
+    "A point is one gene of one world; on the line both are equal. The scale of mutations is linear around 0 and "
+    "logarithmic beyond."
+)
+_GENE = (
+    "numbers: births within a window that have an entry. bounds: entries of which all children were clipped at the "
+    "limit. disagreement: largest difference between mutations of equal number; rounding is 1e-6 for weights up to "
+    "10. line_mean, line_low, line_high: weight of lines without selection after the generations given, mean and 95 % "
+    "of them. slope: of mean weight against mean generation; displacement: from the founders' mean to the end, per "
+    "generation."
+)
+
+_BRIEF = ("weight", "numbers", "bias", "slope", "displacement", "generations", "line_mean", "end")
+
+Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
+"""Per arm, the seed of each world and the drift of each of its genes."""
+
+
+def arm_drifts(material: Material, arms: Sequence[Arm]) -> Drifts:
+    """All genes of all worlds of some arms."""
+    return {
+        arm.label: [
+            (world.seed, found)
+            for world in material.worlds.get(arm.label, ())
+            for weight in GENES
+            if weight in world.weight_names and (found := gene_drift(world, weight, generator(world))) is not None
+        ]
+        for arm in arms
+    }
+
+
+def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | ResultTable]:
+    """The figure and the two tables of a study.
+
+    Args:
+        name: that the parts' names begin with.
+        drifts: of `arm_drifts`.
+        note: on the worlds.
+    """
+    shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
+    question = "Do weights go where mutations push them?"
+    yield NamedFigure(f"{name}_prediction", question, draw_predictions(shown, GENES), _DRAWN)
+    yield table(
+        f"{name}_prediction",
+        "Mutations: predicted and seen",
+        [row for label, found in drifts.items() for row in _prediction_rows(label, shown[label], _world_count(found))],
+        sentences(_PREDICTION, note),
+    )
+    rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
+    brief = [{column: row[column] for column in ("arm", "seed", *_BRIEF)} for row in rows]
+    yield table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
+    yield table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
+
+
+def _world_count(found: Sequence[tuple[int, GeneDrift]]) -> int:
+    return len({seed for seed, _ in found})
+
+
+def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> Iterator[dict[str, Any]]:
+    """Genes of one world share its pedigree, so bounds and chances are given from three worlds on, not three pairs."""
+    for comparison in COMPARISONS:
+        for weight in (*GENES, _ALL):
+            mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
+            if mine:
+                found = {"arm": label, "compared": comparison, "weight": weight, "worlds": worlds}
+                found |= vars(compare(mine, comparison))
+                yield found if worlds >= SHOWN_FROM else found | dict.fromkeys(("low", "high", "p_sign"))

@@ -1,0 +1,109 @@
+"""The item of all parameters: what each setting means, its value, unit and source, from the config itself."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from hedon.analysis.table import ResultTable, table
+from hedon.config import FIDELITIES
+from hedon.config.config import PROVENANCE
+from hedon.config.dump import flatten
+from hedon.config.field import leaves
+from hedon.config.load import PAPER_PRESETS, describe_preset
+from hedon.config.problem import format_value
+from hedon.study.item import Arm, Item, Material
+from hedon_studies.kanagawa_doya_2024.condition import BASELINE
+
+CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "parameters_physics": ("Bodies and physics", ("arena", "body", "physics", "obstacle")),
+    "parameters_sense": ("Motors and senses", ("motor", "sensor")),
+    "parameters_food": ("Food", ("food", "diet")),
+    "parameters_life": ("Energy, birth and death", ("population", "energy", "nutrient", "toxin", "hazard", "birth")),
+    "parameters_evolution": ("Genome and reward", ("genome", "reward")),
+    "parameters_learning": ("Learning", ("learning",)),
+}
+"""Per table its title and the sections of the config that it tells; the paper has one species."""
+_ORIGIN = (
+    'Origin: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, '
+    '"ours" is a choice of this project; "paper or code" is the paper\'s value where it prints one, else the code\'s.'
+)
+
+Row = dict[str, Any]
+
+
+def _parameters(material: Material) -> Iterator[ResultTable]:
+    fidelity = material.fidelity
+    rows = list(_settings(fidelity))
+    explained = f"{_ORIGIN} "
+    for name, (title, sections) in CONCERNS.items():
+        mine = [row for row in rows if row["setting"].split(".")[0] in sections]
+        yield table(name, f"{title} (baseline, {fidelity})", _without_empty(mine), explained + _differences(mine))
+        explained = ""
+    presets = " ".join(f"{preset}: {describe_preset(preset)}" for preset in PAPER_PRESETS)
+    note = f"A kind of food that is added is compared with the first kind of the baseline. {presets}"
+    yield table("parameters_condition", f"What the other conditions change ({fidelity})", _conditions(fidelity), note)
+
+
+def _settings(fidelity: str) -> Iterator[Row]:
+    """A row per setting of the baseline; the fidelities' own values where these differ."""
+    values = {other: flatten(BASELINE.config(other)) for other in FIDELITIES}
+    for path, setting, value in leaves(BASELINE.config(fidelity)):
+        if path in PROVENANCE:
+            continue
+        each = {_column(other): format_value(values[other][path]) for other in FIDELITIES}
+        differ = len(set(each.values())) > 1
+        yield {
+            "setting": path,
+            "meaning": setting.doc.meaning,
+            "value": format_value(value),
+            "unit": setting.doc.unit,
+            "origin": setting.doc.source,
+        } | (each if differ else dict.fromkeys(each))
+
+
+def _conditions(fidelity: str) -> Iterator[Row]:
+    """A row per setting in which a preset differs from the baseline."""
+    baseline = BASELINE.config(fidelity)
+    base, first = flatten(baseline), next(iter(baseline.food))
+    for preset in PAPER_PRESETS:
+        config = Arm(preset, preset).config(fidelity)
+        like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
+        for path, setting, value in leaves(config):
+            kind = ".".join(path.split(".")[:2])
+            before = base.get(path.replace(kind, like.get(kind, kind), 1), value)  # names are no settings
+            if before == value:
+                continue
+            yield {
+                "preset": preset,
+                "setting": path,
+                "meaning": setting.doc.meaning,
+                "baseline": format_value(before),
+                "value": format_value(value),
+                "unit": setting.doc.unit,
+            }
+
+
+def _without_empty(rows: Sequence[Row]) -> list[Row]:
+    """The rows without the columns that are missing in all of them."""
+    kept = [name for name in rows[0] if any(row[name] is not None for row in rows)]
+    return [{name: row[name] for name in kept} for row in rows]
+
+
+def _differences(rows: Sequence[Row]) -> str:
+    if all(row[_column(fidelity)] is None for row in rows for fidelity in FIDELITIES):
+        return "The same in all fidelities."
+    return f"In {', '.join(FIDELITIES)}: the values of the fidelities, where they differ."
+
+
+def _column(fidelity: str) -> str:
+    return f"in_{fidelity}"
+
+
+PARAMETERS: tuple[Item, ...] = (
+    Item(
+        "parameters",
+        "All parameters",
+        "table",
+        "The parameters of the model. Some are not printed, and some that are printed differ from the released code.",
+        _parameters,
+    ),
+)

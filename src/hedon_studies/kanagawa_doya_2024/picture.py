@@ -1,0 +1,81 @@
+"""Items that show things as they are: the body, and the arenas with those who live there."""
+
+from collections.abc import Iterator
+
+from hedon.figure.body import draw_body
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import food_colors
+from hedon.figure.world import draw_world, telling_agent
+from hedon.record.snapshot import Snapshot
+from hedon.study.item import Item, Material, Scale
+from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PLACES, POISON, POOR, SIZES
+from hedon_studies.kanagawa_doya_2024.figure.arena import ArenaPanel, draw_arenas
+
+_FOODS = (*PLACES[1:], POOR, POISON)
+_ONE_WORLD = Scale((1,), 10_240)
+_BODY = (
+    "Left, the body with its heading upward: the arc of the mouth, the sectors in which it feels touch, and the forces "
+    "of its two motors; beside it a food of the same scale. Right, its rays at full length, which end where they no "
+    "longer see."
+)
+
+
+def _body(material: Material) -> Iterator[NamedFigure]:
+    question = "What does an agent sense, and how does it move and eat?"
+    yield NamedFigure("body", question, draw_body(BASELINE.config(material.fidelity)), _BODY)
+
+
+def _arena(material: Material) -> Iterator[NamedFigure]:
+    snapshot = material.snapshots.get(BASELINE.label)
+    if snapshot is None:
+        return
+    config = BASELINE.config(material.fidelity)
+    colors = food_colors(tuple(config.food), [food.color for food in config.food.values()])
+    agent = telling_agent(snapshot)
+    rays_of = () if agent is None else (agent,)
+    figure = draw_world(snapshot, colors, rays_of)
+    yield NamedFigure("arena", "What does a world look like?", figure, f"World of {_when(snapshot)}.")
+
+
+def _arenas(material: Material) -> Iterator[NamedFigure]:
+    rows = [
+        [ArenaPanel(arm.label, arm.config(material.fidelity), material.snapshots.get(arm.label)) for arm in arms]
+        for arms in (SIZES, _FOODS)
+    ]
+    caption = "Above each, of every kind of food, its energy and how much there can be."
+    shown = [f"{panel.label} {_when(panel.snapshot)}" for row in rows for panel in row if panel.snapshot is not None]
+    if shown:
+        caption += f" Shown: {'; '.join(shown)}."
+    missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
+    if missing:
+        caption += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."
+    yield NamedFigure("arenas", "What arenas are there, and where does food grow in each?", draw_arenas(rows), caption)
+
+
+def _when(snapshot: Snapshot) -> str:
+    return f"seed {snapshot.seed} at step {snapshot.step:,}"
+
+
+PICTURES: tuple[Item, ...] = (
+    Item("body", "The body", "figure", "An agent's mouth, touch sensors, motors and rays.", _body),
+    Item(
+        "arena",
+        "The arena",
+        "figure",
+        "Agents and foods in the arena, and what one agent sees.",
+        _arena,
+        (BASELINE,),
+        _ONE_WORLD,
+        pictures=True,
+    ),
+    Item(
+        "arenas",
+        "All arenas",
+        "figure",
+        "Arenas of three sizes, food in one place or in four by turns, and food of a second kind.",
+        _arenas,
+        (*SIZES, *_FOODS),
+        _ONE_WORLD,
+        pictures=True,
+    ),
+)

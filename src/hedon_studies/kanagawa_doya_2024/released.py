@@ -1,0 +1,134 @@
+"""Study: what does the released program do over many seeds, and what is left of it if only survivors are kept?"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import polars as pl
+
+from hedon.analysis.response import RESPONSES
+from hedon.analysis.table import ResultTable, table
+from hedon.analysis.world.record import WorldRecord
+from hedon.figure.named import NamedFigure
+from hedon.figure.weight import draw_weights
+from hedon.statistic.interval import share_interval
+from hedon.study.change import missing_note, shown_interval, world_rows
+from hedon.study.item import Arm, Item, Material, Scale
+from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
+from hedon_studies.kanagawa_doya_2024.figure.fate import draw_fates
+from hedon_studies.kanagawa_doya_2024.mutation import Drifts, arm_drifts, drift_parts
+from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, PAPER
+
+LABEL = "released"
+ARMS = (Arm(LABEL, fidelity="released"),)
+SCALE = Scale(tuple(range(1, 13)), 1_024_000)
+
+_PAPER_COSTS = (0.001, 2e-5)
+_GROUPS = {"all": FATES, "not extinct": (STANDING, HEADING), STANDING: (STANDING,)}
+_COMPARED = ("w_food", "w_action", "lifetime", "food_agent", "alive", "generation")
+"""Responses that the paper says something of."""
+
+_DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
+_WEIGHTS = (
+    "A point is one of the 5000 agents of a world that were born last: its weight of food against its weight of "
+    "action; a color is a seed, the same in both figures. Above and beside the axes, the distributions over all "
+    "agents, and that of the first neutral marker, outlined."
+)
+_FATE = (
+    "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
+    "second. Standing worlds that had such a low before, and rose again, say how far that can be trusted. The interval "
+    "is Jeffreys'. The paper replaced seeds that died out."
+)
+_SURVIVOR = (
+    "Means over worlds with 95 % intervals from three worlds on, geometric for lifetime and food; standing: neither "
+    "extinct nor heading for it. The paper's figures are of 5 survivors of 10,240,000 steps."
+)
+
+
+def make_released(material: Material) -> Iterator[NamedFigure | ResultTable]:
+    """The figures and tables of the study."""
+    worlds = list(material.worlds.get(LABEL, ()))
+    missing = missing_note(material, ARMS, SCALE)
+    fates = [fate(world) for world in worlds]
+    rows = [row | vars(found) for row, found in zip(world_rows(material, ARMS, RESPONSES), fates, strict=True)]
+    drifts = arm_drifts(material, ARMS)
+    if worlds:
+        yield NamedFigure(
+            "released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates), _DRAWN
+        )
+        yield from _weight_figures(worlds, fates)
+    yield table("released_fate", "Worlds that head for extinction", _fate_rows(fates), f"{_FATE} {missing}".strip())
+    yield table("released_survivors", "All worlds, and those that last", _survivor_rows(rows), _SURVIVOR)
+    yield from drift_parts("released", drifts, missing)
+    yield table("released_worlds", "The worlds of the released program", _with_bias(rows, drifts), missing, shown=False)
+
+
+def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Iterator[NamedFigure]:
+    """The paper's figure of weights, of all worlds and of those that last; seeds keep their colors."""
+    agents = [world.agents.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
+    standing = [rows for rows, found in zip(agents, fates, strict=True) if not found.is_lost]
+    first = worlds[0]
+    look = (first.reward_names, first.neutral_names)
+    drawn = draw_weights(pl.concat(agents), *look)
+    yield NamedFigure("released_weights", "Which rewards evolved, in all worlds?", drawn, _WEIGHTS)
+    if standing and len(standing) < len(agents):
+        question, drawn = "And in those that do not head for extinction?", draw_weights(pl.concat(standing), *look)
+        yield NamedFigure("released_weights_standing", question, drawn, _WEIGHTS)
+
+
+def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
+    paper = {EXTINCT: f"{EXTINCTION[_PAPER_COSTS]:.0%} of 10 seeds"}
+    counts = {name: sum(found.fate == name for found in fates) for name in FATES}
+    counts = {"extinct or heading for it": sum(found.is_lost for found in fates)} | counts
+    counts["standing after such a low"] = sum(found.recovered for found in fates)
+    for name, count in counts.items() if fates else ():
+        low, high = share_interval(count, len(fates))
+        shares = {"count": count, "worlds": len(fates), "share": count / len(fates), "low": low, "high": high}
+        yield {"fate": name} | shares | {"paper": paper.get(name)}
+
+
+def _survivor_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    responses = {response.name: response for response in RESPONSES}
+    for name in _COMPARED if rows else ():
+        for group, belonging in _GROUPS.items():
+            values = [row[name] for row in rows if row["fate"] in belonging]
+            found = vars(shown_interval(values, responses[name]))
+            if name.startswith("w_"):
+                found |= {"positive": sum(value > 0 for value in values if value is not None)}
+            yield {"response": name, "worlds_of": group} | found | {"paper": _paper(name)}
+
+
+def _paper(name: str) -> str:
+    """What the paper says of a response in the baseline."""
+    said = PAPER["baseline"]
+    texts = {
+        "w_food": "mostly above 4",
+        "w_action": "largely positive or slightly negative",
+        "lifetime": f"{said.mean_lifetime:,.0f}",
+        "food_agent": f"{said.food_per_step:g}",
+        "alive": "{} to {}".format(*said.population or ()),
+        "generation": "{} to {}, in ten times the steps".format(*said.generation or ()),
+    }
+    return texts[name]
+
+
+def _with_bias(rows: Sequence[Mapping[str, Any]], drifts: Drifts) -> list[dict[str, Any]]:
+    """The rows, with the bias of each world's table beside its weights."""
+    biases: dict[int, dict[str, float]] = {}
+    for seed, drift in drifts[LABEL]:
+        biases.setdefault(seed, {})[f"bias_{drift.weight}"] = drift.bias
+    return [dict(row) | biases.get(row["seed"], {}) for row in rows]
+
+
+RELEASED: tuple[Item, ...] = (
+    Item(
+        "released",
+        "The released program, seed by seed",
+        "study",
+        "The paper shows 5 seeds and replaced those that died out. How many seeds of the released program head for "
+        "extinction, does the weight of food follow the bias of the seed's mutations, and do survivors alone give the "
+        "paper's picture?",
+        make_released,
+        ARMS,
+        SCALE,
+    ),
+)

@@ -1,0 +1,77 @@
+"""The paper's figures of how rewards evolve: mean weights over time, world by world, beside the neutral marker."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from hedon.figure.history import HistoryRow, draw_histories
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import draw_message, meal_colors
+from hedon.study.census import describe, missing, present, sentences, stack, world_indices
+from hedon.study.item import Arm, Item, Material
+from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
+
+_READ = (
+    "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from three worlds on; a cross "
+    "ends the line of a world that died out. The neutral marker enters no reward: its course is drift."
+)
+
+
+def draw_courses(name: str, question: str, arms: Sequence[Arm], material: Material) -> Iterator[NamedFigure]:
+    """The mean weights of the worlds of some arms, which must have the same genes, over time: a row per arm."""
+    worlds = present(arms, material)
+    caption = sentences(_READ, missing(arms, material))
+    if not worlds:
+        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
+        return
+    indices = world_indices(worlds.values())
+    rows = [
+        HistoryRow(
+            stack(group, "population", indices),
+            label,
+            ", ".join(describe(group)),
+            {indices[world.seed] for world in group if world.extinct_step is not None},
+        )
+        for label, group in worlds.items()
+    ]
+    first = next(iter(worlds.values()))[0]
+    colors = meal_colors(first.config, first.prey)
+    yield NamedFigure(name, question, draw_histories(rows, first.reward_names, first.neutral_names, colors), caption)
+
+
+def _item(name: str, title: str, paper: str, question: str, *arms: Arm) -> Item:
+    return Item(name, title, "figure", paper, partial(draw_courses, name, question, arms), arms, PAPER_SCALE)
+
+
+HISTORIES: tuple[Item, ...] = (
+    _item(
+        "history-baseline",
+        "How weights evolve in the baseline",
+        "Mean weights of each seed and over seeds. By its text the weight of food ends positive, that of action "
+        "largely positive or slightly negative.",
+        "When do rewards evolve in the baseline?",
+        BASELINE,
+    ),
+    _item(
+        "history-sizes",
+        "How weights evolve in arenas of three sizes",
+        "The same for three sizes. By its text the weight of food ends positive in the baseline and the large arena, "
+        "and hardly any weight evolves in the small one.",
+        "Does the size of the arena change how rewards evolve?",
+        *SIZES,
+    ),
+    _item(
+        "history-poor",
+        "How weights evolve with poor food",
+        "The same with poor food. By its text the weight of normal food stays positive, that of poor food varies "
+        "widely.",
+        "When does food that gives little become rewarding?",
+        POOR,
+    ),
+    _item(
+        "history-poison",
+        "How weights evolve with poison",
+        "The same with poison. By its text the weight of normal food stays positive, that of poison varies widely.",
+        "When does food that harms become aversive?",
+        POISON,
+    ),
+)

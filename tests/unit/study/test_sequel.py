@@ -1,0 +1,135 @@
+"""The rules on the sequel's claims, on made worlds in which the answer is known: planted, absent, drift alone."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import polars as pl
+import pytest
+
+from hedon.analysis.world.record import WorldRecord
+from hedon.config import load_config
+from hedon.config.layout import hunted, hunters, layouts, of_species
+from hedon.study.verdict import Verdict, judge, verdicts
+from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL, SEQUEL_CLAIMS, SEQUEL_ORDERS, fear
+from hedon_studies.kanagawa_doya_2024.paper import STEPS
+
+_PUSH = 1.5  # per generation, planted; some four times the scale of mutations
+_GENERATIONS, _WIDTH = 20, 20
+
+
+@cache
+def made(preset: str, seed: int, pushed: str = "", push: float = 0.0) -> WorldRecord:
+    """A world of a few families whose weights mutate by the preset's law; one of them is pushed in each generation."""
+    config = load_config(preset)
+    own = hunted(config) if config.species else "agent"
+    mine = of_species(config, own)
+    genes = layouts(config)[own].gene_names
+    rng = np.random.default_rng([len(preset), seed])
+    size = _WIDTH * _GENERATIONS
+    parents = np.full(size, -1, np.int64)
+    weights = np.zeros((size, len(genes)))
+    weights[:_WIDTH] = rng.normal(0, 0.1, (_WIDTH, len(genes)))
+    drift = np.array([push if gene == pushed else 0.0 for gene in genes])
+    for start in range(_WIDTH, size, _WIDTH):
+        chosen = start - _WIDTH + rng.integers(0, _WIDTH, _WIDTH)
+        parents[start : start + _WIDTH] = chosen
+        noise = mine.genome.mutation_scale * rng.standard_t(mine.genome.mutation_df, (_WIDTH, len(genes)))
+        weights[start : start + _WIDTH] = np.clip(weights[chosen] + noise + drift, -10, 10)
+    agents = pl.DataFrame(
+        {
+            "world": pl.Series(np.zeros(size, np.int32)),
+            "seed": pl.Series(np.full(size, seed)),
+            "agent_id": pl.Series(np.arange(size)),
+            "parent_id": pl.Series(parents),
+            "generation": pl.Series((np.arange(size) // _WIDTH).astype(np.int32)),
+            "birth_step": pl.Series(np.arange(size) // _WIDTH * 1000),
+            "death_step": pl.Series(np.arange(size) // _WIDTH * 1000 + 1000),
+        }
+    ).with_columns(pl.Series(gene, weights[:, i].astype(np.float32)) for i, gene in enumerate(genes))
+    neutral = tuple(gene for gene in genes if gene.startswith("neutral"))
+    rewards = tuple(gene for gene in genes if gene not in neutral)
+    names = (tuple(config.food), rewards, neutral)
+    return WorldRecord(f"{preset}: {own}", "run", seed, mine, *names, agents, pl.DataFrame(), STEPS, None)
+
+
+def group(preset: str, count: int, pushed: str = "", push: float = 0.0) -> list[WorldRecord]:
+    return [made(preset, seed, pushed, push) for seed in range(1, count + 1)]
+
+
+def asked(worlds: list[WorldRecord]) -> dict[str, Verdict]:
+    return {found.claim: found for found in verdicts(worlds) if found.source == SEQUEL}
+
+
+def seen(role: str) -> str:
+    """The gene of seeing one's own species, or those who eat it."""
+    config = load_config("predator")
+    own = hunted(config)
+    return f"w_see_{own if role == 'own' else hunters(config, own)[0]}"
+
+
+def test_planted_fear_is_found() -> None:
+    found = asked(group("predator", 5, seen("hunter"), -_PUSH))
+    fearful = found["fear often evolves"]
+    assert (fearful.verdict, fearful.value, fearful.worlds) == ("holds", 1.0, 5)
+    assert found["liking predators in some worlds"].verdict == "undecided"
+    assert found["liking one's own kind in some worlds"].verdict == "undecided"
+
+
+@pytest.mark.parametrize(("role", "claim"), [("own", "one's own kind"), ("hunter", "predators")])
+def test_planted_liking_is_found(role: str, claim: str) -> None:
+    liked = group("predator", 2, seen(role), _PUSH) + group("predator", 6)[2:]
+    assert asked(liked)[f"liking {claim} in some worlds"].verdict == "holds"
+
+
+def test_drift_alone_is_neither_fear_nor_liking() -> None:
+    worlds = group("predator", 8)
+    found = asked(worlds)
+    assert (found["fear often evolves"].verdict, found["fear often evolves"].value) == ("undecided", 0.0)
+    assert found["liking predators in some worlds"].verdict == "undecided"
+    assert found["liking one's own kind in some worlds"].verdict == "undecided"
+    scores = np.array([fear(world) for world in worlds], float)
+    assert abs(scores.mean()) < 3 / np.sqrt(len(scores))  # as neutral genes, of sd 1
+    (rule,) = [claim for claim in SEQUEL_CLAIMS if claim.name == "fear often evolves"]
+    none = judge(replace(rule, measure=lambda _: -1.0), "c", worlds * 3)
+    assert (none.verdict, none.worlds) == ("fails", 24)
+
+
+def test_order_follows_what_is_planted() -> None:
+    calm, scared = group("predator-small-mouth", 5), group("predator-large-mouth", 5, seen("hunter"), -_PUSH)
+    name = "larger mouths, stronger fear"
+    assert asked([*calm, *scared])[name].verdict == "holds"
+    assert asked([*calm, *group("predator-large-mouth", 5)])[name].verdict == "undecided"
+    scared, calm = group("predator-small-mouth", 5, seen("hunter"), -_PUSH), group("predator-large-mouth", 5)
+    assert asked([*calm, *scared])[name].verdict == "fails"
+    hungry = group("predator-less-food", 5, seen("own"), -_PUSH)
+    assert asked([*hungry, *group("predator", 5)])["less food, less liking of one's own kind"].verdict == "holds"
+
+
+def test_weak_pitfalls() -> None:
+    name = "no fear of weak pitfalls"
+    worlds = group("pitfall-weak", 5)
+    assert asked(worlds)[name].verdict == "undecided"  # too few to show that there is none
+    (rule,) = [claim for claim in SEQUEL_CLAIMS if claim.name == name]
+    none = judge(replace(rule, measure=lambda _: -1.0), "c", worlds * 5)
+    assert (none.verdict, none.worlds) == ("holds", 25)
+    assert asked(group("pitfall-weak", 5, "w_see_obstacle", -_PUSH))[name].verdict == "fails"
+
+
+def test_few_short_or_lone_worlds_decide_nothing() -> None:
+    worlds = group("predator", 5, seen("hunter"), -_PUSH)
+    name = "fear often evolves"
+    assert asked(worlds[:2])[name].reason == "fewer than 3 worlds"
+    short = asked([replace(world, last_step=1024) for world in worlds])[name]
+    assert (short.verdict, short.reason) == ("undecided", f"the worlds reach 1,024 of {STEPS:,} steps")
+    lone = asked([replace(world, apart_step=5000) for world in worlds])[name]
+    assert (lone.verdict, lone.worlds) == ("undecided", 0)
+    assert "5 left out where another species died out" in lone.reason
+    dead = asked([replace(world, extinct_step=5000) for world in worlds])[name]
+    assert (dead.verdict, "5 extinct left out" in dead.reason) == ("undecided", True)
+
+
+def test_the_claims_are_one_family() -> None:
+    assert len(SEQUEL_CLAIMS) + len(SEQUEL_ORDERS) == FAMILY
+    assert {each.level for each in (*SEQUEL_CLAIMS, *SEQUEL_ORDERS)} == {1 - 0.05 / FAMILY}
+    assert (BY_CHANCE, OFTEN) == (0.025, 0.25)
