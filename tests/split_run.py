@@ -1,5 +1,6 @@
 """Runs whose steps go on from part to part, as older versions wrote them: wherever a part was full."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,9 +15,12 @@ FRAMES = 32
 """Steps between two frames."""
 
 
-def record_species(folder: Path, steps: int = 256, seeds: tuple[int, ...] = (1, 2)) -> Path:
+def record_species(
+    folder: Path, steps: int = 256, seeds: tuple[int, ...] = (1, 2), overrides: Sequence[str] = ()
+) -> Path:
     """Records prey and predators, with a row of the population each 64 steps."""
-    config = load_config("predator", overrides=["learning.rollout_steps=64", "learning.minibatch_size=64"])
+    quick = ("learning.rollout_steps=64", "learning.minibatch_size=64")
+    config = load_config("predator", overrides=[*quick, *overrides])
     run(RunPlan(config, seeds, steps, folder, 1, FRAMES))
     return folder
 

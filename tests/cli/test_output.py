@@ -13,7 +13,7 @@ COMMANDS = [
     ("config", "show", "baseline"),
     ("forecast", "baseline"),
     ("view", "--live", "small", "--export", "{out}"),
-    ("run", "small", "--steps", "64", "--out", "{out}", "--threads", "1"),
+    ("run", "small", "--steps", "64", "--out", "{out}", "--threads", "1", "--no-report"),
 ]
 
 

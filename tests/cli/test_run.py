@@ -169,7 +169,7 @@ def test_ctrl_c_ends_after_the_window_and_keeps_everything(tmp_path):
 
 def test_results_can_be_read_while_the_run_goes_on(tmp_path):
     folder = tmp_path / "out"
-    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK]
+    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK, "--no-report"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         wait_for(folder / "agents" / "living.parquet")

@@ -71,7 +71,7 @@ def test_arguments_that_are_no_unicode_leave_a_manifest_that_can_be_read(tmp_pat
     config = tmp_path / os.fsdecode(b"in\xff") / "my.toml"
     config.write_text('preset = "small"\npopulation.capacity = 8\npopulation.initial_count = 8\n')
     out = tmp_path / "run"
-    command = ["hedon", "run", str(config), "--steps", "3", "--out", str(out)]
+    command = ["hedon", "run", str(config), "--steps", "3", "--out", str(out), "--no-report"]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
     assert str(load_manifest(out).command_line[2]).endswith("in\\udcff/my.toml")

@@ -100,6 +100,7 @@ def test_a_run_may_be_reached_by_a_link_to_its_folder(run, tmp_path):
     assert hedon.resume(tmp_path / "latest", 200, threads=1).status == "finished"
 
 
+@pytest.mark.long
 def test_two_reports_at_once_on_a_run_that_goes_on_harm_nothing(tmp_path):
     go_on = "from killed_run import go; import sys; from pathlib import Path; go(Path(sys.argv[1]))"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}

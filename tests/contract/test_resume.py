@@ -263,8 +263,10 @@ def test_the_command_says_what_it_does(half, whole):
     assert f"hedon resume {half}" in refused.stderr
     last = checkpoint_paths(half)[-1]
     last.write_bytes(b"nothing")
-    resumed = hedon("resume", half, "--steps", STEPS)
+    resumed = hedon("resume", half, "--steps", STEPS, "--no-report")
     assert resumed.returncode == 0, resumed.stderr
+    assert f"Write the report with: hedon report {half}" in resumed.stdout
+    assert not (half / "report.html").exists()
     assert f"note: damaged checkpoint {last}" in resumed.stderr
     assert "500 steps from step 0, into" in resumed.stdout
     assert_same_run(half, whole)

@@ -149,7 +149,7 @@ def test_the_config_of_a_run_begins_another_one(study):
     simulation.run(96)
     assert tuple(world.digest() for world in simulation.worlds) == first.world_digests
     source, out = str(study / "run" / "config.toml"), str(study / "typed")
-    words = ["run", source, "--seeds", "1-2", "--steps", "96", "--out", out, "--threads", "1"]
+    words = ["run", source, "--seeds", "1-2", "--steps", "96", "--out", out, "--threads", "1", "--no-report"]
     assert CliRunner().invoke(app, words).exit_code == 0
     assert open_run(study / "typed").manifest.world_digests == first.world_digests
 

@@ -178,8 +178,8 @@ def place(tmp_path_factory):
 
 SOURCES = ["baseline", "poison", "baselin", "my.toml", "none.toml", "file", "empty", "run/config.toml", "/", "."]
 OPTIONS = {
-    "run": ["--seeds", "--threads", "--out", "--frames", "--checkpoint", "--fidelity", "--set"],
-    "resume": ["--threads", "--checkpoint", "--steps"],
+    "run": ["--seeds", "--threads", "--out", "--frames", "--checkpoint", "--fidelity", "--set", "--no-report"],
+    "resume": ["--threads", "--checkpoint", "--steps", "--no-report"],
     "branch": ["--out", "--at", "--steps", "--set", "--threads", "--frames", "--checkpoint"],
     "check": ["--replay"],
     "replay-fault": ["--threads"],

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import Checkpoint, Threads, run_and_report
+from hedon.cli.run import Checkpoint, Report, Threads, run_and_report
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
 
@@ -28,6 +28,7 @@ def branch(
         int | None, typer.Option(help="Save all positions every N steps; by default as in the old run.", min=0)
     ] = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    report: Report = True,
 ) -> None:
     """Continue from a checkpoint with changed settings, as a new run.
 
@@ -42,4 +43,5 @@ def branch(
     from hedon.experiment.branch import plan_branch, start_branch
 
     plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint)
-    run_and_report(plan.run, lambda display: start_branch(plan, display), f" from step {plan.parent.step:,}")
+    begun = f" from step {plan.parent.step:,}"
+    run_and_report(plan.run, lambda display: start_branch(plan, display), begun, report=report)

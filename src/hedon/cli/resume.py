@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hedon.cli.run import Checkpoint, Threads, run_and_report
+from hedon.cli.run import Checkpoint, Report, Threads, run_and_report
 from hedon.experiment.argument import MAX_STEPS
 from hedon.record.folder import CHECKPOINT_SECONDS
 
@@ -18,6 +18,7 @@ def resume(
     ] = None,
     threads: Threads = 0,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    report: Report = True,
 ) -> None:
     """Continue a run, as if it had never stopped.
 
@@ -34,4 +35,6 @@ def resume(
     with lock(run, steps, threads, checkpoint) as found:
         for note in found.notes:
             typer.echo(f"hedon: note: {note}", err=True)
-        run_and_report(found.plan, lambda display: continue_run(found, display), f" from step {found.step:,}")
+        run_and_report(
+            found.plan, lambda display: continue_run(found, display), f" from step {found.step:,}", report=report
+        )

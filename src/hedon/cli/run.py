@@ -26,6 +26,7 @@ MAX_DIGITS = 40
 
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
+Report = Annotated[bool, typer.Option(help="Write a report at the end; `hedon report` writes it at any time.")]
 
 
 class RunError(HedonError):
@@ -60,6 +61,7 @@ def run(
         str | None,
         typer.Option(help="What computes: avx512, avx2, portable or cuda; by default the fastest instruction set."),
     ] = None,
+    report: Report = True,
 ) -> None:
     """Run a condition, then write its report.
 
@@ -95,16 +97,17 @@ def run(
     plan = RunPlan(
         config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, backend or "", kept
     )
-    run_and_report(plan, lambda display: run_plan(plan, display))
+    run_and_report(plan, lambda display: run_plan(plan, display), report=report)
 
 
-def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "") -> None:
+def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "", *, report: bool) -> None:
     """Prints what will be run, shows progress while it runs, and reports.
 
     Args:
         plan: What is run.
         go: Runs it, with a display.
         begun: Where the run continues, as text to follow the number of steps.
+        report: Whether the run ends with a report.
     """
     from hedon.cli.display.run import duration, make_display
     from hedon.record.schema import columns_of
@@ -126,8 +129,9 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         console.print(f"Interrupted after step {done:,} of {plan.steps:,}; all results up to there are kept.")
         console.print(f"Continue with: hedon resume {folder}", soft_wrap=True)
     console.print(f"{duration(manifest.run_seconds or 0.0)} of simulation.")
-    show_report(plan.out, console)
-    console.print(f"Write the report again with: hedon report {folder}", soft_wrap=True)
+    if report:
+        show_report(plan.out, console)
+    console.print(f"Write the report{' again' if report else ''} with: hedon report {folder}", soft_wrap=True)
     unseen = "" if plan.frames else " (plots only: a run with --frames 64 also shows its agents)"
     console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
 
