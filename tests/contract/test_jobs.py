@@ -9,7 +9,7 @@ import pytest
 from resumed_run import SMALL, assert_same_run, small_run
 from rich.console import Console
 
-from hedon.cli.display.plan import PlanDisplay
+from hedon.cli.display.job import JobDisplay
 from hedon.config import load_config
 from hedon.experiment.plan import Moment, RunPlan
 from hedon.jobs.process import next_share, run_jobs
@@ -21,7 +21,7 @@ from hedon.record.manifest import load_manifest
 STEPS = 640
 
 
-class Interrupting(PlanDisplay):
+class Interrupting(JobDisplay):
     """A display that presses Ctrl-C when a run has come so far."""
 
     def __init__(self, jobs: list[RunJob], at_step: int) -> None:
@@ -41,9 +41,9 @@ def a_job(folder: Path, *, steps: int = STEPS, growth: float = 0.2) -> RunJob:
     return RunJob(RunPlan(config, (1, 2), steps, folder), 2 * steps)
 
 
-def printed_display(jobs: list[RunJob]) -> tuple[io.StringIO, PlanDisplay]:
+def printed_display(jobs: list[RunJob]) -> tuple[io.StringIO, JobDisplay]:
     stream = io.StringIO()
-    return stream, PlanDisplay(Console(file=stream, width=200), jobs)
+    return stream, JobDisplay(Console(file=stream, width=200), jobs)
 
 
 def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:

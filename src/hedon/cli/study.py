@@ -89,7 +89,7 @@ def _list(request: "Request", runs: Path, threads: int, console: "Console") -> N
 
 
 def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
-    from hedon.cli.display.plan import PlanDisplay
+    from hedon.cli.display.job import JobDisplay
     from hedon.jobs.process import run_jobs
     from hedon.record.provenance import usable_cpus
     from hedon.report.study import write_items
@@ -111,7 +111,7 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
         worlds = count(len(job.plan.seeds), "world")
         console.print(f"  {verb} {job.folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
     _require_folders(out, *([runs] if jobs else []))
-    with PlanDisplay(console, jobs) as display:
+    with JobDisplay(console, jobs) as display:
         outcomes = run_jobs(jobs, threads or usable_cpus(), display)
     gathered = gather(request, runs)
     for fault in gathered.faults:

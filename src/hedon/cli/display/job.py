@@ -22,7 +22,7 @@ SURE_SECONDS = 5.0
 """Time before which no forecast is made [s]."""
 
 
-class PlanDisplay(Screen):
+class JobDisplay(Screen):
     """Progress of all runs of a plan together, and of each current run. Use it as a context manager.
 
     Args:
