@@ -49,7 +49,7 @@ struct LearningGene {
   HEDON_FIELDS(LearningGene, sets, gene)
 };
 
-/// The layout of a genome: its genes in order. What a gene does stands where it is read: here for those that set
+/// The layout of a genome: its genes in order. What a gene does is described where it is read: here for those that set
 /// learning, and in `RewardTerm::gene`.
 struct GenomeConfig {
   MutationNoise mutation_noise;

@@ -38,7 +38,7 @@ GONE = {
     ("demography",): "it is `hedon forecast` now",
     ("assay", "start"): "it is `hedon assay stability` now",
 }
-"""Commands that there were once, with what stands in their place."""
+"""Commands that there were once, with what replaces them."""
 GONE_OPTIONS = {("run", "--device"): "--backend"}
 """Options of commands that have another name now."""
 

@@ -89,7 +89,7 @@ Each world, or each species of it, has these keys too. Where agents eat agents, 
 
 _SPECIES = """\
 Prey and predators are not averaged with one another: each species has numbers of its own, and sums over all of them are
-called totals. These keys stand in place of those of one species; a sweep's table has them as `prey.alive_mean` and
+called totals. These keys replace those of one species; a sweep's table has them as `prey.alive_mean` and
 `total_alive_mean`.
 """
 

@@ -1,4 +1,4 @@
-"""Do the paper's claims hold in these runs? The rules stand in `claim` and `order`; here they are applied.
+"""Do the paper's claims hold in these runs? The rules are in `claim` and `order`; here they are applied.
 
 There are two separate questions. *Does the claim hold here?* Our figure's interval against the region of the claim.
 *Do we differ from the paper?* A test of two samples, where the paper gives a count of its worlds; it gives no spread

@@ -1,7 +1,7 @@
 """The sequel to the paper, on predators, prey and pitfalls: what its figures show, and what we ask of the same worlds.
 
 Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992. Its claims and
-their rules stand in `hedon_studies.fear.claim`.
+their rules are in `hedon_studies.fear.claim`.
 """
 
 from collections.abc import Iterator

@@ -3,7 +3,7 @@
 A rule names a figure and the *region* in which the claim holds. The figure's 95 % interval over worlds decides: within
 the region the claim holds, outside of it it fails, across its border it is undecided. Whether our worlds differ from
 the paper's is another question; it can be asked where the paper gives a count of its worlds. The paper gives no spread
-for its tables, so "the same" means within a factor that is chosen here. Claims that compare two conditions stand in
+for its tables, so "the same" means within a factor that is chosen here. Claims that compare two conditions are in
 `order`.
 """
 

@@ -76,7 +76,7 @@ def regime(conditions: Conditions) -> list[ResultTable]:
         )
         shares = spent
     note = (
-        "Share of the steps; the rules stand in docs/guide/analysis.md. A weight is selected in another way in each: "
+        "Share of the steps; the rules are in docs/guide/analysis.md. A weight is selected in another way in each: "
         "starving worlds drift, food-limited ones compete, idle ones stand still."
     )
     summary = over_worlds(shares, (), {name: name for name in REGIMES})

@@ -59,7 +59,7 @@ class WorldRecord:
 
     @property
     def run_config(self) -> Config:
-        """The config of the run, as it stands in its folder."""
+        """The config of the run, as it is in its folder."""
         return self.config if self.whole is None else self.whole
 
     @property
