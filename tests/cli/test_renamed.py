@@ -8,6 +8,7 @@ import pytest
 from command import hedon
 from resumed_run import small_run
 
+from hedon.record.earlier import with_names
 from hedon.record.manifest import load_manifest
 
 
@@ -29,6 +30,11 @@ def test_a_variable_of_an_earlier_version_is_refused_with_the_new_one(monkeypatc
     monkeypatch.setenv("HEDON_KERNEL", "portable")
     answer = hedon("run", "baseline", "--steps", "1", "--out", str(tmp_path / "run"))
     assert (answer.returncode, answer.stderr) == (2, "hedon: HEDON_KERNEL: this variable is HEDON_BACKEND now\n")
+
+
+@pytest.mark.parametrize("content", [b"[]", b'"kernel"', b'{"kernel": 1, "sessions": 3}', b'{"sessions": ["kernel"]}'])
+def test_what_is_no_manifest_is_left_to_its_reader(content):
+    assert isinstance(json.loads(with_names(content)), type(json.loads(content)))
 
 
 def test_a_manifest_of_an_earlier_version_says_what_computed(tmp_path: Path):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from hedon.record.array_file import read_arrays
 from hedon.record.atomic import write_atomically
+from hedon.record.earlier import with_names
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_path, checkpoint_paths
 
@@ -124,7 +125,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
         digest = members.pop(_DIGEST).tobytes().decode()
         if digest != _digest(members):
             raise ValueError("its content does not match its digest")
-        head = _heads().validate_json(members.pop(_HEAD).tobytes())
+        head = _heads().validate_json(with_names(members.pop(_HEAD).tobytes()))
         if path.name != checkpoint_path(path.parent, head.step).name:
             raise ValueError(f"it is of step {head.step}, but its name gives another step")
         return Checkpoint(head, members)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hedon.record.atomic import write_atomically
+from hedon.record.earlier import with_names
 from hedon.record.error import RecordError
 from hedon.record.folder import MANIFEST
 from hedon.record.schema import FORMAT_VERSION, Columns
@@ -235,12 +236,8 @@ def load_manifest(folder: Path) -> Manifest:
     path = folder / MANIFEST
     try:
         content = path.read_bytes()
-        found = json.loads(content)
-        version = found["format_version"]
-        for each in (found, *found.get("sessions", ())):
-            if "kernel" in each:  # its name before 1.0
-                each["backend"] = each.pop("kernel")
-        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(json.dumps(found), strict=True)
+        version = json.loads(content)["format_version"]
+        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(with_names(content), strict=True)
     except OSError as error:
         raise RecordError(f"cannot read the manifest {path}: {error}") from error
     except (ValueError, KeyError, TypeError, RecursionError, RecordError) as error:
