@@ -152,7 +152,7 @@ def require_backend(backend: str | None) -> None:
     if backend not in (*known, EMULATED):
         near = nearest(backend, known)
         hint = f"; did you mean {near}?" if near else ""
-        raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(known)}, which this machine has{hint}")
+        raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(known)}{hint}")
     if is_device(backend) and (problem := device_problem(backend)):
         raise RunError(problem)
 
