@@ -27,7 +27,7 @@ LONGEST = (
     "test_mechanism_record.py",
     "test_picture.py",
     "test_fault.py",
-    "test_conduct.py",
+    "test_jobs.py",
     "test_cuda_run.py",
     "test_check_run.py",
     "test_site.py",
