@@ -14,17 +14,20 @@ unexport MAKEFLAGS
 # Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-long static sanitized sync cuda stubs viewer docs clean
+.PHONY: run test test-long suite static sanitized sync cuda stubs viewer docs clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
 	$(RUN) hedon run baseline --frames 64
 
+# All three side by side: each leaves a processor idle at times. What they install comes first.
 test: sync
-	$(MAKE) --no-print-directory --jobs=2 --output-sync=target static sanitized
+	$(UV) sync --quiet $(BROWSER) $(SITE) $(EXTRA) --group cuda
+	$(MAKE) --no-print-directory --jobs=3 --output-sync=line static sanitized suite
+
+suite:
 	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
-# Side by side, since each keeps one processor busy.
 static: sync
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .

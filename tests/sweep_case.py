@@ -15,11 +15,11 @@ from polars.testing import assert_frame_equal
 from resumed_run import SMALL
 
 from hedon.experiment.plan import Moment
+from hedon.jobs.store import Store
 from hedon.record.reader import open_run
 from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
-from hedon.sweep.store import Store, open_store
 from hedon.sweep.work import WORK, make_batch, make_task
 
 FACTORS = """
@@ -38,13 +38,13 @@ def sweep_file(folder: Path, steps: int = 320, seeds: int = 2, worlds: int = 2, 
 
 def planned(file: Path, location: str) -> tuple[SweepPlan, Store]:
     """The plan of a file, written to a place."""
-    store = open_store(location)
+    store = Store(location)
     return write_plan(read_sweep(file), store), store
 
 
 def table_of(location: str) -> pl.DataFrame:
     """The table of all worlds of a sweep."""
-    store = open_store(location)
+    store = Store(location)
     return collect(load_plan(store), store)
 
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from hedon.cli.display.job import JobDisplay
 from hedon.config import load_config
 from hedon.experiment.plan import Moment, RunPlan
-from hedon.jobs.process import next_share, run_jobs
+from hedon.jobs.process import make_here, next_share
 from hedon.jobs.run import RunJob
 from hedon.jobs.work import Outcome
 from hedon.record.lock import FolderLock
@@ -50,7 +50,7 @@ def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:
     jobs = [a_job(tmp_path / "a"), a_job(tmp_path / "b", growth=1.0)]
     stream, display = printed_display(jobs)
     with display:
-        outcomes = run_jobs(jobs, 4, display)
+        outcomes = make_here(jobs, 4, display)
     assert outcomes == {job.folder: Outcome("finished") for job in jobs}
     small_run(tmp_path / "alone-a", STEPS)
     small_run(tmp_path / "alone-b", STEPS, overrides=("food.normal.growth_rate=1.0",))
@@ -62,14 +62,14 @@ def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:
 def test_an_interrupted_plan_goes_on_to_the_same_end(tmp_path: Path) -> None:
     steps = 6400
     jobs = [a_job(tmp_path / "a", steps=steps), a_job(tmp_path / "b", steps=steps)]
-    outcomes = run_jobs(jobs, 2, Interrupting(jobs, 1))
+    outcomes = make_here(jobs, 2, Interrupting(jobs, 1))
     assert outcomes == {tmp_path / "a": Outcome("interrupted")}, "the second had not begun, and must not begin"
     done = load_manifest(tmp_path / "a").steps_done[0]
     assert 0 < done < steps
     assert done % 64 == 0, "a single Ctrl-C ends a run at the end of a window"
     assert not (tmp_path / "b").exists()
     again = [a_job(tmp_path / "a", steps=steps)]
-    assert run_jobs(again, 2, printed_display(again)[1]) == {tmp_path / "a": Outcome("finished")}
+    assert make_here(again, 2, printed_display(again)[1]) == {tmp_path / "a": Outcome("finished")}
     small_run(tmp_path / "alone", steps)
     assert_same_run(tmp_path / "a", tmp_path / "alone")
 
@@ -78,7 +78,7 @@ def test_a_run_that_fails_leaves_the_others_alone(tmp_path: Path) -> None:
     jobs = [a_job(tmp_path / "held"), a_job(tmp_path / "free")]
     stream, display = printed_display(jobs)
     with FolderLock(tmp_path / "held"):
-        outcomes = run_jobs(jobs, 1, display)
+        outcomes = make_here(jobs, 1, display)
     assert outcomes[tmp_path / "held"].status == "failed"
     assert "in use by another run" in outcomes[tmp_path / "held"].fault
     assert outcomes[tmp_path / "free"] == Outcome("finished")
@@ -111,5 +111,5 @@ def test_each_world_has_a_thread_and_the_last_run_what_is_left(
 def test_no_job_is_no_work() -> None:
     stream, display = printed_display([])
     with display:
-        assert run_jobs([], 2, display) == {}
+        assert make_here([], 2, display) == {}
     assert stream.getvalue() == ""

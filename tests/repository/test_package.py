@@ -46,6 +46,7 @@ def try_installed(folder: Path, package: Path, path: str | None) -> None:
     digests = json.loads((folder / "small" / "manifest.json").read_text())["world_digests"]
     assert digests == world_digests(folder / "here")
     run(hedon, "view", "small", "--export", "site", path=path, cwd=folder)
+    assert "kanagawa-doya-2024: " in run(hedon, "study", "list", path=path, cwd=folder)
     assert (folder / "site" / "hedon.wasm").is_file()
     place = run(python, "-c", "import hedon; print(hedon.__file__)", path=path, cwd=folder)
     assert Path(place.strip()).is_relative_to(folder)
@@ -66,7 +67,9 @@ def test_a_wheel_of_the_source_needs_no_compiler(source: Path, tmp_path: Path) -
     assert "manylinux_2_" in wheel.name
     assert wheel.stat().st_size < LARGEST
     with zipfile.ZipFile(wheel) as content:
-        assert not [name for name in content.namelist() if name.startswith(("tests", "engine")) or ".libs/" in name]
+        names = content.namelist()
+    assert not [name for name in names if name.startswith(("tests", "engine", "benchmarks")) or ".libs/" in name]
+    assert {"hedon/analysis/__init__.pyi", "hedon_studies/fear/study.py"} <= set(names)
     nothing = tmp_path / "nothing"
     nothing.mkdir()
     (nothing / "sh").symlink_to("/bin/sh")

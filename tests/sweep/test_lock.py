@@ -10,8 +10,8 @@ import pytest
 from sweep_case import planned, sweep_file
 
 from hedon.error import HedonError
-from hedon.sweep.lock import lock
-from hedon.sweep.store import open_store
+from hedon.jobs.lock import lock
+from hedon.jobs.store import Store
 from hedon.sweep.work import WORK, make_batch, make_task
 
 START = "from hedon.cli.start import main; main()"
@@ -38,12 +38,12 @@ def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
     said = " ".join(second.stderr.split())
     assert said.startswith(f"hedon: {place} is being made by another process"), said
     assert said.endswith("wait for it, stop it first, or give each its --part"), said
-    with lock(open_store(str(place)), (1, 1)):
+    with lock(Store(str(place)), (1, 1)):
         """What a process held, it holds no more when it has ended."""
 
 
 def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
-    store = open_store(str(tmp_path / "parts"))
+    store = Store(str(tmp_path / "parts"))
     with lock(store, (3, 10)):
         for other in ((4, 10), (2, 2), (4, 20)):
             with lock(store, other):

@@ -20,11 +20,12 @@ from typing import Any
 import pytest
 from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
 
-from hedon.sweep.cluster import LOCAL, import_ray, run_on_ray
+from hedon.jobs.cluster import LOCAL, import_ray
+from hedon.jobs.process import Silent
+from hedon.jobs.retry import TRIES
+from hedon.jobs.store import Store
 from hedon.sweep.plan import load_plan
-from hedon.sweep.retry import TRIES
-from hedon.sweep.run import Silent, run_sweep
-from hedon.sweep.store import open_store
+from hedon.sweep.run import run_sweep
 from hedon.sweep.work import RUNS, make_batch, make_task
 
 pytestmark = pytest.mark.skipif(
@@ -100,7 +101,7 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
         killer = threading.Thread(target=kill_in_the_middle, daemon=True)
         killer.start()
         try:
-            outcomes = run_on_ray(plan, store, str(cluster.address), Silent(), 0.0)
+            outcomes = run_sweep(plan, store, Silent(), 0.0, ray=str(cluster.address))
         finally:
             over.set()
             killer.join()
@@ -132,7 +133,7 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     killer = threading.Thread(target=kill_one, daemon=True)
     killer.start()
     try:
-        outcomes = run_on_ray(plan, store, LOCAL, Silent(), 1e9, workers=1)
+        outcomes = run_sweep(plan, store, Silent(), 1e9, 1, ray=LOCAL)
     finally:
         over.set()
         killer.join()
@@ -143,7 +144,7 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     worlds = plan.batches()[0]
     value = plan.settings[worlds.condition]["energy.basic_cost"]
     assert f"energy.basic_cost = {value}, seed {worlds.seeds[0]}." in outcomes[doomed].fault
-    assert {name: outcome.status for name, outcome in run_sweep(plan, store, 1, Silent(), 1e9).items()} == {
+    assert {name: outcome.status for name, outcome in run_sweep(plan, store, Silent(), 1e9, 1).items()} == {
         doomed: "finished"
     }
     assert_same_table(table_of(store.location), whole)
@@ -166,11 +167,11 @@ def test_ctrl_c_keeps_what_was_done_on_a_cluster(tmp_path):
         sweep.kill()
     assert sweep.returncode == 0
     assert "Interrupted: 0 of 2 batches are done, and kept." in said
-    plan, store = load_plan(open_store(str(place))), open_store(str(place))
-    run_sweep(plan, store, 2, Silent(), 1e9)
+    plan, store = load_plan(Store(str(place))), Store(str(place))
+    run_sweep(plan, store, Silent(), 1e9, 2)
     sessions = [json.loads(path.read_text())["sessions"] for path in (place / RUNS).glob("*/manifest.json")]
     (_, second), (_,) = sorted(sessions, key=len, reverse=True)
     assert second["from_step"] > 0, "one was under way"
     alone, other = planned(file, str(tmp_path / "alone"))
-    run_sweep(alone, other, 2, Silent(), 1e9)
+    run_sweep(alone, other, Silent(), 1e9, 2)
     assert_same_table(table_of(str(place)), table_of(other.location))

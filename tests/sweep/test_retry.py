@@ -6,8 +6,8 @@ import zipfile
 import pytest
 from sweep_case import planned, sweep_file
 
-from hedon.sweep.retry import TRIES, RetryLimit
-from hedon.sweep.store import Store
+from hedon.jobs.retry import TRIES, RetryLimit
+from hedon.jobs.store import Store
 from hedon.sweep.work import STATE, Task, make_task
 
 
@@ -28,7 +28,7 @@ def write_checkpoint(store: Store, task: Task, step: int) -> None:
 def test_a_batch_is_given_up_where_it_gets_no_further(tmp_path, kind):
     plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place") if kind == "folder" else f"file://{tmp_path}/x")
     one, other = (make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches())
-    retries = RetryLimit(store)
+    retries = RetryLimit()
     assert [retries.may_go_on(one) for _ in range(TRIES)] == [True] * (TRIES - 1) + [False]
     for step in (0, 1024):
         write_checkpoint(store, other, step)
@@ -40,7 +40,7 @@ def test_the_reason_names_the_worlds_and_what_to_do(tmp_path):
     plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place"))
     batch = plan.batches()[0]
     cost = plan.settings[batch.condition]["energy.basic_cost"]
-    reason = RetryLimit(store).reason(
+    reason = RetryLimit().reason(
         make_task(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
     )
     assert f"lost {TRIES} times in a row without a new checkpoint, the last time with: Out of memory. Its" in reason

@@ -24,7 +24,7 @@ from sweep_case import (
     table_of,
 )
 
-from hedon.sweep.store import PASSING, open_store
+from hedon.jobs.store import PASSING, Store
 from hedon.sweep.work import make_batch, make_task
 
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
@@ -63,14 +63,14 @@ socket.socket.sendmsg = lambda self, parts, *rest: send_some(self, next(filter(l
 """
 """Ends this process by SIGKILL at a place of the talk with the server."""
 WRITER = """
-from hedon.sweep.store import open_store
+from hedon.jobs.store import Store
 
-open_store(sys.argv[3]).write("results/one", b"new" * (int(sys.argv[2]) * 2 // 3))
+Store(sys.argv[3]).write("results/one", b"new" * (int(sys.argv[2]) * 2 // 3))
 """
 MAKER = """
 from pathlib import Path
 from hedon.sweep.plan import load_plan
-from hedon.sweep.store import UrlStore, open_store
+from hedon.jobs.store import Store
 from hedon.sweep.work import make_batch, make_task
 
 url, folder = sys.argv[3:]
@@ -82,7 +82,7 @@ def told_write(self, name, content):
     die(f"after {name.partition('/')[0]}")
 
 UrlStore.write = told_write
-plan = load_plan(open_store(url))
+plan = load_plan(Store(url))
 make_batch(make_task(url, plan, plan.batches()[0], Path(folder), 0.0), 1, None)
 """
 
@@ -155,7 +155,7 @@ def run_dying(program: str, *words: str | Path) -> None:
 )
 def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(server, bucket, place, size, named, left):
     """At each place of its talk with the server; what has a name then has all of its old or its new content."""
-    store = open_store(bucket)
+    store = Store(bucket)
     store.write("results/one", b"old")
     run_dying(WRITER, place, str(size // 2), bucket)
     content = b"new" * (size // 2 * 2 // 3)

@@ -4,14 +4,14 @@ import pytest
 from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, sweep_file
 
 from hedon.error import HedonError
-from hedon.sweep.store import PASSING, UrlStore, open_store
+from hedon.jobs.store import PASSING, Store
 from hedon.sweep.work import STATE, make_batch, make_task
 
 
 @pytest.fixture(params=["folder", "file", "memory"])
 def store(request, tmp_path):
     place = {"folder": str(tmp_path), "file": f"file://{tmp_path}", "memory": f"memory://{tmp_path}"}
-    return open_store(place[request.param] + "/sweep")
+    return Store(place[request.param] + "/sweep")
 
 
 def test_contents_are_kept_by_name(store):
@@ -30,13 +30,13 @@ def test_contents_are_kept_by_name(store):
 
 def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     """A writer that ends between writing and naming leaves what no reader sees."""
-    store = open_store(f"file://{tmp_path}")
+    store = Store(f"file://{tmp_path}")
     store.write("a/b", b"old")
 
     def die(*_arguments: object, **_options: object) -> None:
         raise KeyboardInterrupt
 
-    assert isinstance(store, UrlStore)
+    assert isinstance(store, Store)
     monkeypatch.setattr(type(store._system), "mv", die)
     with pytest.raises(KeyboardInterrupt):
         store.write("a/b", b"new")
@@ -50,8 +50,8 @@ class DriverError(Exception):
 
 
 def test_errors_of_any_kind_of_a_place_are_one_message(tmp_path, monkeypatch):
-    store = open_store(f"file://{tmp_path}")
-    assert isinstance(store, UrlStore)
+    store = Store(f"file://{tmp_path}")
+    assert isinstance(store, Store)
 
     def fail(*_arguments: object, **_options: object) -> None:
         raise DriverError("no keys")
@@ -89,4 +89,4 @@ def test_two_processes_that_make_one_sweep_harm_no_row(tmp_path):
 
 def test_a_url_of_no_kind_is_refused():
     with pytest.raises(HedonError, match="nosuch://x"):
-        open_store("nosuch://x/y")
+        Store("nosuch://x/y")

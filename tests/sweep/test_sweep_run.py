@@ -15,13 +15,14 @@ from typer.testing import CliRunner
 
 from hedon.cli.main import app
 from hedon.error import HedonError
+from hedon.jobs.part import parse_part
+from hedon.jobs.process import Silent
+from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
-from hedon.sweep.part import parse_part
 from hedon.sweep.plan import load_plan, plan_sweep
 from hedon.sweep.read import read_sweep
-from hedon.sweep.run import Silent, open_batches, run_sweep
+from hedon.sweep.run import open_batches, run_sweep
 from hedon.sweep.status import sweep_status
-from hedon.sweep.store import open_store
 from hedon.sweep.work import RESULTS, WORK, make_batch, make_task
 
 START = "from hedon.cli.start import main; main()"
@@ -60,13 +61,13 @@ def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
     os.killpg(begun.pid, signal.SIGKILL)
     begun.wait()
     assert not list((place / RESULTS).glob("*")), "it was to be killed before its first result"
-    plan, store = load_plan(open_store(str(place))), open_store(str(place))
+    plan, store = load_plan(Store(str(place))), Store(str(place))
     assert 0 < max(sweep_status(plan, store).begun.values()) < 1
-    outcomes = run_sweep(plan, store, 2, Silent(), 1e9)
+    outcomes = run_sweep(plan, store, Silent(), 1e9, 2)
     assert {outcome.status for outcome in outcomes.values()} == {"finished"}
     assert_same_table(table_of(str(place)), whole)
     assert not list((place / WORK).glob("*"))
-    assert run_sweep(plan, store, 2, Silent(), 1e9) == {}, "nothing finished is done again"
+    assert run_sweep(plan, store, Silent(), 1e9, 2) == {}, "nothing finished is done again"
     assert sorted(zip(whole["condition"], whole["repetition"], whole["seed"], strict=True)) == [
         (0, 1, 1), (0, 2, 2), (1, 1, 1), (1, 2, 2)
     ]  # fmt: skip
@@ -109,12 +110,12 @@ def test_a_batch_that_fails_harms_no_other_and_is_tried_again(tmp_path):
     config = place / "configs" / "c00001.toml"
     whole = config.read_text()
     config.write_text("broken = ")
-    outcomes = run_sweep(plan, store, 1, Silent(), 1e9)
+    outcomes = run_sweep(plan, store, Silent(), 1e9, 1)
     assert outcomes["c00000-r00001"].status == "finished"
     assert outcomes["c00001-r00001"].status == "failed"
     assert "c00001.toml" in outcomes["c00001-r00001"].fault
     config.write_text(whole)
-    assert {name: o.status for name, o in run_sweep(plan, store, 1, Silent(), 1e9).items()} == {
+    assert {name: o.status for name, o in run_sweep(plan, store, Silent(), 1e9, 1).items()} == {
         "c00001-r00001": "finished"
     }
 
@@ -185,4 +186,4 @@ def test_a_script_for_slurm_has_a_task_for_each_batch_at_most(tmp_path):
     text = (tmp_path / "a sweep.sh").read_text()
     assert "#SBATCH --array=1-2\n#SBATCH --cpus-per-task=3\n#SBATCH --time=2:00:00\n" in text
     assert f"sweep resume '{place}' --workers 3 --checkpoint 180 --part \"$SLURM_ARRAY_TASK_ID/2\"" in text
-    assert load_plan(open_store(str(place))).steps == 320
+    assert load_plan(Store(str(place))).steps == 320

@@ -13,11 +13,8 @@ from hedon.assay.landscape import AssayError
 from hedon.config.config import Config
 from hedon.record.founder_source import parse_point
 from hedon.record.reader import open_run
+from hedon.study.catalogue import reported_figures
 from hedon.text import brief
-
-PAPER_ENDS = ("food=5,action=5", "food=5,action=-0.5")
-"""Our reading of where the paper's baseline ends: food "mostly above 4", action "largely positive or slightly
-negative". It prints no numbers (docs/model.md, section 14)."""
 
 
 @dataclass(frozen=True)
@@ -27,18 +24,18 @@ class End:
     Attributes:
         source: file or run, and the world's seed.
         weights: by column of the genome.
-        of_paper: whether it is our reading of the paper.
+        reported: whether a study's source reports it, and no run.
     """
 
     source: str
     weights: Mapping[str, float]
-    of_paper: bool = False
+    reported: bool = False
 
 
 def read_ends(path: Path, config: Config) -> list[End]:
-    """The ends of the worlds that a run's folder, its `summary.json`, or a `reproduction.json` has.
+    """The ends of the worlds that a run's folder, its `summary.json`, or a `study.json` has.
 
-    Of a reproduction with several conditions only the rows of the config's own condition count, if there are any; of a
+    Of studies with several conditions only the rows of the config's own condition count, if there are any; of a
     run with several species, the species that the config has first.
 
     Args:
@@ -69,9 +66,9 @@ def read_ends(path: Path, config: Config) -> list[End]:
         except (OSError, ValueError) as error:
             raise AssayError(f"--ends {name}: cannot be read: {error}") from None
         if not isinstance(content, dict):
-            raise AssayError(f"--ends {name}: is neither a summary.json nor a reproduction.json")
+            raise AssayError(f"--ends {name}: is neither a summary.json nor a study.json")
         ends = _summary_ends(content, path, config) if "worlds" in content and "tables" not in content else []
-        ends = ends or _reproduction_ends(content, path, config)
+        ends = ends or _study_ends(content, path, config)
     if not ends:
         raise AssayError(f"--ends {name}: has no mean weights of a world")
     return ends
@@ -87,7 +84,7 @@ def _summary_ends(content: Mapping[str, Any], path: Path, config: Config) -> lis
     return ends
 
 
-def _reproduction_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
+def _study_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
     """From tables with a row per world and weight (`drift_world`), else from those with a row per world."""
     tables = content.get("tables", {})
     rows = [row for table in tables.values() for row in table.get("rows", [])]
@@ -96,7 +93,7 @@ def _reproduction_ends(content: Mapping[str, Any], path: Path, config: Config) -
     wide = [row for row in rows if {"w_food", "w_action", "seed"} <= row.keys()]
     kinds = list(config.food)
     for row in _own(tall, config) or _own(wide, config):
-        point = points.setdefault((str(row.get("arm", "")), row["seed"]), {})
+        point = points.setdefault((_condition(row), row["seed"]), {})
         if "weight" in row:
             point[row["weight"]] = row["mean"]
         else:
@@ -106,7 +103,7 @@ def _reproduction_ends(content: Mapping[str, Any], path: Path, config: Config) -
 
 
 def _own(rows: Sequence[dict[str, Any]], config: Config) -> Sequence[dict[str, Any]]:
-    own = [row for row in rows if str(row.get("arm", "")).split(" ")[0] in (config.name, config.preset)]
+    own = [row for row in rows if _condition(row).split(" ")[0] in (config.name, config.preset)]
     return own or rows
 
 
@@ -114,9 +111,18 @@ def _known(value: Any) -> bool:
     return isinstance(value, int | float) and math.isfinite(value)
 
 
-def paper_ends(config: Config) -> list[End]:
-    """Where the paper's baseline ends, in the genes of a config."""
-    return [End(f"paper: {text}", parse_point(text, config), of_paper=True) for text in PAPER_ENDS]
+def reported_ends(config: Config) -> list[End]:
+    """Where worlds of a config's preset end by what the sources of studies report, in the genes of the config."""
+    return [
+        End(f"{name}: {text}", parse_point(text, config), reported=True)
+        for name, source in reported_figures(config.preset).items()
+        for text in source.get("ends", ())
+    ]
+
+
+def _condition(row: Mapping[str, Any]) -> str:
+    """The condition of a table's row; tables of earlier versions call it an arm."""
+    return str(row.get("condition", row.get("arm", "")))
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:

@@ -55,9 +55,9 @@ def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurf
     ]
     axes.errorbar(*best, xerr=bars[0], yerr=bars[1], fmt="*", color=VERMILION, ms=13, mec="white", label="optimum")
     found = on_surface(ends, landscape.genes)
-    for paper, marker, label in ((True, "D", "the paper's baseline"), (False, "o", "ends of runs")):
+    for reported, marker, label in ((True, "D", "ends that studies report"), (False, "o", "ends of runs")):
         points = [
-            (a, b) for end, (a, b) in found if end.of_paper == paper and x[0] <= a <= x[-1] and y[0] <= b <= y[-1]
+            (a, b) for end, (a, b) in found if end.reported == reported and x[0] <= a <= x[-1] and y[0] <= b <= y[-1]
         ]
         if points:
             axes.scatter(

@@ -7,7 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.assay.surface import Estimate
 from hedon.config.config import Config
 from hedon.config.dump import digest

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import Contest
 from hedon.assay.report import estimate_row
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.stability import VERDICTS, Stability
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 

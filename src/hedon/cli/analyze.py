@@ -24,7 +24,7 @@ def analyze(
 
     \b
     Topics:
-      verdict     the paper's claims: holds, fails or undecided
+      verdict     claims of studies about these conditions: holds, fails or undecided
       regime      starving, limited by food, or full and idle, over time
       lifetime, food, energy, reproduction, generation   single lives
       genealogy   common descent, founder families, lines of the survivors

@@ -1,7 +1,6 @@
 """`hedon assay`: measure fitness directly, with founders of chosen genes."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,10 +15,8 @@ from hedon.text import printable
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.analysis.table import ResultTable
-    from hedon.assay.run import Show
-    from hedon.experiment.plan import Display, RunPlan
-    from hedon.record.manifest import Manifest
+    from hedon.analysis.result import ResultTable
+    from hedon.experiment.plan import RunPlan
     from hedon.record.reader import Run
 
 app = typer.Typer(
@@ -56,7 +53,7 @@ def landscape(
     ] = None,
     ends: Annotated[
         list[Path] | None,
-        typer.Option(metavar="RUN|FILE", help="Show where these runs, summary.json or reproduction.json ended."),
+        typer.Option(metavar="RUN|FILE", help="Show where these runs, summary.json or study.json ended."),
     ] = None,
     fidelity: Fidelity = None,
     overrides: Overrides = None,
@@ -79,7 +76,7 @@ def landscape(
       hedon assay landscape predator --species prey --genes see_predator,see_prey
       hedon assay landscape baseline --set population.initial_count=100 --ends runs/baseline-corrected-s1-5
     """
-    from hedon.assay.end import paper_ends, read_ends
+    from hedon.assay.end import read_ends, reported_ends
     from hedon.assay.landscape import assay_config, measure_landscape, spread_founders
     from hedon.assay.option import assay_plan, choose_genes, parse_spread
     from hedon.assay.report_landscape import landscape_tables, write_landscape
@@ -90,7 +87,7 @@ def landscape(
     own = choose_species(species, config)
     mine = config if own is None else of_species(config, own)
     pair = choose_genes(genes, mine)
-    found = [] if own else paper_ends(config)
+    found = [] if own else reported_ends(config)
     found += [end for path in ends or () for end in read_ends(path, mine)]
     founders = spread_founders(config, parse_spread(spread, sd, mine), own)
     plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
@@ -106,14 +103,33 @@ def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | N
     """The runs of an assay, made or read; None if one was interrupted, which it prints.
 
     Args:
-        plans: Of its runs.
-        console: Where it prints.
-    """
-    from hedon.assay.run import make_runs
+        plans: Of the runs.
+        console: To print on.
 
-    made = make_runs(plans, _shower(console))
-    if made.finished:
-        return made.runs
+    Raises:
+        RecordError: A folder holds a run with other settings, founders or seeds.
+        JobError: A run failed.
+    """
+    from hedon.cli.display.job import JobDisplay
+    from hedon.jobs.error import JobError
+    from hedon.jobs.make import make_jobs
+    from hedon.jobs.run import RunJob, unfinished
+    from hedon.record.reader import open_run
+
+    jobs = [RunJob(plan, plan.steps * len(plan.seeds)) for plan in unfinished(plans)]
+    for job in jobs:
+        config, plan = job.plan.config, job.plan
+        console.print(
+            f"hedon: {config.name} ({config.fidelity}), {len(plan.seeds)} worlds, {plan.steps:,} steps, "
+            f"into {printable(str(plan.out))}",
+            soft_wrap=True,
+        )
+    with JobDisplay(console, jobs) as display:
+        outcomes = make_jobs(jobs, display, plans[0].threads)
+    if faults := [outcome.fault for outcome in outcomes.values() if outcome.status == "failed"]:
+        raise JobError(faults[0])
+    if all(folder in outcomes and outcomes[folder].status == "finished" for folder in (job.folder for job in jobs)):
+        return tuple(open_run(plan.out) for plan in plans)
     console.print("Interrupted; all results so far are kept. The same command goes on.")
     return None
 
@@ -130,20 +146,3 @@ def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Con
 
     console.print(analysis_group({table.name: table for table in tables}))
     console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
-
-
-def _shower(console: "Console") -> "Show":
-    def show(plan: "RunPlan", go: "Callable[[Display], Manifest]") -> "Manifest":
-        from hedon.cli.display.run import make_display
-        from hedon.record.schema import columns_of
-
-        config = plan.config
-        console.print(
-            f"hedon: {config.name} ({config.fidelity}), {len(plan.seeds)} worlds, {plan.steps:,} steps, "
-            f"into {printable(str(plan.out))}",
-            soft_wrap=True,
-        )
-        with make_display(console, replace(columns_of(config), neutral_count=0), plan.seeds) as display:
-            return go(display)
-
-    return show

@@ -9,7 +9,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, assay_contest, assay_stability, config, sweep
+from hedon.cli import assay, assay_contest, assay_stability, config, study, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
@@ -20,7 +20,6 @@ from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
-from hedon.cli.study import reproduce
 from hedon.cli.video import video
 from hedon.cli.view import view
 from hedon.error import HedonError
@@ -34,6 +33,7 @@ ADDRESSES = 2_000_000_000
 """Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
 
 GONE = {
+    ("reproduce",): "call `hedon study`: list, plan, run and report, with the same names of items",
     ("bench",): "the benchmarks are not in the package any more: call `uv run python -m benchmarks` in a checkout",
     ("demography",): "it is `hedon forecast` now",
     ("assay", "start"): "it is `hedon assay stability` now",
@@ -58,7 +58,6 @@ app.command()(branch)
 app.command()(view)
 app.command()(video)
 app.command()(report)
-app.command()(reproduce)
 app.command()(analyze)
 app.command()(forecast)
 app.command()(export)
@@ -69,6 +68,7 @@ assay_contest.add_to(assay.app)
 assay_stability.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
 app.add_typer(sweep.app, name="sweep")
+app.add_typer(study.app, name="study")
 app.add_typer(config.app, name="config")
 
 
@@ -97,7 +97,7 @@ def _hedon(
       hedon view --live
       hedon report runs/poison
       hedon analyze runs/poison --only selection,drift
-      hedon reproduce list
+      hedon study list
       hedon assay landscape baseline
       hedon sweep run cost.toml
       hedon presets

@@ -18,12 +18,12 @@ def report(
         Path | None, typer.Option(help="Folder of the report; by default RUN itself, or report for several runs.")
     ] = None,
 ) -> None:
-    """Summarize runs on one page, with figures, tables and the paper's claims.
+    """Summarize runs on one page, with figures, tables and the claims of studies about them.
 
     Writes report.html (one file that holds everything, for any browser), report.md, figures/*.png and analysis/
     (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints our
-    numbers next to the paper's. Also works on runs that are still running, were interrupted or have damaged files;
-    the report then says so.
+    numbers next to those that studies report of the preset. Also works on runs that are still running, were interrupted
+    or have damaged files; the report then says so.
 
     \b
     Examples:

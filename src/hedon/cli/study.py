@@ -1,4 +1,4 @@
-"""`hedon reproduce`: the paper's figures and tables, each from one command."""
+"""`hedon study`: questions, the worlds that answer them, and pages of what came out."""
 
 import os
 from pathlib import Path
@@ -7,93 +7,178 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Threads, parse_seeds
+from hedon.cli.run import Ray, Threads, parse_seeds
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.console import Console
 
     from hedon.jobs.run import RunJob
     from hedon.study.request import Request
+    from hedon.study.study import Study
 
-LIST = "list"
+QUICK = ((1,), 2048)
+"""Seeds and steps of a trial that everything works."""
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Run studies: questions with their claims, figures and tables. docs/guide/study.md explains it.",
+)
 
 
-class ReproduceError(HedonError):
-    """Some runs failed; the items that do not need them have been made."""
+class RunsError(HedonError):
+    """Some runs of a study failed; the items that do not need them have been made."""
 
 
-def reproduce(
-    items: Annotated[
-        list[str] | None, typer.Argument(metavar="[ITEM]...", help="Items or groups; list ITEM... shows only these.")
-    ] = None,
-    seeds: Annotated[
-        str | None,
-        typer.Option(help="One world per seed, as in 1-5; by default, and for pictures, the item's own."),
-    ] = None,
-    steps: Annotated[
-        int | None,
-        typer.Option(help="Steps of each world; by default, and for pictures, the item's own.", min=1, max=MAX_STEPS),
-    ] = None,
-    fidelity: Annotated[str, typer.Option(help="corrected, released or text.")] = "corrected",
+Names = Annotated[list[str], typer.Argument(metavar="NAME...", help="Studies, items of them, or all.")]
+Seeds = Annotated[
+    str | None, typer.Option(help="One world per seed, as in 1-5; by default, and for pictures, the item's own.")
+]
+Steps = Annotated[
+    int | None,
+    typer.Option(help="Steps of each world; by default, and for pictures, the item's own.", min=1, max=MAX_STEPS),
+]
+FidelityName = Annotated[str, typer.Option("--fidelity", help="corrected, released or text.")]
+Quick = Annotated[
+    bool, typer.Option("--quick", help="One seed and 2,048 steps, to see that everything works; it tells nothing.")
+]
+Runs = Annotated[Path, typer.Option(help="Folder of the runs: existing runs are used, missing ones are added.")]
+Out = Annotated[
+    Path | None, typer.Option(help="Folder of the page, the figures and the tables; by default studies/NAME.")
+]
+
+
+@app.command("list")
+def list_studies() -> None:
+    """Name the studies and their items. Other packages may bring studies too.
+
+    \b
+    Example:
+      hedon study list
+    """
+    from hedon.cli.display.listing import catalogue
+    from hedon.study.catalogue import installed
+
+    studies, faults = installed()
+    make_console().print(catalogue(studies.values()))
+    for fault in faults.values():
+        typer.echo(f"hedon: note: left out: {fault}", err=True)
+
+
+@app.command()
+def plan(
+    names: Names,
+    seeds: Seeds = None,
+    steps: Steps = None,
+    fidelity: FidelityName = "corrected",
+    quick: Quick = False,
     threads: Threads = 0,
-    runs: Annotated[
-        Path, typer.Option(help="Folder of the runs: existing runs are used, missing ones are added.")
-    ] = Path("runs"),
-    out: Annotated[Path, typer.Option(help="Folder of the page, the figures and the tables.")] = Path("reproduction"),
+    runs: Runs = Path("runs"),
 ) -> None:
-    """Make the paper's figures and tables, and our own studies.
-
-    `hedon reproduce list` shows the items, with what each needs and how long it takes on this machine. Existing runs
-    are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds that die out
-    count and are never replaced. Ctrl-C ends all runs after their current windows, a second one immediately; the same
-    command continues. Without an ITEM it makes all of the paper, at the paper's scale: check first how long that takes.
-
-    Groups: paper (all figures and tables of the paper), studies, all.
+    """Say what each item needs, and measure how long it takes on this machine; nothing is run.
 
     \b
     Examples:
-      hedon reproduce list
-      hedon reproduce hazard birth walk body parameters
-      hedon reproduce weights-baseline --seeds 1-2 --steps 1024000
-      hedon reproduce list paper --seeds 1-2 --steps 1024000
-      hedon reproduce faults
+      hedon study plan kanagawa-doya-2024
+      hedon study plan weights-baseline history-baseline --seeds 1-2 --steps 1024000
     """
-    # Imported here because this takes seconds: other commands must not wait for it.
-    from hedon.config import FIDELITIES
-    from hedon.config.problem import nearest
-    from hedon.study.choice import choose_items
-    from hedon.study.request import Request
-
-    names = items or []
-    if fidelity not in FIDELITIES:
-        near = nearest(fidelity, FIDELITIES)
-        hint = f"; did you mean {near}?" if near else ""
-        raise ReproduceError(f"--fidelity: {fidelity!r} is not one of {', '.join(FIDELITIES)}{hint}")
-    listed = names[:1] == [LIST]
-    chosen = choose_items(names[1:] or ["all"] if listed else names)
-    request = Request(chosen, fidelity, parse_seeds(seeds) if seeds is not None else None, steps)
-    console = make_console()
-    if listed:
-        _list(request, runs, threads, console)
-    else:
-        _make(request, runs, out, threads, console)
-
-
-def _list(request: "Request", runs: Path, threads: int, console: "Console") -> None:
     from hedon.cli.display.listing import listing
     from hedon.study.cost import request_cost
 
-    console.print(listing(request, request_cost(request, runs, threads)))
+    _, request = _request(names, seeds, steps, fidelity, quick=quick)
+    make_console().print(listing(request, request_cost(request, runs, threads)))
 
 
-def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Console") -> None:
+@app.command()
+def run(
+    names: Names,
+    seeds: Seeds = None,
+    steps: Steps = None,
+    fidelity: FidelityName = "corrected",
+    quick: Quick = False,
+    threads: Threads = 0,
+    ray: Ray = None,
+    runs: Runs = Path("runs"),
+    out: Out = None,
+) -> None:
+    """Make the runs that are missing, then the report.
+
+    Existing runs are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds
+    that die out count and are never replaced. Ctrl-C ends all runs after their current windows, a second one
+    immediately; the same command continues. At the scale of a paper this takes days: ask `hedon study plan` first.
+
+    \b
+    Examples:
+      hedon study run hazard birth walk body parameters
+      hedon study run weights-baseline --seeds 1-2 --steps 1024000
+      hedon study run fear --quick
+    """
+    studies, request = _request(names, seeds, steps, fidelity, quick=quick)
+    _make(studies, request, runs, out or _folder(studies), threads, ray, make_console())
+
+
+@app.command()
+def report(
+    names: Names,
+    seeds: Seeds = None,
+    steps: Steps = None,
+    fidelity: FidelityName = "corrected",
+    runs: Runs = Path("runs"),
+    out: Out = None,
+) -> None:
+    """Make figures, tables, verdicts and one page from the runs that are there.
+
+    \b
+    Example:
+      hedon study report kanagawa-doya-2024
+    """
+    studies, request = _request(names, seeds, steps, fidelity)
+    folder = out or _folder(studies)
+    _require_folders(folder)
+    _report(studies, request, runs, folder, make_console())
+
+
+def _request(
+    names: "Sequence[str]", seeds: str | None, steps: int | None, fidelity: str, *, quick: bool = False
+) -> "tuple[tuple[Study, ...], Request]":
+    # Imported here because this takes seconds: other commands must not wait for it.
+    from hedon.config import FIDELITIES
+    from hedon.config.problem import nearest
+    from hedon.study.catalogue import choose
+    from hedon.study.request import Request
+
+    if fidelity not in FIDELITIES:
+        near = nearest(fidelity, FIDELITIES)
+        hint = f"; did you mean {near}?" if near else ""
+        raise RunsError(f"--fidelity: {fidelity!r} is not one of {', '.join(FIDELITIES)}{hint}")
+    if quick and (seeds is not None or steps is not None):
+        raise RunsError("--quick: has seeds and steps of its own: leave out --seeds and --steps")
+    studies = choose(names)
+    items = tuple(item for study in studies for item in study.items)
+    own = QUICK if quick else (parse_seeds(seeds) if seeds is not None else None, steps)
+    return studies, Request(items, fidelity, *own)
+
+
+def _folder(studies: "Sequence[Study]") -> Path:
+    return Path("studies") / (studies[0].name if len(studies) == 1 else "several")
+
+
+def _make(
+    studies: "Sequence[Study]",
+    request: "Request",
+    runs: Path,
+    out: Path,
+    threads: int,
+    ray: str | None,
+    console: "Console",
+) -> None:
     from hedon.cli.display.job import JobDisplay
-    from hedon.jobs.process import run_jobs
-    from hedon.record.provenance import usable_cpus
-    from hedon.report.study import write_items
-    from hedon.study.gather import find_runs, gather
+    from hedon.jobs.make import make_jobs
+    from hedon.study.gather import find_runs
     from hedon.study.plan import plan_jobs
     from hedon.study.request import needs
 
@@ -112,15 +197,22 @@ def _make(request: "Request", runs: Path, out: Path, threads: int, console: "Con
         console.print(f"  {verb} {job.folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
     _require_folders(out, *([runs] if jobs else []))
     with JobDisplay(console, jobs) as display:
-        outcomes = run_jobs(jobs, threads or usable_cpus(), display)
+        outcomes = make_jobs(jobs, display, threads, ray)
+    _report(studies, request, runs, out, console)
+    _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
+
+
+def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Path, console: "Console") -> None:
+    from hedon.report.study import write_studies
+    from hedon.study.gather import gather
+
     gathered = gather(request, runs)
     for fault in gathered.faults:
         typer.echo(f"hedon: note: left out: {fault}", err=True)
-    page, made = write_items(gathered, out)
+    page, made = write_studies(studies, gathered, out)
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
-    _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
 
 
 def count(number: int, noun: str) -> str:
@@ -137,22 +229,22 @@ def _require_folders(*folders: Path) -> None:
     """Makes the folders that will be written to, so that a problem with them shows before the runs.
 
     Raises:
-        ReproduceError: one cannot be made or written.
+        RunsError: one cannot be made or written.
     """
     for folder in folders:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise ReproduceError(f"cannot write {folder}: {error.strerror}") from None
+            raise RunsError(f"cannot write {folder}: {error.strerror}") from None
         if not os.access(folder, os.W_OK):
-            raise ReproduceError(f"cannot write {folder}: no permission")
+            raise RunsError(f"cannot write {folder}: no permission")
 
 
 def _say_what_is_missing(jobs: "list[RunJob]", ends: dict[Path, str], console: "Console") -> None:
     """Prints which runs are not finished.
 
     Raises:
-        ReproduceError: a run failed.
+        RunsError: a run failed.
     """
     failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
     open_jobs = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
@@ -161,4 +253,4 @@ def _say_what_is_missing(jobs: "list[RunJob]", ends: dict[Path, str], console: "
             f"Interrupted: {len(open_jobs)} of {len(jobs)} runs are not finished. The same command continues."
         )
     if failed:
-        raise ReproduceError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {', '.join(failed)}")
+        raise RunsError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {', '.join(failed)}")

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Checkpoint
+from hedon.cli.run import Checkpoint, Ray
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from hedon.jobs.store import Store
     from hedon.sweep.plan import SweepPlan
-    from hedon.sweep.store import Store
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -29,9 +29,6 @@ Out = Annotated[
     typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
 ]
 Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
-Ray = Annotated[
-    str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
-]
 Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th batch, from the I-th on.")]
 
 
@@ -74,12 +71,12 @@ def run(
       hedon sweep run cost.toml --workers 2
       hedon sweep run cost.toml --out s3://bucket/cost
     """
+    from hedon.jobs.store import Store
     from hedon.sweep.plan import write_plan
     from hedon.sweep.read import read_sweep
-    from hedon.sweep.store import open_store
 
     asked = read_sweep(file)
-    store = open_store(out or str(Path("sweeps") / asked.name))
+    store = Store(out or str(Path("sweeps") / asked.name))
     _run_and_report(write_plan(asked, store), store, workers, ray, part, checkpoint)
 
 
@@ -97,10 +94,10 @@ def resume(
     Example:
       hedon sweep resume sweeps/cost --workers 2
     """
+    from hedon.jobs.store import Store
     from hedon.sweep.plan import load_plan
-    from hedon.sweep.store import open_store
 
-    store = open_store(place)
+    store = Store(place)
     _run_and_report(load_plan(store), store, workers, ray, part, checkpoint)
 
 
@@ -113,11 +110,11 @@ def status(place: Place) -> None:
       hedon sweep status sweeps/cost
     """
     from hedon.cli.display.run import duration
+    from hedon.jobs.store import Store
     from hedon.sweep.plan import load_plan
     from hedon.sweep.status import sweep_status
-    from hedon.sweep.store import open_store
 
-    store = open_store(place)
+    store = Store(place)
     made, console = load_plan(store), make_console()
     _say_size(made, console)
     found = sweep_status(made, store)
@@ -139,12 +136,12 @@ def collect(place: Place) -> None:
     Example:
       hedon sweep collect sweeps/cost
     """
+    from hedon.jobs.store import Store
     from hedon.sweep.collect import TABLE
     from hedon.sweep.collect import collect as write_table
     from hedon.sweep.plan import load_plan
-    from hedon.sweep.store import open_store
 
-    store = open_store(place)
+    store = Store(place)
     made = load_plan(store)
     table = write_table(made, store)
     all_worlds = len(made.settings) * len(made.seeds)
@@ -166,12 +163,12 @@ def report(
       hedon sweep report sweeps/cost
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
+    from hedon.jobs.store import Store
     from hedon.sweep.collect import collect as write_table
     from hedon.sweep.plan import load_plan
     from hedon.sweep.report import write_report
-    from hedon.sweep.store import open_store
 
-    store = open_store(place)
+    store = Store(place)
     made = load_plan(store)
     names = [name.strip() for name in only.split(",")] if only else []
     folder = out or (store.folder or Path("sweeps") / made.name) / "report"
@@ -198,20 +195,22 @@ def script(
     Example:
       hedon sweep script cost.toml --slurm --out /shared/cost --jobs 100
     """
+    from hedon.jobs.slurm import slurm_script
+    from hedon.jobs.store import Store
     from hedon.record.atomic import write_atomically
     from hedon.sweep.error import SweepError
     from hedon.sweep.plan import write_plan
     from hedon.sweep.read import read_sweep
-    from hedon.sweep.slurm import slurm_script
-    from hedon.sweep.store import open_store
 
     if not slurm:
         raise SweepError("say for which system: --slurm is the only one")
     asked = read_sweep(file)
-    store = open_store(out or str(Path("sweeps") / asked.name))
+    store = Store(out or str(Path("sweeps") / asked.name))
     made = write_plan(asked, store)
     path = Path(f"{asked.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
-    text = slurm_script(made, store, jobs, workers, hours, checkpoint).encode()
+    place = store.location if store.folder is None else str(store.folder.absolute())
+    words = ["sweep", "resume", place, "--workers", str(workers), "--checkpoint", f"{checkpoint:g}"]
+    text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(made.batches())), workers, hours).encode()
     write_atomically(path, lambda content: content.write(text))
     make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
 
@@ -229,9 +228,7 @@ def _run_and_report(
 ) -> None:
     """Runs what is open, shows it, and says what to do next. SweepError: a batch failed."""
     from hedon.cli.display.sweep import SweepDisplay
-    from hedon.record.provenance import usable_cpus
-    from hedon.sweep.cluster import run_on_ray
-    from hedon.sweep.part import parse_part
+    from hedon.jobs.part import parse_part
     from hedon.sweep.run import open_batches, run_sweep
 
     console, share = make_console(), parse_part(part)
@@ -240,10 +237,7 @@ def _run_and_report(
     world_steps = made.steps * sum(len(batch.seeds) for batch in batches)
     console.print(f"  {len(batches):,} batches to make in {store.location}", soft_wrap=True)
     with SweepDisplay(console, len(batches), world_steps) as display:
-        if ray is None:
-            outcomes = run_sweep(made, store, workers or usable_cpus(), display, checkpoint, share)
-        else:
-            outcomes = run_on_ray(made, store, ray, display, checkpoint, share, workers)
+        outcomes = run_sweep(made, store, display, checkpoint, workers, share, ray)
     _say_end({name: outcome.status for name, outcome in outcomes.items()}, len(batches), store.location, console)
 
 

@@ -66,7 +66,27 @@ class Display(Protocol[T_contra]):
         ...
 
 
-def run_jobs(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
+class Silent:
+    """A display that shows nothing."""
+
+    def update(self, job: Job, moment: Moment) -> None:
+        """Shows nothing.
+
+        Args:
+            job: That goes on.
+            moment: How far it is.
+        """
+
+    def end(self, job: Job, outcome: Outcome) -> None:
+        """Shows nothing.
+
+        Args:
+            job: That ended.
+            outcome: How it ended.
+        """
+
+
+def make_here(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
     """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are

@@ -1,11 +1,13 @@
 """The job of making one run."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.experiment.plan import Display, RunPlan
-from hedon.experiment.resume import make
-from hedon.record.folder import holds_run
+from hedon.experiment.resume import is_finished, make, require_same
+from hedon.record.folder import checkpoint_paths, holds_run
+from hedon.record.reader import open_run
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,14 @@ class RunJob:
         """Whether there is a run to continue."""
         return holds_run(self.folder)
 
+    def newest(self) -> str:
+        """The name of its last checkpoint; empty where there is none."""
+        return max((path.name for path in checkpoint_paths(self.folder)), default="")
+
+    def describe(self) -> str:
+        """Its config and seeds."""
+        return f"{self.plan.config.name}, seed {', '.join(map(str, self.plan.seeds))}"
+
     def make(self, threads: int, display: Display | None) -> str:
         """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`.
 
@@ -43,3 +53,17 @@ class RunJob:
             display: shows progress.
         """
         return make(replace(self.plan, threads=threads), display).status
+
+
+def unfinished(plans: Iterable[RunPlan]) -> list[RunPlan]:
+    """The plans whose runs are not there, or not finished.
+
+    Raises:
+        RecordError: A folder holds a run with other settings, founders or seeds.
+    """
+    found = []
+    for plan in plans:
+        require_same(plan)
+        if not holds_run(plan.out) or not is_finished(open_run(plan.out).manifest, plan.steps):
+            found.append(plan)
+    return found

@@ -14,7 +14,10 @@ from hedon.experiment.plan import Display, Moment
 
 
 class Job(Protocol):
-    """Something that makes a run; it can be pickled, and the folder of its run tells it from the others."""
+    """Something that makes a run; it can be pickled, and the folder of its run tells it from the others.
+
+    Whoever makes it goes on from the last checkpoint, on whichever machine that was written.
+    """
 
     @property
     def folder(self) -> Path:
@@ -24,6 +27,14 @@ class Job(Protocol):
     @property
     def threads(self) -> int:
         """Most threads that it can use; the last job of several gets all that are free."""
+        ...
+
+    def newest(self) -> str:
+        """The name of the last checkpoint from which it would go on; empty where there is none."""
+        ...
+
+    def describe(self) -> str:
+        """What its worlds are, in a few words."""
         ...
 
     def make(self, threads: int, display: Display | None) -> str:

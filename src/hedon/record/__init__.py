@@ -1,1 +1,5 @@
 """The files of a run: tables, manifest, checkpoints and last state; writing and reading them."""
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

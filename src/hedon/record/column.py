@@ -1,17 +1,14 @@
 """Columns and tables: the types that the schema uses."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import polars as pl
 
-POLARS_TYPES: dict[str, type[pl.DataType]] = {
-    "i32": pl.Int32,
-    "i64": pl.Int64,
-    "f32": pl.Float32,
-    "f64": pl.Float64,
-    "string": pl.String,
-}
+if TYPE_CHECKING:
+    import polars as pl
+
+POLARS_TYPES = {"i32": "Int32", "i64": "Int64", "f32": "Float32", "f64": "Float64", "string": "String"}
 NUMPY_TYPES: dict[str, type[np.generic]] = {
     "i32": np.int32,
     "i64": np.int64,
@@ -50,6 +47,8 @@ class Table:
     columns: tuple[Column, ...]
 
     @property
-    def polars_schema(self) -> dict[str, type[pl.DataType]]:
+    def polars_schema(self) -> "dict[str, type[pl.DataType]]":
         """The columns as Polars writes them, in order."""
-        return {column.name: POLARS_TYPES[column.dtype] for column in self.columns}
+        import polars as pl  # a world in memory needs no tables
+
+        return {column.name: getattr(pl, POLARS_TYPES[column.dtype]) for column in self.columns}

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError

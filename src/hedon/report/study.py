@@ -1,4 +1,4 @@
-"""Makes the items of a reproduction, and writes them: figures, tables, and one page that holds all of it."""
+"""Makes what was asked of some studies, and writes it: figures, tables, and one page that holds all of it."""
 
 import io
 import json
@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
@@ -17,19 +17,25 @@ from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
 from hedon.report.page import FigureFile
-from hedon.report.study_page import BuiltItem, html_page, markdown_page
+from hedon.report.study_page import HTML, BuiltItem, study_pages
 from hedon.report.summary import plain
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
+from hedon.study.study import Study
 from hedon.study.verdict_table import verdict
 
 TABLES = "tables"
-"""Folder of the tables within that of a reproduction."""
-HTML, MARKDOWN, JSON = "reproduction.html", "reproduction.md", "reproduction.json"
+"""Folder of the tables beside the page."""
+JSON = "study.json"
 
 
-def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
-    """Makes every item of a request and writes it into a folder, over what is there.
+def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
+    """Makes every item of some studies and writes it into a folder, over what is there.
+
+    Args:
+        studies: as they were chosen; their claims are judged.
+        gathered: the worlds for their items.
+        folder: where to write.
 
     Args:
         gathered: The worlds of a request, by item.
@@ -43,31 +49,32 @@ def write_items(gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]
     """
     try:
         with one_writer(folder):
-            made = _write_items(gathered, folder)
+            made = _write(studies, gathered, folder)
     except OSError as error:
-        raise RecordError(f"cannot write the reproduction into {folder}: {error}") from error
+        raise RecordError(f"cannot write the studies into {folder}: {error}") from error
     return folder / HTML, made
 
 
-def _write_items(gathered: Gathered, folder: Path) -> list[BuiltItem]:
+def _write(studies: Sequence[Study], gathered: Gathered, folder: Path) -> list[BuiltItem]:
     for name in (FIGURES, TABLES):
         (folder / name).mkdir(exist_ok=True)
-    made = [_make(item, gathered, folder) for item in gathered.request.items]
+    made = [_make(item, gathered, folder) for study in studies for item in study.items]
+    claims = [claim for study in studies for claim in study.claims]
     conditions = by_condition(gathered.demanded())
-    overall = [found for found in (*verdict(conditions), *regime(conditions)) if not found.rows.is_empty()]
+    overall = [found for found in (*verdict(conditions, claims), *regime(conditions)) if not found.rows.is_empty()]
     everything = [*overall, *(found for one in made for found in one.tables)]
     for found in everything:
         buffer = io.BytesIO()
         found.rows.write_csv(buffer)
-        _write(folder / TABLES / f"{found.name}.csv", buffer.getvalue())
+        _write_file(folder / TABLES / f"{found.name}.csv", buffer.getvalue())
     content = json.dumps(_json(gathered, made, everything), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    _write(folder / JSON, content.encode())
-    _write(folder / MARKDOWN, markdown_page(gathered, made, overall).encode())
-    _write(folder / HTML, html_page(gathered, made, overall).encode())
+    _write_file(folder / JSON, content.encode())
+    for name, page in study_pages(studies, gathered, made, overall).items():
+        _write_file(folder / name, page.encode())
     return made
 
 
-def _write(path: Path, content: bytes) -> None:
+def _write_file(path: Path, content: bytes) -> None:
     write_atomically(path, lambda file: file.write(content))
 
 
@@ -94,8 +101,7 @@ def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultT
     ]
     count = len(scale.seeds)
     note = f"Asked for: {count} world{'s' if count > 1 else ''} of {scale.steps:,} steps"
-    if item.kind in ("figure", "table"):
-        note += f"; the paper has {len(item.scale.seeds)} of {item.scale.steps:,}"
+    note += f"; the study has {len(item.scale.seeds)} of {item.scale.steps:,}"
     return make_table(f"{item.name}-worlds", "Made of", rows, note + ".")
 
 
@@ -118,7 +124,6 @@ def _json(gathered: Gathered, made: Sequence[BuiltItem], tables: Sequence[Result
                 {
                     "name": one.item.name,
                     "title": one.item.title,
-                    "kind": one.item.kind,
                     "asked": asdict(request.scale(one.item)),
                     "scale": asdict(one.item.scale),
                     "worlds": one.worlds.rows.to_dicts() if one.worlds is not None else [],

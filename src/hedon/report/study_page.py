@@ -1,14 +1,17 @@
-"""A reproduction as one page: verdicts, then for each item what the paper shows and what was found, then settings."""
+"""Studies as one page: verdicts, then for each item what its source says and what was found, then settings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import by_condition
 from hedon.report.page import FigureFile, condition_context, render, runs_context, table_context
 from hedon.study.gather import Gathered
 from hedon.study.item import Item
+from hedon.study.study import Study
+
+HTML, MARKDOWN = "study.html", "study.md"
 
 
 @dataclass(frozen=True)
@@ -31,38 +34,36 @@ class BuiltItem:
         return [part for part in self.parts if isinstance(part, ResultTable)]
 
 
-def html_page(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> str:
-    """The page as HTML that needs no other file.
+def study_pages(
+    studies: Sequence[Study], gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]
+) -> dict[str, str]:
+    """The page by the names of its files: as HTML that needs no other file, and as Markdown beside its figures.
 
     Args:
-        gathered: The worlds of a request, by item.
+        studies: As they were chosen.
+        gathered: The worlds of their items.
         made: The items, in the order of the page.
         overall: Tables about all of them.
     """
-    return render("study.html.j2", _context(gathered, made, overall))
-
-
-def markdown_page(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> str:
-    """The page as Markdown, with the figures as files beside it.
-
-    Args:
-        gathered: The worlds of a request, by item.
-        made: The items, in the order of the page.
-        overall: Tables about all of them.
-    """
-    return render("study.md.j2", _context(gathered, made, overall))
-
-
-def _context(gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]) -> dict[str, Any]:
-    return {
-        "title": "Evolution of rewards, reproduced",
+    built = {one.item.name: _item_context(one) for one in made}
+    context = {
+        "title": " · ".join(study.title for study in studies),
         "fidelity": gathered.request.fidelity,
         "overall": [table_context(found) for found in overall if found.shown],
-        "items": [_item_context(one) for one in made],
+        "studies": [
+            {
+                "question": study.question,
+                "title": study.title,
+                "expectation": study.expectation,
+                "items": [built[item.name] for item in study.items],
+            }
+            for study in studies
+        ],
         "conditions": [condition_context(name, worlds) for name, worlds in by_condition(gathered.demanded()).items()],
         "faults": gathered.faults,
         **runs_context(gathered.runs),
     }
+    return {HTML: render("study.html.j2", context), MARKDOWN: render("study.md.j2", context)}
 
 
 def _item_context(one: BuiltItem) -> dict[str, Any]:
@@ -75,8 +76,7 @@ def _item_context(one: BuiltItem) -> dict[str, Any]:
     return {
         "name": one.item.name,
         "title": one.item.title,
-        "kind": one.item.kind,
-        "paper": one.item.paper,
+        "says": one.item.says,
         "worlds": table_context(one.worlds) if one.worlds is not None else None,
         "parts": parts,
     }

@@ -22,7 +22,7 @@ from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config.load import parse_config
 from hedon.record.reader import Run
 from hedon.statistic.interval import mean_interval
-from hedon_studies.kanagawa_doya_2024.paper import paper_figures
+from hedon.study.catalogue import reported_figures
 
 _OVER_WORLDS = {
     "mean_lifetime": "mean_lifetime",
@@ -67,7 +67,6 @@ def summarize(run: Run) -> dict[str, Any]:
     fares = {name: _fares(run, part) for name, part in parts.items()}
     worlds = [_world(run, index, population, fares) for index in range(len(run.manifest.seeds))]
     manifest = run.manifest
-    paper = paper_figures(manifest.preset) if manifest.modified is False else None
     means = {name: _means(run, parts[name], fares[name]) for name in parts}
     summary = {
         "name": manifest.name,
@@ -83,7 +82,7 @@ def summarize(run: Run) -> dict[str, Any]:
         "steps_asked": manifest.steps_asked,
         "steps": sum(world["steps"] for world in worlds),
         **(_several(agents, worlds, means) if run.columns.several else next(iter(means.values()))),
-        "paper": None if paper is None else asdict(paper),
+        "reported": reported_figures(manifest.preset) if manifest.modified is False else {},
         "damaged_parts": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
         "worlds": worlds,
     }

@@ -26,13 +26,13 @@ MEAN_KEYS: dict[str, str] = {
     "generation": "worlds' `generation` as mean and interval",
     "weights": "by genome column: worlds' mean weight as mean and interval; neutral markers show drift alone",
     "pooled": "over the dead of all worlds, each agent alike: agents, mean_lifetime, food_per_step",
-    "surviving": "the same means and intervals without the extinct worlds, which the paper replaced",
+    "surviving": "the same means and intervals without the extinct worlds, which papers tend to replace",
 }
 """The numbers of one species over all worlds."""
 
 _END: dict[str, str] = {
-    "paper": "of this preset: mean_lifetime, food_per_step, population, generation, claim; null unless `modified` is "
-    "false",
+    "reported": "by study, what its source reports of this preset: numbers or bounds under keys of this file, `steps` "
+    "of its worlds, a `claim`, `ends`; empty unless `modified` is false",
     "damaged_parts": "files that could not be read and are missing in all numbers",
     "worlds": "list, one entry per world, see below",
 }
@@ -81,8 +81,7 @@ FARE_KEYS: dict[str, str] = {
     "mean_lifetime": "mean lifetime of the dead [step]; too small where many still live, see `alive`",
     "mean_lifetime_born": "the same without the founders [step]",
     "mean_lifetime_last": "the same over the 5000 that died last [step]",
-    "food_per_step": "mean over the dead of foods eaten / lifetime [1/step]: the paper's rule; null for who eats no "
-    "food",
+    "food_per_step": "mean over the dead of foods eaten / lifetime [1/step]; null for who eats no food",
     "food_per_agent_step": "foods eaten by all / steps lived by all [1/step]; likewise",
     "eaten": "by food kind: foods eaten; and by species: agents eaten",
     "mean_energy": "energy of the living, mean over the last tenth of the steps made",

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.statistic.interval import SHOWN_FROM
 
 NOTHING = "-"

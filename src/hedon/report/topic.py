@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Callable, Sequence
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
 from hedon.error import HedonError

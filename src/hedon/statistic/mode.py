@@ -14,6 +14,7 @@ where two clear modes would have been found: where `power` is at least 0.8.
 from dataclasses import dataclass
 from functools import cache
 
+import diptest
 import numpy as np
 from numpy.typing import NDArray
 
@@ -79,50 +80,14 @@ def modes(values: Floats) -> Modes:
 
 
 def dip(values: Floats) -> float:
-    """The dip of a sample; from 1/(2n), for evenly spread values, to 1/4, for two points; 0 for equal values.
-
-    A modal interval is narrowed down: within it the distribution is bounded from below by its greatest
-    convex minorant and from above by its least concave majorant; where these are furthest apart the interval's
-    next ends lie.
+    """The dip of a sample, from 1/(2n), for evenly spread values, to 1/4, for two points.
 
     Args:
         values: ascending, shape (n,), n > 0.
     """
-    x, first, counts = np.unique(values, return_index=True, return_counts=True)
-    below, above = first / len(values), (first + counts) / len(values)  # either side of each jump
-    if len(x) == 1:
-        return 0.0
-    widest, left, right = float((above - below).min()), 0, len(x) - 1
-    while left < right:
-        part = slice(left, right + 1)
-        convex = _convex_knots(x[part], below[part])
-        concave = _convex_knots(x[part], -above[part])
-        minorant = np.interp(x[part], x[part][convex], below[part][convex])
-        majorant = np.interp(x[part], x[part][concave], above[part][concave])
-        gap = majorant - minorant
-        low, high = convex[np.argmax(gap[convex])], concave[np.argmax(gap[concave])]
-        if gap[low] >= gap[high]:
-            gap_there, high = gap[low], concave[np.searchsorted(concave, low)]
-        else:
-            gap_there, low = gap[high], convex[np.searchsorted(convex, high, side="right") - 1]
-        if gap_there <= widest or (low == 0 and high == right - left):
-            break
-        outside = [(above[part] - minorant)[: low + 1].max(), (majorant - below[part])[high:].max()]
-        widest, left, right = max(widest, *outside), left + int(low), left + int(high)
-    return 0.5 * widest
-
-
-def _convex_knots(x: Floats, y: Floats) -> NDArray[np.int64]:
-    """Positions of the points on the greatest convex function below (x, y)."""
-    knots: list[int] = []
-    for i in range(len(x)):
-        while len(knots) > 1:
-            a, b = knots[-2], knots[-1]
-            if (y[b] - y[a]) * (x[i] - x[b]) <= (y[i] - y[b]) * (x[b] - x[a]):
-                break
-            knots.pop()
-        knots.append(i)
-    return np.array(knots)
+    found = diptest.dipstat(values, allow_zero=False, sort_x=False)
+    assert isinstance(found, float)  # a tuple only with its full output
+    return found
 
 
 @cache

@@ -1,23 +1,101 @@
-"""All items of the reproduction, by name and in the order in which they are shown."""
+"""The studies that are installed, and those that the words of a command line name.
 
-from hedon.study.item import Item
-from hedon_studies.fear.item import SEQUEL
-from hedon_studies.kanagawa_doya_2024.acting import ACTING
-from hedon_studies.kanagawa_doya_2024.drift import DRIFT
-from hedon_studies.kanagawa_doya_2024.entropy import ENTROPY
-from hedon_studies.kanagawa_doya_2024.evolved_weight import WEIGHTS
-from hedon_studies.kanagawa_doya_2024.extinction import EXTINCTIONS
-from hedon_studies.kanagawa_doya_2024.fault import FAULTS
-from hedon_studies.kanagawa_doya_2024.law import LAWS
-from hedon_studies.kanagawa_doya_2024.life import LIVES
-from hedon_studies.kanagawa_doya_2024.noise import NOISE
-from hedon_studies.kanagawa_doya_2024.parameter import PARAMETERS
-from hedon_studies.kanagawa_doya_2024.picture import PICTURES
-from hedon_studies.kanagawa_doya_2024.released import RELEASED
-from hedon_studies.kanagawa_doya_2024.supply import SUPPLY
-from hedon_studies.kanagawa_doya_2024.weight_history import HISTORIES
+Each installed package may bring some, by entry points of the group `hedon.studies`: hedon does so too.
+"""
 
-_PAPER = (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS)
-_STUDIES = (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY, *ACTING)
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
 
-ITEMS: dict[str, Item] = {item.name: item for item in (*_PAPER, *SEQUEL, *_STUDIES)}
+from hedon.config.problem import nearest
+from hedon.error import HedonError
+from hedon.study.study import Study
+
+GROUP = "hedon.studies"
+"""Of the entry points; each loads a `Study` of its own name."""
+ALL = "all"
+"""Stands for every study."""
+
+
+class StudyError(HedonError):
+    """There is no study or item of a name, or it cannot be loaded."""
+
+
+@cache
+def installed() -> tuple[Mapping[str, Study], Mapping[str, str]]:
+    """The studies of all installed packages, by name, and why others cannot be loaded, by name too."""
+    studies, faults = dict[str, Study](), dict[str, str]()
+    for point in sorted(entry_points(group=GROUP), key=_order):
+        package = point.dist.name if point.dist else "an unknown package"
+        where = f"the study {point.name!r} of {package} ({point.value})"
+        try:
+            found = point.load()
+        except Exception as error:  # of whatever another package does as it is imported
+            faults[point.name] = f"{where} cannot be loaded: {type(error).__name__}: {error}"
+            continue
+        if not isinstance(found, Study) or found.name != point.name:
+            faults[point.name] = f"{where} is no hedon.study.Study of this name"
+        elif point.name in studies:
+            faults[f"{package}:{point.name}"] = f"{where} has a name that is taken: it is left out"
+        else:
+            studies[point.name] = found
+    return studies, faults
+
+
+def _order(point: EntryPoint) -> tuple[bool, str]:
+    """hedon's own come first."""
+    return (point.dist is None or point.dist.name != "hedon", point.name)
+
+
+def choose(names: Sequence[str]) -> tuple[Study, ...]:
+    """The studies with some names, each with the items that are named: a name is of a study, an item, or `ALL`.
+
+    An item whose name several studies have is told as STUDY/ITEM.
+
+    Raises:
+        StudyError: no study or item has one of the names, or several have it.
+    """
+    studies, faults = installed()
+    wanted: dict[str, set[str]] = {}
+    for name in studies if ALL in names else names:
+        for study, items in _find(name, studies, faults).items():
+            wanted.setdefault(study, set()).update(items)
+    return tuple(
+        replace(study, items=tuple(item for item in study.items if item.name in wanted[name]))
+        for name, study in studies.items()
+        if name in wanted
+    )
+
+
+def _find(name: str, studies: Mapping[str, Study], faults: Mapping[str, str]) -> dict[str, list[str]]:
+    """Names of items, by study."""
+    if name in studies:
+        return {name: [item.name for item in studies[name].items]}
+    if name in faults:
+        raise StudyError(faults[name])
+    holders = {
+        own: [item.name]
+        for own, study in studies.items()
+        for item in study.items
+        if name in (item.name, f"{own}/{item.name}")
+    }
+    if len(holders) > 1:
+        raise StudyError(
+            f"several studies have an item {name!r}: say {' or '.join(f'{own}/{name}' for own in holders)}"
+        )
+    if not holders:
+        items = [item.name for study in studies.values() for item in study.items]
+        near = nearest(name, [*studies, *items])
+        hint = f"; did you mean {near}?" if near else ""
+        raise StudyError(
+            f"there is no study or item {name!r}{hint}\nStudies: {', '.join(studies)}\nItems: {', '.join(items)}"
+        )
+    return holders
+
+
+def reported_figures(preset: str | None) -> dict[str, Mapping[str, Any]]:
+    """What the sources of the installed studies report of a preset, by study; see `Study.reported`."""
+    known = {name: study.reported.get(preset or "") for name, study in installed()[0].items()}
+    return {name: figures for name, figures in known.items() if figures is not None}

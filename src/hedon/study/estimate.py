@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from hedon.analysis.gene.drift import standard_drift
 from hedon.analysis.world.record import WorldRecord
+from hedon.statistic.contrast import difference_interval, spread_ratio_interval
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import score_tests
-from hedon.statistic.interval import distance_interval, mean_bounds, share_interval, spread_interval
+from hedon.statistic.interval import LEVEL, distance_interval, mean_bounds, share_interval, spread_interval
 from hedon.statistic.mode import ENOUGH_WORLDS, modes
-from hedon_studies.kanagawa_doya_2024.claim import Claim
+from hedon.study.claim import Claim, Comparison
 
 Floats = NDArray[np.float64]
 
@@ -114,3 +115,25 @@ def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]
     if control[1] <= 1.0 <= control[2]:
         return Estimate(value, low, high, reason=said)
     return Estimate(value, low, high, "undecided", f"{said}, which differ from the walks")
+
+
+def compare(
+    comparison: Comparison, values: NDArray[np.float64], others: NDArray[np.float64], level: float = LEVEL
+) -> tuple[float, float, float]:
+    """Compares two groups, with an interval; two values or more in each, above 0 for a "ratio".
+
+    Args:
+        comparison: "difference" of means, "ratio" of geometric means, or "spread", a ratio of standard deviations.
+        values: First group, shape (n,).
+        others: Second group, shape (m,).
+        level: Of confidence.
+
+    Returns:
+        The comparison, lower and upper bound.
+    """
+    if comparison == "spread":
+        return spread_ratio_interval(values, others, level)
+    if comparison == "ratio":
+        value, low, high = (math.exp(x) for x in difference_interval(np.log(values), np.log(others), level))
+        return value, low, high
+    return difference_interval(values, others, level)

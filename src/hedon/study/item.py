@@ -1,15 +1,15 @@
-"""What an item of the reproduction is: a figure, a table or a study, the worlds that it needs, and how it is made."""
+"""What an item of a study is: figures and tables for one question, the worlds that they need, how they are made."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Literal
 
 import polars as pl
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
-from hedon.config import Config, load_config
+from hedon.config import Config, digest, load_config
+from hedon.config.layout import of_species
 from hedon.figure.named import NamedFigure
 from hedon.record.snapshot import Snapshot
 
@@ -20,10 +20,10 @@ class Condition:
 
     Attributes:
         label: what the item calls it; no other condition of the item has it.
-        preset: that it starts from.
+        preset: that it starts from, or the path of a config's file.
         overrides: what it changes, as for `--set`.
-        fidelity: its own; None for that of the reproduction.
-        species: whose records are shown, where the setting has several; by default the first.
+        fidelity: its own; None for the one that is asked for.
+        species: whose records are meant, where the setting has several; by default the first.
     """
 
     label: str
@@ -33,13 +33,23 @@ class Condition:
     species: str = ""
 
     def config(self, fidelity: str) -> Config:
-        """The settings, in a reproduction of some fidelity."""
+        """The settings, where some fidelity is asked for."""
         return _config(self.preset, self.fidelity or fidelity, self.overrides)
+
+    def is_of(self, world: WorldRecord) -> bool:
+        """Whether a world has these settings and nothing else is changed, and is of the species that is meant."""
+        return digest(world.config) == _digest(self, world.config.fidelity)
 
 
 @cache
 def _config(preset: str, fidelity: str, overrides: tuple[str, ...]) -> Config:
     return load_config(preset, fidelity, overrides)
+
+
+@cache
+def _digest(condition: Condition, fidelity: str) -> str:
+    config = condition.config(fidelity)
+    return digest(of_species(config, condition.species) if condition.species else config)
 
 
 @dataclass(frozen=True)
@@ -60,7 +70,7 @@ class ItemInputs:
     """What an item is made from.
 
     Attributes:
-        fidelity: of the reproduction.
+        fidelity: that the request has.
         worlds: per label of a condition the worlds that there are, up to the steps asked for; none where
             there are none.
         snapshots: per label the last state of a world of that condition, where there is one.
@@ -76,26 +86,22 @@ class ItemInputs:
 
 @dataclass(frozen=True)
 class Item:
-    """One item of the reproduction.
+    """Figures and tables that answer one question of a study.
 
     Attributes:
         name: what the command line calls it.
         title: its heading.
-        kind: "figure" or "table" of the paper; "study", of a question that the paper leaves open; or "sequel", of the
-            paper's sequel on predators and prey.
-        paper: what the paper, or its sequel, shows or says there; for a study, what it asks.
+        says: what the study's source shows or says there, or what is asked.
         make: makes its figures and tables, in the order in which they are shown.
         conditions: the settings that it needs worlds of; none where settings alone are enough.
-        scale: how much is run of each condition unless the request has another scale; for an item of the
-            paper, the paper's.
+        scale: how much is run of each condition unless the request has another scale.
         pictures: whether it only shows the last state of a world of each condition, for which any run is long enough.
         frames: steps between two records of all positions that it needs; 0 if it needs none.
     """
 
     name: str
     title: str
-    kind: Literal["figure", "table", "study", "sequel"]
-    paper: str
+    says: str
     make: Callable[[ItemInputs], Iterable[NamedFigure | ResultTable]]
     conditions: tuple[Condition, ...] = ()
     scale: Scale = Scale((), 0)

@@ -1,31 +1,27 @@
-"""Do the paper's claims hold in these runs? The rules are in `claim` and `order`; here they are applied.
+"""Do a study's claims hold in these runs? Here their rules are applied.
 
 There are two separate questions. *Does the claim hold here?* Our figure's interval against the region of the claim.
-*Do we differ from the paper?* A test of two samples, where the paper gives a count of its worlds; it gives no spread
-for means, so that with them the question has no answer.
+*Do we differ from its source?* A test of two samples, where the source gives a count of its worlds; without a spread of
+its means the question has no answer for them.
 """
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.world.extinction import world_extinction
 from hedon.analysis.world.record import WorldRecord, by_condition
-from hedon.config import digest, load_config
-from hedon.config.layout import hunted, of_species
 from hedon.statistic.contrast import fisher_mid_p
-from hedon.study.estimate import Estimate, estimate
-from hedon_studies.fear.claim import SEQUEL_CLAIMS, SEQUEL_ORDERS
-from hedon_studies.kanagawa_doya_2024.claim import CLAIMS, SOURCE, Claim, Role
-from hedon_studies.kanagawa_doya_2024.order import ORDERS, Order, compare
+from hedon.study.claim import Claim, Order
+from hedon.study.estimate import Estimate, compare, estimate
 
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"
-NO_SPREAD, NO_COUNT = "the paper gives no spread", "the paper gives no count"
+NO_SPREAD, NO_COUNT = "the source gives no spread", "the source gives no count"
 FEWEST_WORLDS = 3
 TOO_FEW, CROSSES = f"fewer than {FEWEST_WORLDS} worlds", "the interval crosses the border"
 LEVEL = 0.05
@@ -44,10 +40,10 @@ class Verdict:
         verdict: "holds", "fails" or "undecided".
         value: our figure; NaN where there is none, as its bounds.
         low, high: bounds of its 95 % interval.
-        paper: what the paper reports.
-        p_paper: chance of a share as far from the paper's, or further, if both have the same; NaN where it cannot
+        reported: what its source reports.
+        p_reported: chance of a share as far from the source's, or further, if both have the same; NaN where it cannot
             be told.
-        against_paper: "differs", "no difference shown", or why it cannot be asked.
+        against_reported: "differs", "no difference shown", or why it cannot be asked.
         worlds: that the figure is made of.
         reason: why it is undecided, or what else a reader must know.
         text: the claim in words.
@@ -61,45 +57,42 @@ class Verdict:
     value: float
     low: float
     high: float
-    paper: str
-    p_paper: float
-    against_paper: str
+    reported: str
+    p_reported: float
+    against_reported: str
     worlds: int
     reason: str
     text: str
     region_low: float
     region_high: float
-    source: str = SOURCE
+    source: str
 
 
-def verdicts(
-    worlds: Iterable[WorldRecord],
-    claims: Sequence[Claim] = (*CLAIMS, *SEQUEL_CLAIMS),
-    orders: Sequence[Order] = (*ORDERS, *SEQUEL_ORDERS),
-) -> list[Verdict]:
+def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> list[Verdict]:
     """A verdict for each condition and each claim that is about it, then for each pair and each claim about two.
 
-    A condition is what a claim is about if its settings are those of the claim's preset, with any fidelity,
+    A condition is what a claim is about if its settings are those of the claim's condition, with any fidelity,
     and nothing else is changed. Two conditions are compared if their fidelity is the same.
 
     Args:
         worlds: of any settings.
-        claims: about one condition each.
-        orders: claims about two conditions each.
+        claims: about one condition, or two.
     """
-    groups = by_condition(worlds)
+    groups, asked = by_condition(worlds), list(claims)
     found = [
-        judge(claim, condition, group)
-        for condition, group in groups.items()
-        for claim in claims
-        if digest(group[0].config) == _claim_digest(claim.preset, group[0].config.fidelity, claim.costs, claim.role)
+        judge(claim, name, group)
+        for name, group in groups.items()
+        for claim in asked
+        if isinstance(claim, Claim) and claim.condition.is_of(group[0])
     ]
     pairs = [
         judge_order(order, first, second)
-        for order in orders
-        for first in _of_preset(order.first, order.role, groups.values())
-        for second in _of_preset(order.second, order.role, groups.values())
-        if first[0].config.fidelity == second[0].config.fidelity
+        for order in asked
+        if isinstance(order, Order)
+        for first, second in product(groups.values(), repeat=2)
+        if order.first.is_of(first[0])
+        and order.second.is_of(second[0])
+        and first[0].config.fidelity == second[0].config.fidelity
     ]
     return found + pairs
 
@@ -127,7 +120,7 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
         name, why = UNDECIDED, shortfall
     p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
     if claim.over_worlds == "share":
-        p, against = _against_paper(claim, int(np.count_nonzero(figures > 0)), len(figures), 0)
+        p, against = _against_reported(claim, int(np.count_nonzero(figures > 0)), len(figures), 0)
     return _verdict(claim, condition, name, found, p, against, len(figures), [why, *remarks])
 
 
@@ -146,7 +139,7 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
         remarks += [f"{worlds[0].condition}: {remark}" for remark in said]
         shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
     fewest = min(map(len, parts))
-    value, low, high = compare(order.scale, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
+    value, low, high = compare(order.comparison, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
     why = CROSSES if name == UNDECIDED else ""
     if fewest < FEWEST_WORLDS:
@@ -189,7 +182,7 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
         reasons.append(f"{unknown} of {found.worlds} worlds live and end before step {claim.steps:,}")
     if unknown and not found.followed:
         reasons.append(f"the share is that by step {found.known_until:,.0f}")
-    p, against = _against_paper(claim, found.extinct, found.worlds, unknown)
+    p, against = _against_reported(claim, found.extinct, found.worlds, unknown)
     figure = Estimate(found.share, found.low, found.high)
     return _verdict(claim, condition, name, figure, p, against, found.worlds, reasons)
 
@@ -197,12 +190,12 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
 def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
     """The worlds to ask, why they may not decide, and who was left out.
 
-    Extinct worlds are left out, as the paper replaced them. Where some worlds are long enough, only these are asked.
+    Extinct worlds are left out, as papers replace them. Where some worlds are long enough, only these are asked.
     """
     steps, remarks, shortfall = claim.steps, list[str](), ""
     living = [world for world in worlds if world.extinct_step is None]
     if gone := len(worlds) - len(living):
-        remarks.append(f"{gone} extinct left out, as in the paper")
+        remarks.append(f"{gone} extinct left out")
     if claim.together and (lone := sum(world.apart_step is not None for world in living)):
         living = [world for world in living if world.apart_step is None]
         remarks.append(f"{lone} left out where another species died out")
@@ -219,13 +212,13 @@ def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.
     return np.array([figure for world in worlds if (figure := claim.measure(world)) is not None], np.float64)
 
 
-def _against_paper(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
+def _against_reported(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
     """The second question, about a share; worlds of unknown fate are taken as what makes the difference least sure."""
-    if claim.paper_count is None:
+    if claim.reported_count is None:
         return math.nan, NO_COUNT
     if not of:
         return math.nan, ""
-    p = max(fisher_mid_p(count + more, of, *claim.paper_count) for more in range(unknown + 1))
+    p = max(fisher_mid_p(count + more, of, *claim.reported_count) for more in range(unknown + 1))
     return p, DIFFERS if p <= LEVEL else NOT_SHOWN
 
 
@@ -246,7 +239,7 @@ def _verdict(
         found.value,
         found.low,
         found.high,
-        claim.paper,
+        claim.reported,
         p,
         against,
         worlds,
@@ -256,18 +249,3 @@ def _verdict(
         claim.high,
         claim.source,
     )
-
-
-def _of_preset(preset: str, role: Role, groups: Iterable[Sequence[WorldRecord]]) -> list[Sequence[WorldRecord]]:
-    """The groups of worlds that have a preset's settings, with any fidelity; of the species with a role."""
-    return [g for g in groups if digest(g[0].config) == _claim_digest(preset, g[0].config.fidelity, None, role)]
-
-
-@cache
-def _claim_digest(preset: str, fidelity: str, costs: tuple[float, float] | None, role: Role) -> str:
-    config = load_config(preset, fidelity)
-    if role:
-        config = of_species(config, hunted(config))
-    if costs is not None:
-        config = replace(config, energy=replace(config.energy, basic_cost=costs[0], action_cost=costs[1]))
-    return digest(config)

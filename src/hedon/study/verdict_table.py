@@ -1,21 +1,31 @@
-"""The verdicts on the paper's claims as a table."""
+"""The verdicts on claims as a table."""
 
+from collections.abc import Iterable
 from dataclasses import asdict
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.record import Conditions
+from hedon.study.catalogue import installed
+from hedon.study.claim import Claim, Order
 from hedon.study.verdict import verdicts
 
+_NOTE = (
+    "verdict: the 95 % interval over worlds lies within the region in which the claim holds, outside of it, or "
+    "across its border. Fewer than three worlds, or shorter ones than the claim asks for, decide nothing. "
+    "against_reported is another question: whether our share differs from the source's count, by p_reported (mid-p "
+    "Fisher). That no difference is shown does not mean that there is none. Where a source gives no spread, means "
+    "cannot be compared."
+)
 
-def verdict(conditions: Conditions) -> list[ResultTable]:
-    """The paper's claims."""
-    found = verdicts(world for worlds in conditions.values() for world in worlds)
-    rows = [asdict(row) for row in found]
-    note = (
-        "verdict: the 95 % interval over worlds lies within the region in which the claim holds, outside of it, or "
-        "across its border. Fewer than three worlds, or shorter ones than the paper's, decide nothing. against_paper "
-        "is another question: whether our share differs from the paper's count, by p_paper (mid-p Fisher). That no "
-        "difference is shown does not mean that there is none. Means cannot be compared, since the paper gives no "
-        "spread. Lifetimes and food are read as unweighted means over agents; the paper does not say."
-    )
-    return [make_table("verdict", "The paper's claims", rows, note)]
+
+def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = None) -> list[ResultTable]:
+    """What some worlds say of claims that are about their conditions.
+
+    Args:
+        conditions: Worlds by condition.
+        claims: By default those of all installed studies.
+    """
+    if claims is None:
+        claims = (claim for study in installed()[0].values() for claim in study.claims)
+    found = verdicts((world for worlds in conditions.values() for world in worlds), claims)
+    return [make_table("verdict", "Claims about these conditions", [asdict(row) for row in found], _NOTE)]

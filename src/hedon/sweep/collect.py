@@ -7,10 +7,10 @@ from typing import Any
 
 import polars as pl
 
+from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.row import KEYS
-from hedon.sweep.store import Store
 from hedon.sweep.work import RESULTS
 
 TABLE = "table.parquet"

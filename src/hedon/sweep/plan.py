@@ -12,11 +12,11 @@ from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
 from hedon.config.load import parse_config
 from hedon.config.rule_path import RULE_PATTERN, rule_places
+from hedon.jobs.store import Store
 from hedon.record.manifest import RuleSource
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
 from hedon.sweep.read import SweepFile
-from hedon.sweep.store import Store
 
 PLAN = "plan.json"
 FORMAT = 1

@@ -1,15 +1,16 @@
-"""Runs a sweep on one machine: a process per batch, as many at a time as there are workers."""
+"""Runs a sweep: a process per batch, as many at a time as there are workers, here or on a cluster."""
 
+import hashlib
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from hedon.experiment.plan import Moment
-from hedon.jobs.process import Display, run_jobs
+from hedon.jobs.lock import lock
+from hedon.jobs.make import make_jobs
+from hedon.jobs.process import Display
+from hedon.jobs.store import Store
 from hedon.jobs.work import Outcome
-from hedon.sweep.lock import lock
 from hedon.sweep.plan import Batch, SweepPlan
-from hedon.sweep.store import Store
 from hedon.sweep.work import RESULTS, WORK, Task, make_task
 
 
@@ -46,52 +47,38 @@ def tasks(
 def run_sweep(
     plan: SweepPlan,
     store: Store,
-    workers: int,
     display: Display[Task],
     checkpoint_seconds: float,
+    workers: int = 0,
     part: tuple[int, int] = (1, 1),
+    ray: str | None = None,
 ) -> dict[str, Outcome]:
-    """Makes all batches that have no result, one thread each; the last one gets all that are free.
+    """Makes all batches that have no result, one thread each; here the last one gets all that are free.
 
     Ctrl-C or SIGTERM ends it after the current windows, a second one immediately; what was done is kept. A batch that
     fails does not end the others.
 
     Args:
-        plan: of the sweep.
-        store: where it lives.
-        workers: processes at a time.
-        display: shows every moment, and how each batch ends.
-        checkpoint_seconds: between two checkpoints of a batch [s].
-        part: which batches, as `open_batches`.
+        plan: Of the sweep.
+        store: Where it lives.
+        display: Shows every moment, and how each batch ends.
+        checkpoint_seconds: Between two checkpoints of a batch [s].
+        workers: Processes at a time; 0 for all processors.
+        part: Which batches, as `open_batches`.
+        ray: Address of a cluster; see `hedon.jobs.make.make_jobs`.
 
     Returns:
         How each batch ended, by name; those that never began are missing.
 
     Raises:
-        SweepError: another process makes these batches.
+        JobError: Another process makes these batches, or there is no such cluster.
     """
-    with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
-        jobs = tasks(plan, store, open_batches(plan, store, part), Path(scratch), checkpoint_seconds)
-        outcomes = run_jobs(jobs, workers, display)
+    with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as passing:
+        # Of this place and plan alone: what another sweep left on a node must not be gone on with.
+        own = hashlib.sha256(f"{store.location} {plan.steps} {plan.digests}".encode()).hexdigest()[:16]
+        on_node = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
+        scratch = Path(passing) if ray is None else on_node
+        jobs = tasks(plan, store, open_batches(plan, store, part), scratch, checkpoint_seconds)
+        outcomes = make_jobs(jobs, display, workers, ray)
     names = {job.folder: job.batch.name for job in jobs}
     return {names[folder]: outcome for folder, outcome in outcomes.items()}
-
-
-class Silent:
-    """A display that shows nothing."""
-
-    def update(self, job: Task, moment: Moment) -> None:
-        """Shows nothing.
-
-        Args:
-            job: That goes on.
-            moment: How far it is.
-        """
-
-    def end(self, job: Task, outcome: Outcome) -> None:
-        """Shows nothing.
-
-        Args:
-            job: That ended.
-            outcome: How it ended.
-        """

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 from hedon.error import HedonError
+from hedon.jobs.store import Store
 from hedon.record.reader import open_run
 from hedon.sweep.collect import read_results
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.run import open_batches
-from hedon.sweep.store import Store
 from hedon.sweep.work import WORK
 
 

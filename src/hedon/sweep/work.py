@@ -15,8 +15,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from hedon.config.problem import format_value
 from hedon.experiment.plan import Display, Moment, RunPlan
 from hedon.experiment.resume import make
+from hedon.jobs.error import JobError
+from hedon.jobs.store import Store
 from hedon.record.error import InUseError, RecordError
 from hedon.record.folder import LOCK, checkpoint_paths
 from hedon.record.lock import FolderLock
@@ -24,10 +27,8 @@ from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 from hedon.report.summary import summarize
 from hedon.sweep.design import Settings
-from hedon.sweep.error import SweepError
 from hedon.sweep.plan import Batch, SweepPlan, load_condition, load_rules
 from hedon.sweep.row import world_rows
-from hedon.sweep.store import Store, open_store
 
 RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
 _LOOK_SECONDS = 0.2
@@ -61,6 +62,15 @@ class Task:
     def threads(self) -> int:
         """One: what a sweep gains by more processors is more batches at a time."""
         return 1
+
+    def newest(self) -> str:
+        """The name of the last checkpoint from which the batch would go on; empty where there is none."""
+        return newest_checkpoint(Store(self.location), self)
+
+    def describe(self) -> str:
+        """The values of its factors, and its seeds."""
+        settings = ", ".join(f"{name} = {format_value(value)}" for name, value in self.settings.items())
+        return f"{settings or 'all settings'}, seed {', '.join(map(str, self.batch.seeds))}"
 
     def make(self, threads: int, display: Display | None) -> str:
         """Makes the batch; see `make_batch`.
@@ -105,7 +115,7 @@ def make_batch(task: Task, threads: int, display: Display | None) -> str:
     Raises:
         HedonError: as `hedon.experiment.run.run`, or what is written cannot be.
     """
-    store, batch = open_store(task.location), task.batch
+    store, batch = Store(task.location), task.batch
     _wait_for_folder(task.folder)
     if store.read(result_name(batch)) is not None:
         return "finished"
@@ -183,7 +193,7 @@ def newest_checkpoint(store: Store, task: Task) -> str:
     """
     if store.folder is not None:
         return _newest(task.folder)
-    with suppress(SweepError, zipfile.BadZipFile):
+    with suppress(JobError, zipfile.BadZipFile):
         content = store.read(_state_name(task)) or b""
         with zipfile.ZipFile(io.BytesIO(content)) as state:
             return max((path.name for path in map(Path, state.namelist()) if path.suffix == ".npz"), default="")

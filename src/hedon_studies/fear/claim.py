@@ -11,10 +11,11 @@ Worlds where a species died out are left out: without predators nobody selects f
 
 from functools import partial
 
-from hedon.analysis.world.record import WorldRecord
-from hedon.config.layout import hunters
-from hedon_studies.kanagawa_doya_2024.claim import Claim, score
-from hedon_studies.kanagawa_doya_2024.order import Order
+from hedon.analysis import WorldRecord
+from hedon.config import hunters
+from hedon.study import Claim, Condition, Order
+from hedon_studies.kanagawa_doya_2024.claim import score
+from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 SEQUEL = "Kanagawa & Doya, arXiv 2507.09992"
 FAR = 1.96
@@ -65,13 +66,18 @@ def _obstacle_beyond_drift(world: WorldRecord) -> float | None:
     return None if found is None else -found - FAR
 
 
-_hunted_claim = partial(Claim, level=FAMILY_LEVEL, role="hunted", together=True, source=SEQUEL)
-_hunted_order = partial(Order, scale="difference", level=FAMILY_LEVEL, role="hunted", together=True, source=SEQUEL)
+def _prey(preset: str) -> Condition:
+    return Condition(preset, preset, species="prey")
+
+
+_ONE = {"steps": STEPS, "level": FAMILY_LEVEL, "source": SEQUEL}
+_hunted_claim = partial(Claim, together=True, **_ONE)
+_hunted_order = partial(Order, comparison="difference", together=True, **_ONE)
 
 SEQUEL_CLAIMS: tuple[Claim, ...] = (
     _hunted_claim(
         "fear often evolves",
-        "predator",
+        _prey("predator"),
         f"in more than {100 * OFTEN:g} % of worlds the weight of seeing predators is below 97.5 % of neutral genes",
         _fear_beyond_drift,
         "share",
@@ -80,7 +86,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
     ),
     _hunted_claim(
         "liking one's own kind in some worlds",
-        "predator",
+        _prey("predator"),
         "the weight of seeing prey is above 97.5 % of neutral genes in more worlds than by chance",
         _own_beyond_drift,
         "share",
@@ -89,7 +95,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
     ),
     _hunted_claim(
         "liking predators in some worlds",
-        "predator",
+        _prey("predator"),
         "the weight of seeing predators is above 97.5 % of neutral genes in more worlds than by chance",
         _hunter_beyond_drift,
         "share",
@@ -98,34 +104,33 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
     ),
     Claim(
         "no fear of weak pitfalls",
-        "pitfall-weak",
+        Condition("pitfall-weak", "pitfall-weak"),
         f"the weight of seeing obstacles is below 97.5 % of neutral genes in less than {100 * OFTEN:g} % of worlds",
         _obstacle_beyond_drift,
         "share",
         "no fear",
         high=OFTEN,
-        level=FAMILY_LEVEL,
-        source=SEQUEL,
+        **_ONE,
     ),
 )
 
 SEQUEL_ORDERS: tuple[Order, ...] = (
     _hunted_order(
         "larger mouths, stronger fear",
-        "predator-large-mouth",
-        "predator-small-mouth",
+        _prey("predator-large-mouth"),
+        _prey("predator-small-mouth"),
         "the score of fear is higher where predators have mouths of 80 degrees than of 40",
         fear,
-        paper="stronger",
+        reported="stronger",
         low=0.0,
     ),
     _hunted_order(
         "less food, less liking of one's own kind",
-        "predator-less-food",
-        "predator",
+        _prey("predator-less-food"),
+        _prey("predator"),
         "the score of the weight of seeing prey is lower with three fifths of the food",
         own_score,
-        paper="more negative",
+        reported="more negative",
         high=0.0,
     ),
 )

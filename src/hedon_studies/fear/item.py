@@ -9,15 +9,10 @@ from functools import partial
 
 import polars as pl
 
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.group import REACH, company
-from hedon.analysis.world.population import death_rates, history
-from hedon.config.layout import hunters
-from hedon.figure.hunt import SMOOTH, draw_causes, draw_company, draw_numbers
-from hedon.figure.named import NamedFigure
-from hedon.figure.style import draw_message
-from hedon.study.census import missing, present, stack, world_indices
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import REACH, ResultTable, company, death_rates, history, make_table
+from hedon.config import hunters
+from hedon.figure import SMOOTH, NamedFigure, draw_causes, draw_company, draw_message, draw_numbers
+from hedon.study import Condition, Item, ItemInputs, Scale, missing, present, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.drift import make_drift
 from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
 from hedon_studies.kanagawa_doya_2024.weight_history import draw_courses
@@ -119,7 +114,7 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 
 
 def _item(name: str, title: str, says: str, make: partial, *conditions: Condition, frames: int = 0) -> Item:
-    return Item(name, title, "sequel", says, make, conditions, SCALE, frames=frames)
+    return Item(name, title, says, make, conditions, SCALE, frames=frames)
 
 
 def _last(

@@ -1,20 +1,29 @@
 """Study: does it matter that agents act by weights of 16 bits?
 
-What would matter, as it was fixed before both were compared: a lifetime or a rate of food that differs by a tenth,
-ten agents alive, or a weight that differs by 1, a twentieth of the range. An interval that lies within these bounds
-says that it does not matter; one that reaches beyond leaves it open.
+What would matter, as it was fixed before both conditions were compared: a lifetime or a rate of food that differs by a
+tenth, ten agents alive, or a weight that differs by 1, a twentieth of the range. An interval that lies within these
+bounds says that it does not matter; one that reaches beyond leaves it open.
 """
 
 from collections.abc import Iterator
 
-from hedon.analysis.response import RESPONSES
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.population import history
-from hedon.figure.course import draw_courses
-from hedon.figure.named import NamedFigure
-from hedon.study.census import present, sentences, stack, steps_reached, world_indices
-from hedon.study.change import change, missing_note, read_change, world_rows
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import RESPONSES, ResultTable, history, make_table
+from hedon.figure import NamedFigure, draw_courses
+from hedon.study import (
+    Condition,
+    Item,
+    ItemInputs,
+    Scale,
+    change,
+    missing_note,
+    present,
+    read_change,
+    sentences,
+    stack,
+    steps_reached,
+    world_indices,
+    world_rows,
+)
 
 FULL, HALF = "float32", "bfloat16"
 CONDITIONS = tuple(
@@ -60,7 +69,6 @@ ACTING: tuple[Item, ...] = (
     Item(
         "acting",
         "Acting by weights of 16 bits",
-        "study",
         "Agents act by weights that are rounded to 16 bits, for speed. Do they live, eat and breed as those that act "
         "by weights of 32 bits?",
         make_acting,

@@ -1,30 +1,29 @@
-"""What does the paper claim, and what would count as its being so? Each claim with its rule.
+"""What does the paper claim of one condition, and what would count as its being so? Each claim with its rule.
 
-A rule names a figure and the *region* in which the claim holds. The figure's 95 % interval over worlds decides: within
-the region the claim holds, outside of it it fails, across its border it is undecided. Whether our worlds differ from
-the paper's is another question; it can be asked where the paper gives a count of its worlds. The paper gives no spread
-for its tables, so "the same" means within a factor that is chosen here. Claims that compare two conditions are in
-`order`.
+The paper gives no spread for its tables, so "the same" means within a factor that is chosen here. Claims that compare
+two conditions stand in `order`.
 """
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from functools import partial
-from typing import Literal
 
 from scipy import optimize
 
-from hedon.analysis.agent.food import food_per_step
-from hedon.analysis.agent.lifetime import mean_lifetime
-from hedon.analysis.gene.drift import standard_drift
-from hedon.analysis.gene.weight import last_mean
-from hedon.analysis.world.population import last_generation, mean_alive, run_tail
-from hedon.analysis.world.record import WorldRecord
-from hedon.demography.life import cumulative_hazard
-from hedon.statistic.interval import LEVEL
+from hedon.analysis import (
+    WorldRecord,
+    food_per_step,
+    last_generation,
+    last_mean,
+    mean_alive,
+    mean_lifetime,
+    run_tail,
+    standard_drift,
+)
+from hedon.demography import cumulative_hazard
+from hedon.study import Claim, Condition
+from hedon_studies.kanagawa_doya_2024.extinction import CONDITIONS
 from hedon_studies.kanagawa_doya_2024.paper import (
-    EXTINCTION,
     EXTINCTION_SEEDS,
     EXTINCTION_STEP,
     LIFESPAN,
@@ -46,58 +45,11 @@ OLD_SHARE = 0.05
 WEIGHTS = {"w_normal": "food", "w_action": "action"}
 """The reward weights that all conditions have, and what claims call them."""
 
-Measure = Callable[[WorldRecord], float | None]
-"""The figure of one world; None where it has none."""
-
-OverWorlds = Literal["mean", "ratio", "spread", "distance", "share", "extinction", "modes", "walk", "setting"]
-"""How the figures of several worlds are summed up."""
+_claim = partial(Claim, steps=STEPS, source=SOURCE)
 
 
-Role = Literal["", "hunted"]
-"""Which of a world's species a claim is about."""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """One claim about one setting.
-
-    Attributes:
-        name: short, unique together with the setting.
-        preset: that it is about.
-        costs: energy for living and for action in the place of the preset's own; None for the preset's.
-        text: the claim, in words.
-        measure: the figure of one world; None where it has none.
-        over_worlds: how the worlds' figures are summed up: their "mean"; their geometric mean ("ratio"); their
-            standard deviation ("spread") or root mean square ("distance"), where they are scores against neutral
-            genes of the same world; the "share" of worlds whose figure is above 0; the share that died out by
-            `steps` ("extinction"); their "modes", of which there must be two; whether scores differ from those of
-            neutral genes in any way ("walk"); a figure that the "setting" alone gives.
-        low, high: the region in which the claim holds.
-        paper: what the paper reports.
-        steps: that a world must have lived through to count [step].
-        paper_count: worlds of the paper that have it, and all of its worlds, for shares; None where it gives no
-            such number.
-        level: of the interval that decides.
-        role: the species that is asked: "hunted", which another one eats; empty where there is only one.
-        together: whether worlds count only as long as none of their species has died out.
-        source: where it stands.
-    """
-
-    name: str
-    preset: str
-    text: str
-    measure: Measure
-    over_worlds: OverWorlds
-    paper: str
-    low: float = -math.inf
-    high: float = math.inf
-    steps: int = STEPS
-    costs: tuple[float, float] | None = None
-    paper_count: tuple[int, int] | None = None
-    level: float = LEVEL
-    role: Role = ""
-    together: bool = False
-    source: str = SOURCE
+def _about(preset: str) -> Condition:
+    return Condition(preset, preset)
 
 
 def score(weight: str, world: WorldRecord) -> float | None:
@@ -162,31 +114,33 @@ def _weight_claims() -> Iterator[Claim]:
     for preset in ("baseline", "large", "relocation", "poor", "poison"):
         text, food = "the weight of food evolves positive, in most worlds at least", partial(last_mean, "w_normal")
         every = (SEEDS, SEEDS)
-        yield Claim("food weight positive", preset, text, food, "share", "> 0", low=MOST, paper_count=every)
+        yield _claim("food weight positive", _about(preset), text, food, "share", "> 0", low=MOST, reported_count=every)
     text, above = "in most worlds the weight of food is above 4", partial(_above, 4.0, "w_normal")
-    yield Claim("food weight above 4", "baseline", text, above, "share", "mostly > 4", low=MOST)
+    yield _claim("food weight above 4", _about("baseline"), text, above, "share", "mostly > 4", low=MOST)
     for preset in ("baseline", "large"):
         text, two = "the weight of action has two modes, largely positive or slightly negative", "w_action"
-        yield Claim("two modes of action", preset, text, partial(last_mean, two), "modes", "two")
+        yield _claim("two modes of action", _about(preset), text, partial(last_mean, two), "modes", "two")
     for weight, name in WEIGHTS.items():
         text = f"the weight of {name} does not go where neutral genes of the same worlds go"
         found = partial(score, weight)
-        yield Claim(f"{name} weight no random walk", "baseline", text, found, "walk", "differs")
+        yield _claim(f"{name} weight no random walk", _about("baseline"), text, found, "walk", "differs")
         for preset in ("small", "centered"):
             text = f"hardly any evolution: {name} moves at most {SAME_FACTOR:g} times as far as neutral genes"
-            yield Claim(
-                f"{name} weight hardly evolves", preset, text, found, "distance", "hardly any", high=SAME_FACTOR
+            yield _claim(
+                f"{name} weight hardly evolves", _about(preset), text, found, "distance", "hardly any", high=SAME_FACTOR
             )
     text, negative = "in most worlds the weight of action is negative", partial(_negative, "w_action")
-    yield Claim("action weight negative", "relocation", text, negative, "share", "mostly < 0", low=MOST)
+    yield _claim("action weight negative", _about("relocation"), text, negative, "share", "mostly < 0", low=MOST)
     for kind in ("poor", "poison"):
         text = f"the weight of {kind} varies widely: at least 1/{SAME_FACTOR:g} as widely as neutral genes"
         weight, low = partial(score, f"w_{kind}"), 1.0 / SAME_FACTOR
-        yield Claim(f"{kind} weight varies", kind, text, weight, "spread", "widely", low=low)
+        yield _claim(f"{kind} weight varies", _about(kind), text, weight, "spread", "widely", low=low)
     text, poison = "in most worlds the weight of poison is positive", "w_poison"
-    yield Claim("poison weight positive", "poison", text, partial(last_mean, poison), "share", "mostly > 0", low=MOST)
+    yield _claim(
+        "poison weight positive", _about("poison"), text, partial(last_mean, poison), "share", "mostly > 0", low=MOST
+    )
     text, below = "in most worlds the weight of poison is below that of food", partial(_below, poison, "w_normal")
-    yield Claim("poison weight below food", "poison", text, below, "share", "below", low=MOST)
+    yield _claim("poison weight below food", _about("poison"), text, below, "share", "below", low=MOST)
 
 
 def _table_claims() -> Iterator[Claim]:
@@ -198,7 +152,7 @@ def _table_claims() -> Iterator[Claim]:
             if value is not None:
                 text = f"{name} [{unit}], within a factor of {SAME_FACTOR:g}"
                 low, high = value / SAME_FACTOR, value * SAME_FACTOR
-                yield Claim(name, preset, text, measure, "ratio", f"{value:g}", low, high)
+                yield _claim(name, _about(preset), text, measure, "ratio", f"{value:g}", low, high)
         for name, bounds, measure in (
             ("population", figures.population, _alive),
             ("generation", figures.generation, _generation),
@@ -206,34 +160,33 @@ def _table_claims() -> Iterator[Claim]:
             if bounds is not None:
                 text = f"{name} at the end, {bounds[0]} to {bounds[1]}"
                 low, high = float(bounds[0]), float(bounds[1])
-                yield Claim(name, preset, text, measure, "mean", f"{bounds[0]} … {bounds[1]}", low, high)
+                yield _claim(name, _about(preset), text, measure, "mean", f"{bounds[0]} … {bounds[1]}", low, high)
     text = (
         f"an agent with full energy may live some {LIFESPAN:,} steps: the age that one in {1 / OLD_SHARE:.0f} reaches"
     )
     low, high = LIFESPAN / SAME_FACTOR, LIFESPAN * SAME_FACTOR
-    yield Claim("lifespan", "baseline", text, _lifespan, "setting", "about 1e6", low, high, steps=0)
+    yield _claim("lifespan", _about("baseline"), text, _lifespan, "setting", "about 1e6", low, high, steps=0)
 
 
 def _extinction_claims() -> Iterator[Claim]:
-    for costs, share in EXTINCTION.items():
+    for condition, share in CONDITIONS.items():
         if share > MOST:
             low, high, what = MOST, math.inf, "most worlds die out"
         elif share > SOME[0]:
             (low, high), what = SOME, "some worlds die out and some do not"
         else:
             low, high, what = -math.inf, MOST, "most worlds live on"
-        yield Claim(
+        yield _claim(
             "extinction",
-            "baseline",
-            f"{what} by step {EXTINCTION_STEP:,}, at costs {costs[0]:g} and {costs[1]:g}",
+            condition,
+            f"{what} by step {EXTINCTION_STEP:,}, at costs {condition.label.replace(', ', ' and ')}",
             _extinct,
             "extinction",
             f"{100 * share:.0f} %",
             low,
             high,
             steps=EXTINCTION_STEP,
-            costs=costs,
-            paper_count=(round(share * EXTINCTION_SEEDS), EXTINCTION_SEEDS),
+            reported_count=(round(share * EXTINCTION_SEEDS), EXTINCTION_SEEDS),
         )
 
 

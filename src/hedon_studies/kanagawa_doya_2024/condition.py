@@ -1,6 +1,6 @@
 """The paper's conditions, and the scale at which it ran them."""
 
-from hedon.study.item import Condition, Scale
+from hedon.study import Condition, Scale
 from hedon_studies.kanagawa_doya_2024.paper import SEEDS, STEPS
 
 PAPER_SCALE = Scale(tuple(range(1, SEEDS + 1)), STEPS)

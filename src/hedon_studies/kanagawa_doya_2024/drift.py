@@ -6,15 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.gene.drift import WorldDrift, drift_tests, standard_drift
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.record import SEED
-from hedon.figure.drift import draw_scores
-from hedon.figure.named import NamedFigure
-from hedon.statistic.interval import SHOWN_FROM
-from hedon.study.census import present, sentences
-from hedon.study.change import missing_note
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import SEED, ResultTable, WorldDrift, drift_tests, make_table, standard_drift
+from hedon.figure import NamedFigure, draw_scores
+from hedon.statistic import SHOWN_FROM
+from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, present, sentences
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
 CONDITIONS = (*SIZES, *PLACES[1:], POOR, POISON)
@@ -85,7 +80,13 @@ def _test_rows(
         if test.test == "marker":
             continue
         positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
-        row = {"arm": label, "weight": test.weight, "test": test.test, "worlds": test.worlds, "positive": positive}
+        row = {
+            "condition": label,
+            "weight": test.weight,
+            "test": test.test,
+            "worlds": test.worlds,
+            "positive": positive,
+        }
         row |= {name: getattr(test, name) for name in ("effect", *_BOUNDS, "p", "p_holm")}
         yield row if test.worlds >= SHOWN_FROM else row | dict.fromkeys(_BOUNDS)
 
@@ -94,7 +95,7 @@ def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:
     for label, by_seed in scores.items():
         for seed, drifts in by_seed.items():
             for found in drifts:
-                yield {"arm": label, "seed": seed} | vars(found)
+                yield {"condition": label, "seed": seed} | vars(found)
 
 
 def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
@@ -109,7 +110,6 @@ DRIFT: tuple[Item, ...] = (
     Item(
         "drift",
         "Rewards against drift",
-        "study",
         "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
         "the weights of food and of action?",
         partial(make_drift, CONDITIONS, REWARDS, PAPER_SCALE, "drift"),

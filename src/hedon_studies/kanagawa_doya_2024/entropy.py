@@ -4,14 +4,22 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.population import history
-from hedon.analysis.world.record import WorldRecord
-from hedon.figure.named import NamedFigure
-from hedon.study.census import present, sentences, stack, world_indices
-from hedon.study.change import change, missing_note, read_change, world_rows
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import RESPONSES, Response, ResultTable, WorldRecord, history, make_table
+from hedon.figure import NamedFigure
+from hedon.study import (
+    Condition,
+    Item,
+    ItemInputs,
+    Scale,
+    change,
+    missing_note,
+    present,
+    read_change,
+    sentences,
+    stack,
+    world_indices,
+    world_rows,
+)
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import WINDOWS, appetite, half_way_weight
 from hedon_studies.kanagawa_doya_2024.figure.appetite import draw_appetite
 
@@ -62,7 +70,7 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         sentences(_DIFFERENCE, missing),
     )
     eaten = [
-        {"arm": label, "seed": world.seed} | vars(part)
+        {"condition": label, "seed": world.seed} | vars(part)
         for label, found in worlds.items()
         for world, world_bins in zip(found, bins[label], strict=True)
         for part in world_bins
@@ -80,7 +88,6 @@ ENTROPY: tuple[Item, ...] = (
     Item(
         "entropy",
         "The bonus for entropy",
-        "study",
         "The paper prints an entropy coefficient of 0, its program had 0.001. A reward must outweigh that bonus before "
         "an agent learns to seek it: does it set how large the weight of food must be?",
         make_entropy,

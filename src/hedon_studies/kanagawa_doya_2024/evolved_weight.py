@@ -3,12 +3,9 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
-from hedon.figure.named import NamedFigure
-from hedon.figure.style import draw_message
-from hedon.figure.weight import WeightGroup, against_action, draw_weight_groups
-from hedon.study.census import describe, missing, present, sentences, stack, world_indices
-from hedon.study.item import Condition, Item, ItemInputs
+from hedon.analysis import LAST_AGENTS, last_agents
+from hedon.figure import NamedFigure, WeightGroup, against_action, draw_message, draw_weight_groups
+from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
 _READ = (
@@ -53,9 +50,7 @@ def _item(
     *conditions: Condition,
     panels: Sequence[tuple[str, str]] = _AGAINST_ACTION,
 ) -> Item:
-    return Item(
-        name, title, "figure", paper, partial(draw_last, name, question, conditions, panels), conditions, PAPER_SCALE
-    )
+    return Item(name, title, paper, partial(draw_last, name, question, conditions, panels), conditions, PAPER_SCALE)
 
 
 WEIGHTS: tuple[Item, ...] = (

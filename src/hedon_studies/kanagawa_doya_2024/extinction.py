@@ -5,15 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.extinction import world_extinction
-from hedon.analysis.world.population import mean_alive, mean_energy, run_tail
-from hedon.analysis.world.record import WorldRecord
-from hedon.statistic.contrast import fisher_mid_p
-from hedon.statistic.interval import mean_interval
-from hedon.statistic.survival import survival_curve
-from hedon.study.census import missing, present, sentences
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive, mean_energy, run_tail, world_extinction
+from hedon.statistic import fisher_mid_p, mean_interval, survival_curve
+from hedon.study import Condition, Item, ItemInputs, Scale, missing, present, sentences
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, EXTINCTION_SEEDS, EXTINCTION_STEP
 
 _READ = (
@@ -94,7 +88,6 @@ EXTINCTIONS: tuple[Item, ...] = (
     Item(
         "extinction",
         "Extinction by the costs of living and of action",
-        "table",
         "Of ten worlds per setting none dies out at the costs of the baseline. A half more for living lets 30 % die "
         "out, twice as much 90 %; a half more for action 50 %, twice as much all.",
         _make,

@@ -3,13 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hedon.analysis.response import RESPONSES, Response
-from hedon.analysis.table import ResultTable, make_table
-from hedon.figure.named import NamedFigure
-from hedon.statistic.factorial import Cell, FactorialFit, Factors, all_effects, fit_factorial
-from hedon.study.census import sentences
-from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import RESPONSES, Response, ResultTable, make_table
+from hedon.figure import NamedFigure
+from hedon.statistic import Cell, FactorialFit, Factors, all_effects, fit_factorial
+from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_effects
 
 FACTORS = {
@@ -115,7 +112,7 @@ def _fit(rows: list[dict[str, Any]], response: Response) -> FactorialFit:
     cells: dict[Cell, dict[int, float]] = {}
     for row in rows:
         if row[response.name] is not None:
-            cells.setdefault(CELLS[row["arm"]], {})[row["seed"]] = response.scaled(row[response.name])
+            cells.setdefault(CELLS[row["condition"]], {})[row["seed"]] = response.scaled(row[response.name])
     return fit_factorial(cells, len(FACTORS))
 
 
@@ -150,11 +147,11 @@ def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
 def _cell_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     results = []
     for label in CELLS:
-        mine = [row for row in rows if row["arm"] == label]
+        mine = [row for row in rows if row["condition"] == label]
         if mine:
             means = {r.name: shown_interval([row[r.name] for row in mine], r).mean for r in RESPONSES if r.sure}
             results.append(
-                {"arm": label, "worlds": len(mine), "died_out": sum(row["died_out"] for row in mine)} | means
+                {"condition": label, "worlds": len(mine), "died_out": sum(row["died_out"] for row in mine)} | means
             )
     return results
 
@@ -163,7 +160,6 @@ FAULTS: tuple[Item, ...] = (
     Item(
         "faults",
         "The faults of the released code and its contact solver",
-        "study",
         "The paper's program grew food faster than it was set to, repeated the same mutations, trained its critic "
         "towards the mean of a batch, and let bodies overlap. What does each do, and what do they do together?",
         make_faults,

@@ -4,16 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hedon.analysis.descent.walk import mutation_law
-from hedon.analysis.world.record import SEED
-from hedon.config import Config
-from hedon.config.gene import gene_of
-from hedon.demography.life import birth_rate, expected_lifetime, reproduction_number
-from hedon.figure.law import draw_birth, draw_hazard
-from hedon.figure.named import NamedFigure
-from hedon.figure.walk import draw_walk_ends, draw_walks
-from hedon.study.census import sentences
-from hedon.study.item import Item, ItemInputs
+from hedon.analysis import SEED, mutation_law
+from hedon.config import Config, gene_of
+from hedon.demography import birth_rate, expected_lifetime, reproduction_number
+from hedon.figure import NamedFigure, draw_birth, draw_hazard, draw_walk_ends, draw_walks
+from hedon.study import Item, ItemInputs, sentences
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
 _ENDS = (
@@ -75,7 +70,6 @@ LAWS: tuple[Item, ...] = (
     Item(
         "hazard",
         "The chance of death",
-        "figure",
         "The hazard by energy and by age, and survival at constant energy. "
         "The formula is that of the released code: as printed, it gives a mean life of 209 steps at an energy of 20.",
         _hazard,
@@ -83,7 +77,6 @@ LAWS: tuple[Item, ...] = (
     Item(
         "birth",
         "The chance of a birth",
-        "figure",
         "The chance of a birth by energy. The sign of its exponent is that of the released code: "
         "as printed, the chance would fall with energy.",
         _birth,
@@ -91,7 +84,6 @@ LAWS: tuple[Item, ...] = (
     Item(
         "walk",
         "The random walk of mutations",
-        "figure",
         "Weights that mutate 100 and 1000 times without selection.",
         _walk,
     ),

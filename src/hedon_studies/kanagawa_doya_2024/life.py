@@ -7,13 +7,9 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis.agent.food import food_per_agent_step, food_per_step
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.topic.life import lifetime
-from hedon.analysis.world.record import WorldRecord
-from hedon.statistic.interval import mean_interval
-from hedon.study.census import count_extinct, missing, present, sentences, steps_reached
-from hedon.study.item import Condition, Item, ItemInputs
+from hedon.analysis import ResultTable, WorldRecord, food_per_agent_step, food_per_step, lifetime, make_table
+from hedon.statistic import mean_interval
+from hedon.study import Condition, Item, ItemInputs, count_extinct, missing, present, sentences, steps_reached
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, SIZES
 from hedon_studies.kanagawa_doya_2024.paper import paper_figures
 
@@ -54,7 +50,7 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
     for life, world in zip(lives, (world for group in named.values() for world in group), strict=True):
         condition, agents = life.pop("condition"), life["agents"]
         yield {
-            "arm": condition,
+            "condition": condition,
             "seed": life.pop("seed"),
             "steps": world.last_step,
             "extinct_step": world.extinct_step,
@@ -66,12 +62,12 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
 
 
 def _rows(condition: Condition, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> Iterator[dict[str, Any]]:
-    mine, paper = by_world.filter(pl.col("arm") == condition.label), paper_figures(condition.preset)
+    mine, paper = by_world.filter(pl.col("condition") == condition.label), paper_figures(condition.preset)
     for column, (quantity, reported) in _QUANTITIES.items():
         interval = mean_interval(mine[column])
         figure = getattr(paper, reported) if reported else None
         yield {
-            "arm": condition.label,
+            "condition": condition.label,
             "quantity": quantity,
             "mean": interval.mean,
             "low": interval.low,
@@ -89,12 +85,12 @@ def _ages(by_world: pl.DataFrame) -> str:
     """Up to which age the restricted means go, condition by condition."""
     if by_world.is_empty():
         return ""
-    ages = by_world.group_by("arm", maintain_order=True).agg(pl.col("until").first())
+    ages = by_world.group_by("condition", maintain_order=True).agg(pl.col("until").first())
     return " (" + ", ".join(f"{condition}: {until:,.0f} steps" for condition, until in ages.iter_rows()) + ")"
 
 
 def _item(name: str, title: str, paper: str, conditions: tuple[Condition, ...]) -> Item:
-    return Item(name, title, "table", paper, partial(_make, name, title, conditions), conditions, PAPER_SCALE)
+    return Item(name, title, paper, partial(_make, name, title, conditions), conditions, PAPER_SCALE)
 
 
 LIVES: tuple[Item, ...] = (

@@ -3,12 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.record import generator
-from hedon.figure.named import NamedFigure
-from hedon.statistic.interval import SHOWN_FROM
-from hedon.study.census import sentences
-from hedon.study.item import Condition, ItemInputs
+from hedon.analysis import ResultTable, generator, make_table
+from hedon.figure import NamedFigure
+from hedon.statistic import SHOWN_FROM
+from hedon.study import Condition, ItemInputs, sentences
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift, compare, gene_drift
 from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
 
@@ -75,8 +73,10 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
         [row for label, found in drifts.items() for row in _prediction_rows(label, shown[label], _world_count(found))],
         sentences(_PREDICTION, note),
     )
-    rows = [{"arm": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found]
-    brief = [{column: row[column] for column in ("arm", "seed", *_BRIEF)} for row in rows]
+    rows = [
+        {"condition": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found
+    ]
+    brief = [{column: row[column] for column in ("condition", "seed", *_BRIEF)} for row in rows]
     yield make_table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
     yield make_table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
@@ -91,6 +91,6 @@ def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> It
         for weight in (*GENES, _ALL):
             mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
             if mine:
-                found = {"arm": label, "compared": comparison, "weight": weight, "worlds": worlds}
+                found = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
                 found |= vars(compare(mine, comparison))
                 yield found if worlds >= SHOWN_FROM else found | dict.fromkeys(("low", "high", "p_sign"))

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator
 
-from hedon.analysis.table import ResultTable
-from hedon.figure.named import NamedFigure
-from hedon.study.change import missing_note
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import ResultTable
+from hedon.figure import NamedFigure
+from hedon.study import Condition, Item, ItemInputs, Scale, missing_note
 from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.mutation import condition_drifts, drift_parts
 
@@ -39,7 +38,6 @@ NOISE: tuple[Item, ...] = (
     Item(
         "noise",
         "Frozen mutation noise",
-        "study",
         "The released program draws the mutations of each window from the same small table. Does the table's mean "
         "predict where the weights go, the neutral marker's included?",
         make_noise,

@@ -3,7 +3,8 @@
 It gives no spread with its means, neither over agents nor over seeds, and does not say how they are weighted.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 STEPS = 10_240_000  # per seed
 SEEDS = 5
@@ -60,6 +61,21 @@ EXTINCTION: dict[tuple[float, float], float] = {
 }
 
 
+ENDS = ("food=5,action=5", "food=5,action=-0.5")
+"""Our reading of where the paper's baseline ends: food "mostly above 4", action "largely positive or slightly
+negative". It prints no numbers (docs/model.md, section 14)."""
+
+
 def paper_figures(preset: str | None) -> PaperFigures | None:
     """What the paper reports of a preset; None for a setting that is not in the paper."""
     return PAPER.get(preset or "")
+
+
+def reported() -> dict[str, dict[str, Any]]:
+    """What the paper reports of each preset, for `Study.reported`."""
+    known = {preset: {"steps": STEPS} | {k: v for k, v in asdict(f).items() if v} for preset, f in PAPER.items()}
+    for figures in known.values():
+        if "population" in figures:
+            figures["alive"] = figures.pop("population")
+    known["baseline"]["ends"] = ENDS
+    return known

@@ -3,14 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from hedon.analysis.table import ResultTable, make_table
-from hedon.config import FIDELITIES
-from hedon.config.config import PROVENANCE
-from hedon.config.dump import flatten
-from hedon.config.field import leaves
-from hedon.config.load import PAPER_PRESETS, describe_preset
-from hedon.config.problem import format_value
-from hedon.study.item import Condition, Item, ItemInputs
+from hedon.analysis import ResultTable, make_table
+from hedon.config import FIDELITIES, PAPER_PRESETS, PROVENANCE, describe_preset, flatten, format_value, leaves
+from hedon.study import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
 CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -104,7 +99,6 @@ PARAMETERS: tuple[Item, ...] = (
     Item(
         "parameters",
         "All parameters",
-        "table",
         "The parameters of the model. Some are not printed, and some that are printed differ from the released code.",
         _parameters,
     ),

@@ -2,12 +2,9 @@
 
 from collections.abc import Iterator
 
-from hedon.figure.body import draw_body
-from hedon.figure.named import NamedFigure
-from hedon.figure.style import food_colors
-from hedon.figure.world import draw_world, telling_agent
-from hedon.record.snapshot import Snapshot
-from hedon.study.item import Item, ItemInputs, Scale
+from hedon.figure import NamedFigure, draw_body, draw_world, food_colors, telling_agent
+from hedon.record import Snapshot
+from hedon.study import Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PLACES, POISON, POOR, SIZES
 from hedon_studies.kanagawa_doya_2024.figure.arena import ArenaPanel, draw_arenas
 
@@ -60,11 +57,10 @@ def _when(snapshot: Snapshot) -> str:
 
 
 PICTURES: tuple[Item, ...] = (
-    Item("body", "The body", "figure", "An agent's mouth, touch sensors, motors and rays.", _body),
+    Item("body", "The body", "An agent's mouth, touch sensors, motors and rays.", _body),
     Item(
         "arena",
         "The arena",
-        "figure",
         "Agents and foods in the arena, and what one agent sees.",
         _arena,
         (BASELINE,),
@@ -74,7 +70,6 @@ PICTURES: tuple[Item, ...] = (
     Item(
         "arenas",
         "All arenas",
-        "figure",
         "Arenas of three sizes, food in one place or in four by turns, and food of a second kind.",
         _arenas,
         (*SIZES, *_FOODS),

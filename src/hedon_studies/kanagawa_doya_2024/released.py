@@ -5,14 +5,10 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis.response import RESPONSES
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.record import WorldRecord
-from hedon.figure.named import NamedFigure
-from hedon.figure.weight import draw_weights
-from hedon.statistic.interval import share_interval
-from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.analysis import RESPONSES, ResultTable, WorldRecord, make_table
+from hedon.figure import NamedFigure, draw_weights
+from hedon.statistic import share_interval
+from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
 from hedon_studies.kanagawa_doya_2024.figure.fate import draw_fates
 from hedon_studies.kanagawa_doya_2024.mutation import Drifts, condition_drifts, drift_parts
@@ -127,7 +123,6 @@ RELEASED: tuple[Item, ...] = (
     Item(
         "released",
         "The released program, seed by seed",
-        "study",
         "The paper shows 5 seeds and replaced those that died out. How many seeds of the released program head for "
         "extinction, does the weight of food follow the bias of the seed's mutations, and do survivors alone give the "
         "paper's picture?",

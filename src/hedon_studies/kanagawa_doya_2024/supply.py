@@ -3,16 +3,19 @@
 from collections.abc import Iterator
 from typing import Any
 
-from hedon.analysis.agent.food import food_per_agent_step
-from hedon.analysis.response import RESPONSES, Common, Response
-from hedon.analysis.table import ResultTable, make_table
-from hedon.analysis.world.population import run_tail
-from hedon.analysis.world.record import WorldRecord
+from hedon.analysis import (
+    RESPONSES,
+    Common,
+    Response,
+    ResultTable,
+    WorldRecord,
+    food_per_agent_step,
+    make_table,
+    run_tail,
+)
 from hedon.config import Config
-from hedon.figure.named import NamedFigure
-from hedon.study.census import sentences
-from hedon.study.change import missing_note, shown_interval, world_rows
-from hedon.study.item import Condition, Item, ItemInputs, Scale
+from hedon.figure import NamedFigure
+from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.figure.supply import Eater, draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
@@ -55,7 +58,7 @@ def make_supply(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     found = [
         _condition_row(condition, inputs, mine)
         for condition in CONDITIONS
-        if (mine := [r for r in rows if r["arm"] == condition.label])
+        if (mine := [r for r in rows if r["condition"] == condition.label])
     ]
     yield make_table("supply", "Food that grows, and food that is eaten", found, sentences(_NOTE, missing))
     yield make_table("supply_worlds", "The worlds of the study of supply", rows, missing, shown=False)
@@ -66,7 +69,7 @@ def _condition_row(condition: Condition, inputs: ItemInputs, rows: list[dict[str
     means = {asked.name: shown_interval([row[asked.name] for row in rows], asked).mean for asked in _ASKED}
     feeds = grows / paper.food_per_step if paper.food_per_step else None
     known = {"paper_food": paper.food_per_step, "feeds": feeds, "paper_lifetime": paper.mean_lifetime}
-    return {"arm": condition.label, "worlds": len(rows), "grows": grows} | means | known
+    return {"condition": condition.label, "worlds": len(rows), "grows": grows} | means | known
 
 
 def growth(config: Config) -> float:
@@ -78,7 +81,7 @@ def _eaters(rows: list[dict[str, Any]]) -> list[Eater]:
     """The worlds that eat, as the figure shows them."""
     eaters = []
     for row in rows:
-        preset, rule = row["arm"].split(", ")
+        preset, rule = row["condition"].split(", ")
         if row["alive"] and row["eaten"]:
             eaters.append(Eater(preset, rule, row["alive"], row["eaten"]))
     return eaters
@@ -118,7 +121,6 @@ SUPPLY: tuple[Item, ...] = (
     Item(
         "supply",
         "The supply of food",
-        "study",
         "In the small arena and with food around the center, the paper's agents eat four times as much as in the "
         "baseline and live for 100,000 steps. Does enough food grow for that, as it is set to, five times as fast, or "
         "in the released program?",

@@ -3,11 +3,8 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.figure.history import HistoryRow, draw_histories
-from hedon.figure.named import NamedFigure
-from hedon.figure.style import draw_message, meal_colors
-from hedon.study.census import describe, missing, present, sentences, stack, world_indices
-from hedon.study.item import Condition, Item, ItemInputs
+from hedon.figure import HistoryRow, NamedFigure, draw_histories, draw_message, meal_colors
+from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 
 _READ = (
@@ -48,9 +45,7 @@ def draw_courses(
 
 
 def _item(name: str, title: str, paper: str, question: str, *conditions: Condition) -> Item:
-    return Item(
-        name, title, "figure", paper, partial(draw_courses, name, question, conditions), conditions, PAPER_SCALE
-    )
+    return Item(name, title, paper, partial(draw_courses, name, question, conditions), conditions, PAPER_SCALE)
 
 
 HISTORIES: tuple[Item, ...] = (

@@ -10,7 +10,7 @@ from rich.console import Console
 from synthetic_run import write_run
 
 from hedon.analysis.agent.lifetime import mean_lifetime
-from hedon.analysis.table import make_table
+from hedon.analysis.result import make_table
 from hedon.cli.display.analysis import analysis_group
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze, write_analysis

@@ -45,7 +45,7 @@ def test_numbers_agree_with_the_tables(tmp_path: Path) -> None:
     assert summary["mean_lifetime"]["mean"] == pytest.approx(np.mean(lifetimes))
     assert summary["mean_lifetime"]["low"] < np.mean(lifetimes) < summary["mean_lifetime"]["high"]
     assert summary["pooled"]["agents"] == sum(world["deaths"] for world in summary["worlds"])
-    assert summary["paper"]["mean_lifetime"] == 6310
+    assert summary["reported"]["kanagawa-doya-2024"]["mean_lifetime"] == 6310
 
 
 def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> Non
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=0, worlds=1, preset=None, name=None, neutral_count=0))
     summary = summarize(run)
-    assert summary["paper"] is None
+    assert summary["reported"] == {}
     assert summary["worlds"][0]["alive"] == 50
     assert summary["worlds"][0]["mean_lifetime"] is None
     assert summary["mean_lifetime"]["mean"] is None
@@ -85,7 +85,7 @@ def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     assert "6,310" in text
     assert "1 of 3 worlds died out" in text
     assert "baseline (corrected): 3 worlds" in text
-    assert "paper (10.24e6 steps)" in text
+    assert "kanagawa-doya-2024 (10.24e6 steps)" in text
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
 )
 def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path, options: dict, title: str) -> None:
     summary = summarize(open_run(write_run(tmp_path / "run", intervals=5, worlds=1, **options)))
-    assert summary["paper"] is None
+    assert summary["reported"] == {}
     text = _print(summary)
     assert title in text
     assert "paper" not in text.lower()

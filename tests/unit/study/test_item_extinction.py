@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.extinction import world_extinction
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import digest, load_config

@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.record.reader import open_run
 from hedon.report.table import cells
@@ -40,7 +40,9 @@ def make(name: str, **worlds: Sequence[WorldRecord]) -> tuple[ResultTable, Resul
 
 
 def row(result: ResultTable, condition: str, quantity: str) -> dict[str, Any]:
-    return result.rows.row(by_predicate=(pl.col("arm") == condition) & (pl.col("quantity") == quantity), named=True)
+    return result.rows.row(
+        by_predicate=(pl.col("condition") == condition) & (pl.col("quantity") == quantity), named=True
+    )
 
 
 def lives(world: WorldRecord) -> tuple[np.ndarray, np.ndarray]:
@@ -140,7 +142,7 @@ def test_intervals_are_shown_from_three_worlds_on(five: list[WorldRecord]) -> No
 
 def test_arms_without_worlds_are_named(five: list[WorldRecord]) -> None:
     found, _ = make("life-places", centered=five[:1], uniform=[])
-    assert found.rows["arm"].unique().to_list() == ["centered"]
+    assert found.rows["condition"].unique().to_list() == ["centered"]
     assert found.note.endswith("Not run yet: uniform; relocation.")
     nothing, by_world = make("life-sizes")
     assert nothing.rows.is_empty()

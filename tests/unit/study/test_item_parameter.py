@@ -3,7 +3,7 @@ import tomllib
 import pytest
 from setting_page import page_rows, values
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
 from hedon.config.field import sections
 from hedon.report.table import cells

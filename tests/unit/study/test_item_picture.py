@@ -103,9 +103,7 @@ def test_captions_say_which_world_is_shown_and_when() -> None:
 def test_every_preset_has_a_panel_of_its_size_at_one_scale() -> None:
     [named] = make("arenas")
     shown = panels(named.figure)
-    assert (
-        sorted(shown) == sorted(PAPER_PRESETS) == sorted(condition.preset for condition in ITEMS["arenas"].conditions)
-    )
+    assert sorted(shown) == sorted(PAPER_PRESETS) == sorted(each.preset for each in ITEMS["arenas"].conditions)
     size = named.figure.get_size_inches()
     for preset, axes in shown.items():
         arena = load_config(preset).arena

@@ -13,7 +13,7 @@ from hedon.experiment.resume import resume
 from hedon.experiment.run import run
 from hedon.jobs.run import RunJob
 from hedon.record.manifest import load_manifest, save_manifest
-from hedon.study.choice import ChoiceError, choose_items
+from hedon.study.catalogue import StudyError, choose
 from hedon.study.gather import find_runs, gather
 from hedon.study.item import Condition, Item, Scale
 from hedon.study.plan import folder_name, plan_jobs
@@ -26,7 +26,7 @@ FAST = Condition("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))
 def an_item(
     name: str, *conditions: Condition, seeds: tuple[int, ...] = (1, 2), steps: int = 256, pictures: bool = False
 ) -> Item:
-    return Item(name, name, "figure", "", lambda inputs: [], conditions, Scale(seeds, steps), pictures)
+    return Item(name, name, "", lambda inputs: [], conditions, Scale(seeds, steps), pictures)
 
 
 def planned(request: Request, folder: Path) -> list[RunJob]:
@@ -186,12 +186,14 @@ def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Pa
 
 
 def test_a_word_that_names_nothing_is_told_with_the_nearest() -> None:
-    with pytest.raises(ChoiceError, match=r"no item 'hazrd'; did you mean hazard\?"):
-        choose_items(["hazrd"])
+    with pytest.raises(StudyError, match=r"no study or item 'hazrd'; did you mean hazard\?"):
+        choose(["hazrd"])
 
 
-def test_groups_hold_every_item_once() -> None:
-    names = [item.name for item in choose_items(["paper", "sequel", "studies"])]
-    assert names == [item.name for item in choose_items(["all"])]
-    assert len(names) == len(set(names))
-    assert [item.name for item in choose_items([])] == [item.name for item in choose_items(["paper"])]
+def test_studies_and_items_are_chosen_by_name_and_in_their_own_order() -> None:
+    names = [item.name for study in choose(["all"]) for item in study.items]
+    assert len(names) == len(set(names)) > 30
+    (paper,) = choose(["birth", "kanagawa-doya-2024/hazard", "birth"])
+    assert (paper.name, [item.name for item in paper.items]) == ("kanagawa-doya-2024", ["hazard", "birth"])
+    (whole,) = choose(["fear", "sequel-fear"])
+    assert len(whole.items) == 10

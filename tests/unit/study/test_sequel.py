@@ -11,7 +11,7 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
 from hedon.config.layout import hunted, hunters, layouts, of_species
 from hedon.study.verdict import Verdict, judge, verdicts
-from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL, SEQUEL_CLAIMS, SEQUEL_ORDERS, fear
+from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL_CLAIMS, SEQUEL_ORDERS, fear
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 _PUSH = 1.5  # per generation, planted; some four times the scale of mutations
@@ -58,7 +58,7 @@ def group(preset: str, count: int, pushed: str = "", push: float = 0.0) -> list[
 
 
 def asked(worlds: list[WorldRecord]) -> dict[str, Verdict]:
-    return {found.claim: found for found in verdicts(worlds) if found.source == SEQUEL}
+    return {found.claim: found for found in verdicts(worlds, (*SEQUEL_CLAIMS, *SEQUEL_ORDERS))}
 
 
 def seen(role: str) -> str:

@@ -6,10 +6,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.population import death_rates
 from hedon.figure.named import NamedFigure
-from hedon.study.choice import choose_items
+from hedon.study.catalogue import choose
 from hedon.study.gather import Gathered, find_runs, gather
 from hedon.study.item import ItemInputs
 from hedon.study.plan import plan_jobs
@@ -24,7 +24,7 @@ STEPS = 2 * FRAMES
 def request_(tmp_path_factory: pytest.TempPathFactory) -> tuple[Request, Path]:
     """A request for worlds of predators and prey, and the folder where the run stands that has them."""
     folder = tmp_path_factory.mktemp("sequel")
-    request = Request(choose_items(ITEMS), "corrected", (3,), STEPS)
+    request = Request(choose(ITEMS)[0].items, "corrected", (3,), STEPS)
     jobs = [job for job in plan_jobs(needs(request), [], folder) if job.plan.config.name == "predator"]
     assert [(job.plan.seeds, job.plan.steps, job.plan.frames) for job in jobs] == [((3,), STEPS, FRAMES)]
     jobs[0].make(1, None)
@@ -37,12 +37,12 @@ def gathered(request_: tuple[Request, Path]) -> Gathered:
 
 
 def made(gathered: Gathered, name: str) -> list[NamedFigure | ResultTable]:
-    (item,) = choose_items([name])
+    (item,) = choose([name])[0].items
     return list(item.make(gathered.inputs(item)))
 
 
 def test_a_run_of_two_species_is_found_and_serves_each_of_them(gathered: Gathered) -> None:
-    (item,) = choose_items(["sequel-numbers"])
+    (item,) = choose(["sequel-numbers"])[0].items
     worlds = gathered.inputs(item).worlds
     assert {label: [(world.species, world.seed) for world in group] for label, group in worlds.items()} == {
         "prey": [("prey", 3)],

@@ -9,7 +9,7 @@ import pytest
 from synthetic_run import write_run
 
 from hedon.analysis.response import RESPONSES, common_to, figures
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import diff, digest, load_config
 from hedon.figure.named import NamedFigure
@@ -41,7 +41,6 @@ def made(item: Item, worlds: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[
 @pytest.mark.parametrize("item", ITEMS, ids=lambda item: item.name)
 def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[WorldRecord]) -> None:
     labels = [condition.label for condition in item.conditions]
-    assert item.kind == "study"
     assert len(set(labels)) == len(labels)
     tables, _ = made(item, {})
     assert any(f"Not run yet: {'; '.join(labels)}." in part.note for part in tables.values())
@@ -104,8 +103,8 @@ def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
     food = tables["fault_effects"].rows.filter(pl.col("response") == "food_step")
     assert (food["scale"][0], food["estimate"][0]) == ("ratio", pytest.approx(0.5))
     cells = tables["fault_cells"].rows
-    assert cells["arm"].to_list() == list(fault.CELLS)
-    assert cells.filter(pl.col("arm") == "growth")["alive"][0] == pytest.approx(2 * alive)
+    assert cells["condition"].to_list() == list(fault.CELLS)
+    assert cells.filter(pl.col("condition") == "growth")["alive"][0] == pytest.approx(2 * alive)
 
 
 def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:

@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 from synthetic_run import write_run
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config.load import PAPER_PRESETS
 from hedon.figure.named import NamedFigure
@@ -49,12 +49,12 @@ def test_without_worlds_it_says_so() -> None:
 def test_worlds_of_all_conditions_are_put_together(worlds: list[WorldRecord]) -> None:
     tables, _ = make({"baseline": worlds, "large": worlds[:2]})
     by_world = tables["drift_world"].rows
-    assert by_world.group_by("arm").len().sort("arm").rows() == [("baseline", 9), ("large", 6)]
+    assert by_world.group_by("condition").len().sort("condition").rows() == [("baseline", 9), ("large", 6)]
     rows = tables["drift_all"].rows.filter(pl.col("test") == "direction")
     assert rows["weight"].to_list() == GENES
     for row in rows.rows(named=True):
         scores = by_world.filter(pl.col("weight") == row["weight"])["score"].to_numpy()
-        assert (row["arm"], row["worlds"], row["positive"]) == (ALL, 5, np.count_nonzero(scores > 0))
+        assert (row["condition"], row["worlds"], row["positive"]) == (ALL, 5, np.count_nonzero(scores > 0))
         assert row["effect"] == pytest.approx(scores.mean())
         assert row["p"] == pytest.approx(2 * stats.norm.sf(abs(scores.sum()) / math.sqrt(5)))
         assert row["low"] < row["effect"] < row["high"]
@@ -67,8 +67,8 @@ def test_worlds_of_all_conditions_are_put_together(worlds: list[WorldRecord]) ->
 def test_two_worlds_of_a_condition_get_no_bounds(worlds: list[WorldRecord]) -> None:
     rows = make({"baseline": worlds, "large": worlds[:2]})[0]["drift_condition"].rows
     assert set(rows["test"]) == {"direction"}
-    assert rows.filter(pl.col("arm") == "baseline")["low"].null_count() == 0
-    assert rows.filter(pl.col("arm") == "large")["low"].null_count() == 3
+    assert rows.filter(pl.col("condition") == "baseline")["low"].null_count() == 0
+    assert rows.filter(pl.col("condition") == "large")["low"].null_count() == 3
 
 
 def test_the_figure_has_a_point_per_world_and_the_mean_of_all(worlds: list[WorldRecord]) -> None:

@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.figure.named import NamedFigure
 from hedon.record.reader import open_run
@@ -48,14 +48,14 @@ def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -
         # The point of a world lies on the line of what it eats: so many agents, so much each.
         assert row["eaten"] * row["alive"] == pytest.approx(0.2 * row["eaten_share"])
     [condition] = tables["supply"].rows.rows(named=True)
-    assert (condition["arm"], condition["worlds"], condition["grows"]) == ("small, corrected", 2, 0.2)
+    assert (condition["condition"], condition["worlds"], condition["grows"]) == ("small, corrected", 2, 0.2)
     assert condition["eaten_share"] == pytest.approx(rows["eaten_share"].to_numpy().mean())
     assert condition["eaten"] == pytest.approx(np.exp(np.log(rows["eaten"].to_numpy()).mean()))
 
 
 def test_the_papers_rate_feeds_so_many(worlds: list[WorldRecord]) -> None:
     rows = make(dict.fromkeys((condition.label for condition in CONDITIONS), worlds))[0]["supply"].rows
-    feeds = dict(zip(rows["arm"], rows["feeds"], strict=True))
+    feeds = dict(zip(rows["condition"], rows["feeds"], strict=True))
     assert feeds["small, corrected"] == pytest.approx(0.2 / 0.0045)
     assert feeds["centered, growth"] == pytest.approx(1 / 0.0039)
     assert feeds["baseline, released"] == pytest.approx(1 / 0.001)
@@ -70,7 +70,7 @@ def test_the_figure_has_a_panel_per_condition_with_its_worlds_its_supplies_and_t
     assert [axes.get_title("left") for axes in named.figure.axes] == list(counts)
     for axes, (condition, count) in zip(named.figure.axes, counts.items(), strict=True):
         points = [np.asarray(line.get_xydata())[0] for line in axes.lines if line.get_marker() == "o"]
-        mine = by_world.filter(pl.col("arm").str.starts_with(condition)).select("alive", "eaten").rows()
+        mine = by_world.filter(pl.col("condition").str.starts_with(condition)).select("alive", "eaten").rows()
         assert len(points) == count
         assert np.allclose(points, mine) if mine else not points
         lines = [np.asarray(line.get_xydata()) for line in axes.lines if line.get_linestyle() == "-"]

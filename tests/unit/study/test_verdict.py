@@ -13,10 +13,14 @@ from hedon.config import load_config
 from hedon.record.reader import open_run
 from hedon.statistic.contrast import fisher_mid_p
 from hedon.statistic.interval import distance_interval, spread_interval
+from hedon.study.claim import Claim, Comparison, Order, OverWorlds
 from hedon.study.estimate import estimate
+from hedon.study.item import Condition
 from hedon.study.verdict import judge, judge_order, place, verdicts
-from hedon_studies.kanagawa_doya_2024.claim import CLAIMS, SAME_FACTOR, Claim, OverWorlds
-from hedon_studies.kanagawa_doya_2024.order import ORDERS, Order, Scale
+from hedon_studies.kanagawa_doya_2024.claim import CLAIMS, SAME_FACTOR
+from hedon_studies.kanagawa_doya_2024.order import ORDERS
+
+EVERY = (*CLAIMS, *ORDERS)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +32,7 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 def claim(figures: list[float], over_worlds: OverWorlds, **region: Any) -> Claim:
     """A claim whose figure of the world with seed i + 1 is figures[i]."""
     options: dict[str, Any] = {"steps": 0} | region
-    return Claim("a", "baseline", "text", lambda w: figures[w.seed - 1], over_worlds, "0", **options)
+    return Claim("a", Condition("baseline"), "text", lambda w: figures[w.seed - 1], over_worlds, "0", **options)
 
 
 def test_where_an_interval_lies() -> None:
@@ -47,7 +51,7 @@ def test_rules(worlds: list[WorldRecord]) -> None:
     assert judge(claim([1.0, 1.1, 0.9], "mean", high=0.5), "c", three).verdict == "fails"
     same = judge(claim([90.0, 100.0, 110.0], "ratio", low=100 / 1.5, high=150.0), "c", three)
     assert (same.verdict, same.value) == ("holds", pytest.approx(np.exp(np.mean(np.log([90, 100, 110])))))
-    assert (same.against_paper, math.isnan(same.p_paper)) == ("the paper gives no spread", True)
+    assert (same.against_reported, math.isnan(same.p_reported)) == ("the source gives no spread", True)
     two = judge(claim([-1.0, -1.1, -0.9, -1.05, -0.95, -1.01, 5, 5.1, 4.9, 5.05, 4.95, 5.01], "modes"), "c", worlds)
     assert two.verdict == "holds"
     assert two.reason.startswith("6 worlds around -1.00, 6 around 5.00; dip test: p 0.0")
@@ -55,7 +59,7 @@ def test_rules(worlds: list[WorldRecord]) -> None:
 
 def test_five_of_five_worlds_decide(worlds: list[WorldRecord]) -> None:
     five = judge(claim([1.0] * 5, "share", low=0.5), "c", worlds[:5])
-    assert (five.verdict, five.value, five.against_paper) == ("holds", 1.0, "the paper gives no count")
+    assert (five.verdict, five.value, five.against_reported) == ("holds", 1.0, "the source gives no count")
     assert judge(claim([-1.0] * 5, "share", low=0.5), "c", worlds[:5]).verdict == "fails"
     assert judge(claim([1.0] * 4 + [-1.0], "share", low=0.5), "c", worlds[:5]).verdict == "undecided"
     assert judge(claim([1.0] * 3, "share", low=0.5), "c", worlds[:3]).verdict == "undecided"
@@ -63,11 +67,11 @@ def test_five_of_five_worlds_decide(worlds: list[WorldRecord]) -> None:
 
 def test_the_difference_from_the_paper_is_asked_apart(worlds: list[WorldRecord]) -> None:
     figures = [1.0, -1.0, -1.0] * 4
-    unlike = judge(claim(figures, "share", low=0.5, paper_count=(5, 5)), "c", worlds)
-    assert (unlike.verdict, unlike.against_paper) == ("undecided", "differs")
-    assert unlike.p_paper == pytest.approx(fisher_mid_p(4, 12, 5, 5))
-    like = judge(claim([1.0] * 12, "share", low=0.5, paper_count=(5, 5)), "c", worlds)
-    assert (like.verdict, like.against_paper) == ("holds", "no difference shown")
+    unlike = judge(claim(figures, "share", low=0.5, reported_count=(5, 5)), "c", worlds)
+    assert (unlike.verdict, unlike.against_reported) == ("undecided", "differs")
+    assert unlike.p_reported == pytest.approx(fisher_mid_p(4, 12, 5, 5))
+    like = judge(claim([1.0] * 12, "share", low=0.5, reported_count=(5, 5)), "c", worlds)
+    assert (like.verdict, like.against_reported) == ("holds", "no difference shown")
 
 
 @pytest.mark.parametrize(("power", "count"), [(0.21, 5), (0.645, 10)])
@@ -81,28 +85,28 @@ def test_extinct_worlds_do_not_stand_for_short_ones(worlds: list[WorldRecord]) -
     """14 worlds die out, 26 live at half of the time: not "share 1.00 of 14 worlds, holds"."""
     many = [dataclasses.replace(worlds[i % 12], seed=i) for i in range(40)]
     mixed = [dataclasses.replace(w, extinct_step=1024, last_step=1024) for w in many[:14]] + many[14:]
-    rule = claim([], "extinction", low=0.55, steps=2 * 5120, paper_count=(9, 10))
+    rule = claim([], "extinction", low=0.55, steps=2 * 5120, reported_count=(9, 10))
     found = judge(rule, "c", mixed)
     assert (found.verdict, found.worlds) == ("undecided", 40)
     assert (found.value, found.high) == (pytest.approx(0.35), 1.0)
     assert "26 of 40 worlds live and end before step 10,240" in found.reason
-    assert found.against_paper == "no difference shown"  # what the 26 may still do
+    assert found.against_reported == "no difference shown"  # what the 26 may still do
     reached = judge(dataclasses.replace(rule, steps=5120), "c", mixed)
     assert (reached.verdict, reached.value) == ("fails", pytest.approx(0.35))
-    assert reached.p_paper == pytest.approx(fisher_mid_p(14, 40, 9, 10))
-    assert reached.against_paper == "differs"
+    assert reached.p_reported == pytest.approx(fisher_mid_p(14, 40, 9, 10))
+    assert reached.against_reported == "differs"
 
 
 def test_the_papers_own_table_of_extinction_decides(worlds: list[WorldRecord]) -> None:
     rules = [rule for rule in CLAIMS if rule.over_worlds == "extinction"]
     assert len(rules) > 3
     for rule in rules:
-        gone, of = rule.paper_count or (0, 0)
+        gone, of = rule.reported_count or (0, 0)
         assert of == 10
         ten = [dataclasses.replace(w, last_step=rule.steps) for w in worlds[:10]]
         mixed = [dataclasses.replace(w, extinct_step=1024) for w in ten[:gone]] + ten[gone:]
         found = judge(rule, "c", mixed)
-        assert (found.verdict, found.against_paper) == ("holds", "no difference shown"), rule.text
+        assert (found.verdict, found.against_reported) == ("holds", "no difference shown"), rule.text
 
 
 def test_too_few_too_short_or_extinct_worlds_decide_nothing(worlds: list[WorldRecord]) -> None:
@@ -177,8 +181,9 @@ def test_conditions_are_compared(worlds: list[WorldRecord]) -> None:
     def measure(world: WorldRecord) -> float:
         return figures[world.condition][world.seed - 1]
 
-    def rule(scale: Scale, **region: Any) -> Order:
-        return Order("a", "small", "large", "text", measure, scale, "0", **dict[str, Any]({"steps": 0} | region))
+    def rule(comparison: Comparison, **region: Any) -> Order:
+        pair = Condition("small", "small"), Condition("large", "large")
+        return Order("a", *pair, "text", measure, comparison, "0", **dict[str, Any]({"steps": 0} | region))
 
     longer = judge_order(rule("ratio", low=2.0), second, first)
     assert (longer.verdict, longer.condition, longer.worlds) == ("holds", "two against one", 10)
@@ -197,14 +202,14 @@ def test_only_conditions_of_equal_fidelity_are_compared(worlds: list[WorldRecord
         return [dataclasses.replace(w, config=config, condition=f"{preset} {fidelity}") for w in worlds[:3]]
 
     every = [*of("baseline", "corrected"), *of("large", "released"), *of("large", "corrected")]
-    found = verdicts(every, claims=())
+    found = verdicts(every, ORDERS)
     assert [(v.claim, v.condition) for v in found] == [
         ("action weight lower", "large corrected against baseline corrected")
     ]
 
 
 def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) -> None:
-    found = verdicts(worlds)
+    found = verdicts(worlds, EVERY)
     names = {v.claim for v in found}
     assert {"food weight positive", "two modes of action", "mean lifetime", "extinction"} <= names
     assert "action weight negative" not in names
@@ -212,12 +217,12 @@ def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) 
     assert {v.claim: v.verdict for v in found if v.verdict != "undecided"} == {"lifespan": "holds"}  # 5 windows alone
     changed = dataclasses.replace(worlds[0].config.food["normal"], growth_rate=0.3)
     config = dataclasses.replace(worlds[0].config, food={"normal": changed})
-    assert verdicts([dataclasses.replace(world, config=config) for world in worlds]) == []
+    assert verdicts([dataclasses.replace(world, config=config) for world in worlds], EVERY) == []
     costly = dataclasses.replace(worlds[0].config.energy, basic_cost=0.002)
     config = dataclasses.replace(worlds[0].config, energy=costly)
     dying = [dataclasses.replace(world, config=config, extinct_step=5120) for world in worlds]
-    extinction = verdicts(dying)
-    assert [(v.claim, v.paper, v.verdict) for v in extinction] == [("extinction", "90 %", "holds")]
+    extinction = verdicts(dying, EVERY)
+    assert [(v.claim, v.reported, v.verdict) for v in extinction] == [("extinction", "90 %", "holds")]
 
 
 def test_the_lifespan_is_that_of_the_hazard() -> None:
@@ -231,12 +236,14 @@ def test_the_lifespan_is_that_of_the_hazard() -> None:
 
 
 def test_claims_that_the_paper_makes_have_a_rule() -> None:
-    of = {preset: {c.name for c in CLAIMS if c.preset == preset} for preset in ("large", "poison", "baseline")}
+    of = {
+        preset: {c.name for c in CLAIMS if c.condition.preset == preset} for preset in ("large", "poison", "baseline")
+    }
     assert "food weight positive" in of["large"]
     assert "food weight above 4" not in of["large"]  # it says "consistently positive" there
     assert {"poison weight positive", "poison weight below food"} <= of["poison"]
     assert {"food weight no random walk", "action weight no random walk", "lifespan"} <= of["baseline"]
-    assert {(o.name, o.first, o.second) for o in ORDERS} >= {
+    assert {(o.name, o.first.preset, o.second.preset) for o in ORDERS} >= {
         ("action weight lower", "large", "baseline"),
         ("longer lifetime", "small", "centered"),
         ("longer lifetime", "centered", "baseline"),
@@ -248,6 +255,14 @@ def test_claims_that_the_paper_makes_have_a_rule() -> None:
 
 
 def test_the_claims_are_those_of_the_paper() -> None:
-    assert len({(c.name, c.preset, c.costs) for c in CLAIMS}) == len(CLAIMS)
-    assert {c.preset for c in CLAIMS} == {"baseline", "small", "large", "centered", "relocation", "poor", "poison"}
+    assert len({(c.name, c.condition) for c in CLAIMS}) == len(CLAIMS)
+    assert {c.condition.preset for c in CLAIMS} == {
+        "baseline",
+        "small",
+        "large",
+        "centered",
+        "relocation",
+        "poor",
+        "poison",
+    }
     assert all(c.low < c.high for c in CLAIMS)

@@ -9,7 +9,7 @@ import numpy as np
 from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.gene.drift import drift_tests, standard_drift
 from hedon.analysis.gene.weight import last_mean
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.record import SEED, Conditions, generator, labels
 from hedon.statistic.correction import holm
 from hedon.statistic.mode import ENOUGH_WORLDS, modes

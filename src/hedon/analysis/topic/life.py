@@ -11,7 +11,7 @@ from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.agent.reproduction import reproduction
 from hedon.analysis.descent.generation import generation_time
-from hedon.analysis.table import ResultTable, make_table, over_worlds
+from hedon.analysis.result import ResultTable, make_table, over_worlds
 from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, world_means
 from hedon.analysis.world.budget import energy_budget
 from hedon.analysis.world.population import run_tail

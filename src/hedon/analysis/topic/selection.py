@@ -8,7 +8,7 @@ import polars as pl
 from hedon.analysis.agent.cohort import COMPLETE, genome_distribution, window_bounds, with_cohorts
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.gene.selection import curvature, selection
-from hedon.analysis.table import ResultTable, make_table, over_worlds
+from hedon.analysis.result import ResultTable, make_table, over_worlds
 from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, window_count, world_means
 from hedon.analysis.world.record import Conditions, labels
 from hedon.statistic.price import price

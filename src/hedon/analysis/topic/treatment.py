@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 
 from hedon.analysis.gene.mutation import CLIP, OUTCOMES, SCALES, births_of, mutation_effects, pool
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.record import SEED, Conditions
 
 

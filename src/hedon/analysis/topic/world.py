@@ -7,7 +7,7 @@ import polars as pl
 
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.lineage import coalescence, lines_through_time
-from hedon.analysis.table import ResultTable, make_table, over_worlds
+from hedon.analysis.result import ResultTable, make_table, over_worlds
 from hedon.analysis.world.record import Conditions, labels
 from hedon.analysis.world.regime import REGIMES, regimes
 

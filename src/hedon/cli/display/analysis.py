@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.table import ResultTable
+from hedon.analysis.result import ResultTable
 from hedon.cli.display.table import PrintedTable
 from hedon.report.table import HIDDEN, cells, is_numeric
 

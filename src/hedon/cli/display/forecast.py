@@ -5,7 +5,7 @@ import math
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.table import ResultTable, make_table
+from hedon.analysis.result import ResultTable, make_table
 from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast

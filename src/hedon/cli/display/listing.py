@@ -1,5 +1,7 @@
 """The items of a request as a table: what each needs, and how long that takes."""
 
+from collections.abc import Iterable
+
 from rich.console import Group
 from rich.text import Text
 
@@ -8,23 +10,33 @@ from hedon.cli.display.table import PrintedTable
 from hedon.study.cost import RequestCost
 from hedon.study.item import Item
 from hedon.study.request import Request
+from hedon.study.study import Study
+
+
+def catalogue(studies: Iterable[Study]) -> Group:
+    """What `hedon study list` prints: a table of items for each study, below its question."""
+    parts: list[PrintedTable | Text] = []
+    for study in studies:
+        rows = [(item.name, item.title) for item in study.items]
+        parts += [Text(f"{study.name}: {study.question}"), PrintedTable(("item", "what it is"), rows, text=range(2))]
+    return Group(*parts)
 
 
 def listing(request: Request, cost: RequestCost) -> Group:
-    """What `hedon reproduce list` prints.
+    """What `hedon study plan` prints.
 
     Args:
         request: The items that the user asked for.
         cost: What their runs take [s].
     """
     rows = [
-        (item.name, item.kind, item.title, _needs(request, item), _time(its.total), _time(its.left))
+        (item.name, item.title, _needs(request, item), _time(its.total), _time(its.left))
         for item, its in zip(request.items, cost.items, strict=True)
     ]
     together = _time(cost.together.total), _time(cost.together.left)
-    rows.append(("together", "", "shared worlds are counted once", "", *together))
-    headers = ("item", "kind", "what it is", "needs", "total", "still to run")
-    table = PrintedTable(headers, rows, text=range(4), total=True)
+    rows.append(("together", "shared worlds are counted once", "", *together))
+    headers = ("item", "what it is", "needs", "total", "still to run")
+    table = PrintedTable(headers, rows, text=range(3), total=True)
     notes = [
         f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
         f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"

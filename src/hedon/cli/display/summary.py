@@ -1,4 +1,4 @@
-"""A run's summary for the terminal: our figures beside the paper's, then world by world."""
+"""A run's summary for the terminal: its figures beside those that sources of studies report, then world by world."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,17 +11,16 @@ from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
-from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
-_QUANTITIES = {  # key of the summary: name, key among the paper's figures
-    "mean_lifetime": ("mean lifetime of the dead [step]", "mean_lifetime"),
-    "food_per_step": ("food per step, mean over agents [1/step]", "food_per_step"),
-    "food_per_agent_step": ("food per step lived [1/step]", ""),
-    "alive": ("agents alive", "population"),
-    "prey_per_step": ("agents eaten per step, mean over agents [1/step]", ""),
-    "prey_per_agent_step": ("agents eaten per step lived [1/step]", ""),
-    "mean_energy": ("mean energy", ""),
-    "generation": ("mean generation", "generation"),
+_QUANTITIES = {  # key of the summary: name
+    "mean_lifetime": "mean lifetime of the dead [step]",
+    "food_per_step": "food per step, mean over agents [1/step]",
+    "food_per_agent_step": "food per step lived [1/step]",
+    "alive": "agents alive",
+    "prey_per_step": "agents eaten per step, mean over agents [1/step]",
+    "prey_per_agent_step": "agents eaten per step lived [1/step]",
+    "mean_energy": "mean energy",
+    "generation": "mean generation",
 }
 _WORLD_COLUMNS = {  # key of a world: header
     "seed": "seed",
@@ -91,14 +90,13 @@ def _parts(summary: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any],
 
 
 def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable | Text]:
-    count, paper = len(summary["worlds"]), summary["paper"]
+    count, sources = len(summary["worlds"]), summary["reported"]
     headers = ["mean over worlds", "value", "95 % interval"]
-    if paper is not None:
-        headers.append(f"paper ({STEPS / 1e6:g}e6 steps)")
+    headers += [f"{name} ({source['steps'] / 1e6:g}e6 steps)" for name, source in sources.items()]
     rows = []
-    for key, (label, source) in _QUANTITIES.items():
+    for key, label in _QUANTITIES.items():
         if key in part.means and (not part.species or part.means[key]["mean"] is not None):
-            reported = [] if paper is None else [_reported(paper.get(source))]
+            reported = [_reported(source.get(key)) for source in sources.values()]
             rows.append([label, *_interval(part.means[key]), *reported])
     rows += [[f"weight {weight}", *_interval(part.means["weights"][weight])] for weight in part.shown]
     if count < SHOWN_FROM:
@@ -106,8 +104,12 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
             del line[2]
     of = f", {part.species}" if part.species else ""
     title = f"{_name(summary)}{of}: {count} world{'s' if count > 1 else ''}"
-    claim = [Text(f"The paper: {paper['claim']}.", style="dim italic")] if paper is not None and paper["claim"] else []
-    return [PrintedTable(headers, rows, title=title), *claim]
+    said = [
+        Text(f"{name}: {source['claim']}.", style="dim italic")
+        for name, source in sources.items()
+        if source.get("claim")
+    ]
+    return [PrintedTable(headers, rows, title=title), *said]
 
 
 def _name(summary: Mapping[str, Any]) -> str:

@@ -12,8 +12,7 @@ from itertools import pairwise
 import numpy as np
 import polars as pl
 
-from hedon.analysis.agent.lifetime import dead_agents
-from hedon.analysis.world.record import WorldRecord
+from hedon.analysis import WorldRecord, dead_agents
 
 WINDOWS = 5
 EDGES = (-10.0, -3.0, -1.0, -0.3, -0.1, 0.0, 0.1, 0.3, 1.0, 3.0, 10.0)

@@ -18,12 +18,11 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.analysis.gene.weight import last_agents
-from hedon.analysis.world.record import WorldRecord
-from hedon.config.gene import gene_of
-from hedon.statistic.interval import LEVEL
-from hedon.statistic.prediction import Prediction, prediction
+from hedon.analysis import WorldRecord, last_agents
+from hedon.config import gene_of
+from hedon.statistic import LEVEL
 from hedon_studies.kanagawa_doya_2024.analysis.noise import Mutations, NoiseTable, mutations, noise_table
+from hedon_studies.kanagawa_doya_2024.analysis.prediction import Prediction, prediction
 
 NAN = math.nan
 _LINES = 4000

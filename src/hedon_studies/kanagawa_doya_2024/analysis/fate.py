@@ -16,8 +16,7 @@ from itertools import pairwise
 
 import polars as pl
 
-from hedon.analysis.world.population import mean_alive
-from hedon.analysis.world.record import WorldRecord
+from hedon.analysis import WorldRecord, mean_alive
 
 LOST = 0.5
 """A world whose last tenth has less than this share of its second tenth heads for extinction."""

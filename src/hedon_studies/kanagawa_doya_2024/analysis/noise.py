@@ -12,10 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.descent.genealogy import genealogy
-from hedon.analysis.descent.walk import birth_number, is_mutated, mutation_law
-from hedon.analysis.world.record import WorldRecord
-from hedon.config.gene import gene_of
+from hedon.analysis import WorldRecord, birth_number, genealogy, is_mutated, mutation_law
+from hedon.config import gene_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,8 +7,18 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.figure.style import BLUE, PALE, VERMILION, new_figure, say_empty, styled
-from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
+from hedon.figure import (
+    BLUE,
+    PALE,
+    VERMILION,
+    draw_time_axis,
+    draw_traces,
+    draw_zero_line,
+    last_step,
+    new_figure,
+    say_empty,
+    styled,
+)
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import AppetiteBin
 
 _COLORS = (BLUE, VERMILION)

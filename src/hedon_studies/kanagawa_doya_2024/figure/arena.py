@@ -8,12 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, FancyArrowPatch, Rectangle
 
-from hedon.config import Config
-from hedon.config.arena import walls
-from hedon.config.food import PlacementConfig
-from hedon.figure.style import INK, MUTED, food_colors, new_figure, styled
-from hedon.figure.world import AGENT_COLOR, draw_agents, draw_foods, draw_walls
-from hedon.record.snapshot import Snapshot
+from hedon.config import Config, PlacementConfig, walls
+from hedon.figure import AGENT_COLOR, INK, MUTED, draw_agents, draw_foods, draw_walls, food_colors, new_figure, styled
+from hedon.record import Snapshot
 
 _WIDTH = 9.0  # of the figure [inch]
 _GAP = 0.16  # between panels [inch]

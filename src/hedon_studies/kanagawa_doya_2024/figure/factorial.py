@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from hedon.analysis.response import Response
-from hedon.figure.style import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
+from hedon.analysis import Response
+from hedon.figure import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
 
 _COLUMNS = 3
 _WIDTH = 9.0
@@ -26,7 +26,7 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], responses: Seque
     Means of responses that are compared as ratios are geometric. Hollow points are worlds that died out.
 
     Args:
-        worlds: one row per world: arm, seed, died_out and a column per response.
+        worlds: one row per world: condition, seed, died_out and a column per response.
         conditions: in the order of the lines.
         responses: that are drawn.
     """
@@ -34,7 +34,9 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], responses: Seque
         figure, panels = _panels(responses, conditions)
         for axes, response in zip(panels, responses, strict=True):
             for line, condition in enumerate(conditions):
-                rows = worlds.filter((pl.col("arm") == condition) & pl.col(response.name).is_not_null()).sort("seed")
+                rows = worlds.filter((pl.col("condition") == condition) & pl.col(response.name).is_not_null()).sort(
+                    "seed"
+                )
                 if rows.height:
                     _draw_cell(axes, line, rows, response)
             known = worlds[response.name].drop_nulls().to_numpy().astype(np.float64)

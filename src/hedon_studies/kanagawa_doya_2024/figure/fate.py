@@ -6,10 +6,18 @@ import polars as pl
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.analysis.world.population import history
-from hedon.analysis.world.record import WorldRecord
-from hedon.figure.style import BLUE, ORANGE, VERMILION, new_figure, step_unit, styled
-from hedon.figure.trace import draw_time_axis, draw_zero_line, last_step
+from hedon.analysis import WorldRecord, history
+from hedon.figure import (
+    BLUE,
+    ORANGE,
+    VERMILION,
+    draw_time_axis,
+    draw_zero_line,
+    last_step,
+    new_figure,
+    step_unit,
+    styled,
+)
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, HEADING, STANDING, Fate
 
 _COLORS = {STANDING: BLUE, HEADING: ORANGE, EXTINCT: VERMILION}

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, PALE, VERMILION, new_figure, say_empty, styled
+from hedon.figure import BLUE, GREEN, MUTED, ORANGE, PALE, VERMILION, new_figure, say_empty, styled
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift
 
 _COLORS = (VERMILION, BLUE, GREEN, ORANGE)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hedon.figure.style import BLUE, GREEN, INK, MUTED, PALE, VERMILION, new_figure, styled
+from hedon.figure import BLUE, GREEN, INK, MUTED, PALE, VERMILION, new_figure, styled
 
 _COLORS = (BLUE, GREEN, VERMILION)
 _ALIVE = (30.0, 260.0)

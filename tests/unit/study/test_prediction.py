@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hedon.statistic.prediction import prediction
+from hedon_studies.kanagawa_doya_2024.analysis.prediction import prediction
 
 
 def test_the_slope_s_interval_covers_as_often_as_promised() -> None:

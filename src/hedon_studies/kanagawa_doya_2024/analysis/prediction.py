@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from hedon.statistic.interval import LEVEL
+from hedon.statistic import LEVEL
 
 NAN = math.nan
 FEWEST = 3

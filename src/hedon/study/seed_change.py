@@ -20,13 +20,13 @@ def world_rows(
         responses: what is measured of each world.
 
     Returns:
-        Columns arm (the condition's label), seed, steps, died_out, one per response, and until, the age up to which
+        Columns condition (its label), seed, steps, died_out, one per response, and until, the age up to which
         lifetimes are averaged where the living are counted [step].
     """
     common = common_to(world for condition in conditions for world in inputs.worlds.get(condition.label, ()))
     return [
         {
-            "arm": condition.label,
+            "condition": condition.label,
             "seed": world.seed,
             "steps": world.last_step,
             "died_out": world.extinct_step is not None,
@@ -80,7 +80,8 @@ def change(rows: Sequence[dict[str, Any]], response: Response, before: str, afte
         after: label of the condition that is changed.
     """
     by_condition = {
-        label: {row["seed"]: row[response.name] for row in rows if row["arm"] == label} for label in (before, after)
+        label: {row["seed"]: row[response.name] for row in rows if row["condition"] == label}
+        for label in (before, after)
     }
     means = {label: shown_interval(list(values.values()), response).mean for label, values in by_condition.items()}
     if all(mean is None for mean in means.values()):

@@ -1,0 +1,99 @@
+"""Makes jobs on a Ray cluster: a task for each, begun again on another node when its node dies.
+
+A task goes on from its job's last checkpoint. It finds that in a folder that all nodes share, or behind a URL.
+"""
+
+import os
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any, TypeVar
+
+from hedon.experiment.interrupt import count_interrupts
+from hedon.jobs.error import JobError
+from hedon.jobs.process import Display
+from hedon.jobs.retry import RetryLimit
+from hedon.jobs.work import Job, Outcome, attempt
+
+T = TypeVar("T", bound=Job)
+
+LOCAL = "local"
+"""The address of a cluster that is started on this machine, for these jobs alone."""
+_LOOK_SECONDS = 0.5
+
+
+def make_on_ray(jobs: Sequence[T], address: str, display: Display[T], workers: int = 0) -> dict[Path, Outcome]:
+    """Makes jobs on a cluster; one processor each. Ctrl-C ends it after the current windows.
+
+    Args:
+        jobs: In the order in which they begin; all nodes reach the folders or stores where they live.
+        address: Of the cluster, or `LOCAL`.
+        display: Shows how each job ends.
+        workers: Processors of a local cluster; 0 for all.
+
+    Returns:
+        How each job ended, by its run's folder; jobs that never began are missing.
+
+    Raises:
+        JobError: Ray is not installed, or no cluster is at the address.
+    """
+    ray = import_ray()
+    try:
+        if address == LOCAL:
+            # A new one, also where another runs. It answers here alone.
+            settings = {"num_cpus": workers or None, "include_dashboard": False, "_node_ip_address": "127.0.0.1"}
+            ray.init(address="local", log_to_driver=False, **settings)
+        else:
+            ray.init(address=address, log_to_driver=False)
+    except (ConnectionError, ValueError, RuntimeError) as error:
+        raise JobError(f"--ray = {address!r}: no cluster answers there: {error}") from error
+    try:
+        return _see_through(ray, jobs, RetryLimit(), display)
+    finally:
+        ray.shutdown()
+
+
+def import_ray() -> Any:
+    """Ray, told what is wanted of it; its settings count when it is imported.
+
+    Raises:
+        JobError: It is not installed.
+    """
+    # It reports to nobody unless asked to.
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    # Each node has its own hedon. Else, under `uv run`, Ray copies the current folder to each node and builds it there.
+    os.environ.setdefault("RAY_ENABLE_UV_RUN_RUNTIME_ENV", "0")
+    try:
+        return import_module("ray")
+    except ImportError:
+        raise JobError('--ray needs the optional packages: pip install "hedon[ray]"') from None
+
+
+def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: Display[T]) -> dict[Path, Outcome]:
+    """Submits jobs and awaits them; those whose process is lost again, as long as that leads further."""
+    lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
+    # Ray's own tries have no end where memory runs out, and do not see whether a job gets further.
+    remote = ray.remote(num_cpus=1, max_retries=0)(attempt)
+    waiting = {remote.remote(job, 1): job for job in jobs}
+    outcomes: dict[Path, Outcome] = {}
+    with count_interrupts() as interrupted:
+        told = 0
+        while waiting:
+            for done in ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOOK_SECONDS)[0]:
+                job = waiting.pop(done)
+                try:
+                    outcome = ray.get(done)
+                except ray.exceptions.RayError as error:
+                    if interrupted.count:  # it was called off
+                        continue
+                    if isinstance(error, lost) and limit.may_go_on(job):
+                        waiting[remote.remote(job, 1)] = job
+                        continue
+                    outcome = Outcome("failed", limit.reason(job, error) if isinstance(error, lost) else str(error))
+                outcomes[job.folder] = outcome
+                display.end(job, outcome)
+            if told < interrupted.count:
+                told = interrupted.count
+                for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
+                    ray.cancel(each, force=told > 1)
+    return outcomes

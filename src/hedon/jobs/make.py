@@ -1,0 +1,34 @@
+"""Makes jobs where it is asked: in processes on this machine, or on a Ray cluster."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from hedon.jobs.process import Display, make_here
+from hedon.jobs.work import Job, Outcome
+from hedon.record.provenance import usable_cpus
+
+T = TypeVar("T", bound=Job)
+
+
+def make_jobs(jobs: Sequence[T], display: Display[T], threads: int = 0, ray: str | None = None) -> dict[Path, Outcome]:
+    """Makes jobs, each in a process of its own; those whose runs are begun go on.
+
+    Args:
+        jobs: In the order in which they begin.
+        display: Shows every moment, and how each job ends.
+        threads: To use in total; 0 for all processors. On a cluster with an address, each job has one.
+        ray: Address of a Ray cluster whose nodes share the folders of the runs, `cluster.LOCAL` for one that is started
+            here; None for this machine.
+
+    Returns:
+        How each job ended, by its run's folder; jobs that never began are missing.
+
+    Raises:
+        JobError: Ray is not installed, or no cluster is at the address.
+    """
+    if ray is None:
+        return make_here(jobs, threads or usable_cpus(), display)
+    from hedon.jobs.cluster import make_on_ray
+
+    return make_on_ray(jobs, ray, display, threads)

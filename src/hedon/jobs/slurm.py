@@ -1,0 +1,44 @@
+"""Writes the script of a job array for Slurm: each task of the array makes a part of some jobs."""
+
+import shlex
+import sys
+from collections.abc import Sequence
+
+SIGNAL_SECONDS = 120
+"""So long before its time is over Slurm tells a task, which then saves where it is [s]."""
+
+TEMPLATE = """\
+#!/bin/sh
+# {name} as a job array of Slurm: submit it with sbatch. Submitted again, it goes on where it was.
+#SBATCH --job-name=hedon-{job}
+#SBATCH --array=1-{tasks}
+#SBATCH --cpus-per-task={workers}
+#SBATCH --time={hours}:00:00
+#SBATCH --signal=B:TERM@{seconds}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+exec {python} -c 'from hedon.cli.start import main; main()' \\
+  {words} --part "$SLURM_ARRAY_TASK_ID/{tasks}"
+"""
+
+
+def slurm_script(name: str, words: Sequence[str], tasks: int, workers: int, hours: int) -> str:
+    """The script of a job array.
+
+    Args:
+        name: Of what is made.
+        words: Of the command after `hedon` that makes a part of it, without --part.
+        tasks: Of the array.
+        workers: Processes of a task, one processor each.
+        hours: That a task may take [h].
+    """
+    return TEMPLATE.format(
+        name=name[:1].upper() + name[1:],
+        job="".join(c if c.isalnum() else "-" for c in name.split()[-1]),
+        tasks=tasks,
+        workers=workers,
+        hours=hours,
+        seconds=SIGNAL_SECONDS,
+        python=shlex.quote(sys.executable),
+        words=shlex.join(words),
+    )

@@ -1,0 +1,4 @@
+from .reader import Run as Run
+from .reader import open_run as open_run
+from .snapshot import Snapshot as Snapshot
+from .snapshot import load_snapshot as load_snapshot

@@ -1,0 +1,15 @@
+from .contrast import fisher_mid_p as fisher_mid_p
+from .correction import holm as holm
+from .factorial import Cell as Cell
+from .factorial import FactorialFit as FactorialFit
+from .factorial import Factors as Factors
+from .factorial import all_effects as all_effects
+from .factorial import fit_factorial as fit_factorial
+from .interval import LEVEL as LEVEL
+from .interval import SHOWN_FROM as SHOWN_FROM
+from .interval import distance_interval as distance_interval
+from .interval import mean_interval as mean_interval
+from .interval import share_interval as share_interval
+from .interval import spread_interval as spread_interval
+from .mode import modes as modes
+from .survival import survival_curve as survival_curve
