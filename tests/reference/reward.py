@@ -43,18 +43,17 @@ def reward(rules: Rules, turn: Turn, step: int) -> float:
     species = rules.of(turn.agent)
     total = 0.0
     for name, value in inputs(rules, turn).items():
-        total += (
-            coef(species, name)
-            * (1.0 if name == "drive_reduction" else weight(species, turn.agent, name, step))
-            * value
-        )
+        factor = 1.0 if name == "drive_reduction" else weight(species, turn.agent, name, step)
+        total += coef(species, name) * factor * value
     return total
 
 
 def coef(species: Species, name: str) -> float:
     settings = species.reward
-    if name in ("action", "drive_reduction"):
-        return getattr(settings, f"{name}_coef")
+    if name == "action":
+        return settings.action_coef
+    if name == "drive_reduction":
+        return settings.relief_coef
     for sense in ("see", "smell"):
         if name.startswith(f"{sense}_"):
             return getattr(settings, sense)[name.removeprefix(f"{sense}_")].coef

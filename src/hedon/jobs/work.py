@@ -16,7 +16,7 @@ from hedon.experiment.plan import Display, Moment
 class Job(Protocol):
     """Something that makes a run; it can be pickled, and the folder of its run tells it from the others.
 
-    Whoever makes it goes on from the last checkpoint, on whichever machine that was written.
+    It continues from its last checkpoint, also from one that another machine wrote.
     """
 
     @property
