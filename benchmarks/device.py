@@ -20,7 +20,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     The first world of each row must have the digest that the processor gives it.
     """
     config = plan.config()
-    window = config.learning.rollout_steps
+    window = config.world.rollout_steps
     expected = _digest_here(plan)
     rows = []
     for worlds in plan.worlds or ((1, 2) if plan.quick else WORLDS):
@@ -58,7 +58,7 @@ def _digest_here(plan: Plan) -> str:
     """What the processor makes of the first world."""
     simulation = Simulation(plan.config(), [1], plan.threads[-1], plan.kernel)
     go_on_from_peopled(plan, simulation)
-    simulation.run((plan.windows + 1) * plan.config().learning.rollout_steps)
+    simulation.run((plan.windows + 1) * plan.config().world.rollout_steps)
     return simulation.worlds[0].digest()
 
 

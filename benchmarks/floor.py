@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hedon.config.config import Config
+from hedon.config.species import ONLY
 
 HIDDEN = 64
 """Units of each hidden layer."""
@@ -33,7 +34,8 @@ def network_flop(config: Config) -> tuple[int, int]:
     64 × 64, and three heads. Backward, the gradients of the same weights take the same number, and 64 × 64 and the
     heads count again for the gradients of the units. With the baseline 12,288 and 20,864: 33 kflop.
     """
-    rows = config.sensor.ray_count + (5 if config.sensor.scaling == "raw" else 6)
+    sensor = config.species[ONLY].sensor
+    rows = sensor.ray_count + (5 if sensor.scaling == "raw" else 6)
     square_and_heads = HIDDEN * HIDDEN + OUTPUTS * HIDDEN
     forward = 2 * (rows * HIDDEN + square_and_heads)
     return forward, forward + 2 * square_and_heads
@@ -62,12 +64,12 @@ def step_floor(
         cache_read_gbytes_per_s: Rate of the same threads, from the last-level cache [1e9 byte/s].
     """
     forward_flop, backward_flop = network_flop(config)
-    samples = learners * config.learning.update_epochs * config.learning.rollout_steps
-    learning_flop_per_step = samples * (forward_flop + backward_flop) / config.learning.rollout_steps
+    samples = learners * config.species[ONLY].learning.update_epochs * config.world.rollout_steps
+    learning_flop_per_step = samples * (forward_flop + backward_flop) / config.world.rollout_steps
 
     heads = OUTPUTS * HIDDEN
     biases = HIDDEN + HIDDEN + OUTPUTS
-    hidden_bytes = WEIGHT_BYTES[config.learning.acting_weights] * (forward_flop // 2 - heads)
+    hidden_bytes = WEIGHT_BYTES[config.species[ONLY].learning.acting_weights] * (forward_flop // 2 - heads)
     reading = alive * (hidden_bytes + FLOAT_BYTES * (heads + biases)) / (cache_read_gbytes_per_s * 1e9)
     computing = alive * forward_flop / (multiply_add_gflops * 1e9)
     return Floor(learning_flop_per_step / (multiply_add_gflops * 1e9), max(reading, computing))

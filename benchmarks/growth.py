@@ -1,7 +1,5 @@
 """How the time of a step grows with the world: arenas up to 500 times as large, with the same densities."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from benchmarks.check import check_world, require
@@ -13,6 +11,7 @@ from benchmarks.plan import Plan, PlanError
 from benchmarks.scene import peopled, scene_of
 from hedon import _engine
 from hedon.config.config import Config
+from hedon.config.species import ONLY
 from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
 
@@ -52,9 +51,9 @@ def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
     overrides = [
         f"arena.width={base.arena.width * across}",
         f"arena.height={base.arena.height * up}",
-        f"population.capacity={base.population.capacity * factor}",
+        f"population.capacity={base.species[ONLY].population.capacity * factor}",
         "population.initial_count=1",
-        f"learning.rollout_steps={steps + 1}",
+        f"world.rollout_steps={steps + 1}",
         f"learning.minibatch_size={steps + 1}",
     ]
     for kind, food in base.food.items():
@@ -81,8 +80,10 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
         config = scaled_config(plan, across, up, TRIALS + piece * PIECES)
         threads = sorted({plan.threads[0], plan.threads[-1]})
         needed, free = bytes_needed(config, threads[-1]), memory_bytes("MemAvailable")
-        full = replace(config, learning=base.learning)
-        bare = replace(config, learning=replace(base.learning, rollout_steps=1, minibatch_size=1))
+        size = base.species[ONLY].learning.minibatch_size
+        steps = config.with_("learning.minibatch_size", 1)
+        full = steps.with_("world.rollout_steps", base.world.rollout_steps).with_("learning.minibatch_size", size)
+        bare = steps.with_("world.rollout_steps", 1)
         head = {
             "slots": slots,
             "reserved_bytes": needed,
@@ -107,7 +108,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 
 def _sizes(plan: Plan) -> dict[int, tuple[int, int]]:
     """The tiles that the plan asks for, by numbers of slots."""
-    capacity = plan.config().population.capacity
+    capacity = plan.config().species[ONLY].population.capacity
     sizes = {capacity * across * up: (across, up) for across, up in (QUICK_TILES if plan.quick else TILES)}
     for slots in plan.slots or ():
         if slots not in sizes:

@@ -12,6 +12,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import layouts, observation_columns
 from hedon.config.native import engine_config
+from hedon.config.species import ONLY
 
 FORWARD_ROWS = 10_240
 """Observations in one timed call, enough that the cost of the call itself does not matter."""
@@ -20,8 +21,9 @@ FORWARD_ROWS = 10_240
 def shape(config: Config) -> tuple[int, int, int, int]:
     """Rays, types, touch bits and dense entries of an observation."""
     name, layout = next(iter(layouts(config).items()))
-    rays, types = config.sensor.ray_count, len(layout.sees)
-    touches = len(layout.touches) * config.sensor.touch_sectors
+    sensor = config.species[name].sensor
+    rays, types = sensor.ray_count, len(layout.sees)
+    touches = len(layout.touches) * sensor.touch_sectors
     return rays, types, touches, len(observation_columns(config, name)) - rays * types - touches
 
 
@@ -30,11 +32,11 @@ def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
     config, world = plan.config(), peopled(plan)
     slot = world.living[0]
     params = world.view("params")[slot]
-    seen = world.view("observation")[slot, : config.learning.rollout_steps]
+    seen = world.view("observation")[slot, : config.world.rollout_steps]
     observation = np.ascontiguousarray(np.resize(seen, (FORWARD_ROWS // (16 if plan.quick else 1), seen.shape[1])))
 
     def act(kernel: str) -> np.ndarray:
-        rounded = config.learning.acting_weights == "bfloat16"
+        rounded = config.species[ONLY].learning.acting_weights == "bfloat16"
         return _engine.learning.forward(kernel, shape(config), params, observation, rounded)
 
     for kernel in plan.kernels:
@@ -52,7 +54,7 @@ def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
 def measure_update(plan: Plan, _: Calibration) -> list[Row]:
     """One row per instruction set: the oldest agent learns from its last rollout."""
     config, world = plan.config(), peopled(plan)
-    steps = config.learning.rollout_steps
+    steps = config.world.rollout_steps
     slot = world.living[0]
     settings = engine_config(config)["species"][0]["learning"]
     names = ("params", "first_moment", "second_moment", "log_prob", "value", "reward")
@@ -78,7 +80,7 @@ def measure_update(plan: Plan, _: Calibration) -> list[Row]:
         require_finite(f"update, {kernel}", params)
         require(not np.array_equal(params, arrays["params"]), f"update, {kernel}: no parameter changed")
     times = interleave({kernel: lambda k=kernel: learn(k) for kernel in plan.kernels}, plan.repeats)
-    flop = sum(network_flop(config)) * config.learning.update_epochs * steps
+    flop = sum(network_flop(config)) * config.species[ONLY].learning.update_epochs * steps
     return [{"kernel": k, "threads": 1, "flop": flop, "update_seconds": times[k]} for k in plan.kernels]
 
 

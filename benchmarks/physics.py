@@ -15,6 +15,7 @@ from hedon import _engine
 from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.native import engine_config
+from hedon.config.species import ONLY
 
 PIECE_STEPS = 20
 """Steps after which motor forces change."""
@@ -29,7 +30,8 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     scenes = {threads: make_scene(plan) for threads in plan.threads}
     pieces = 3 if plan.quick else PIECES
     bodies = len(scenes[plan.threads[0]].array("x"))
-    all_forces = np.random.default_rng(1).uniform(config.motor.min_force, config.motor.max_force, (pieces, 2, bodies))
+    motor = config.species[ONLY].motor
+    all_forces = np.random.default_rng(1).uniform(motor.min_force, motor.max_force, (pieces, 2, bodies))
     times: dict[int, list[float]] = {threads: [] for threads in plan.threads}
     for forces in all_forces:
         for threads, scene in scenes.items():
@@ -54,14 +56,14 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 def make_scene(plan: Plan) -> Any:
     """The bodies and foods of the populated world, at rest."""
     config, start = plan.config(), scene_of(peopled(plan))
-    arena, body = config.arena, config.body
+    arena, body = config.arena, config.species[ONLY].body
     scene = _engine.physics.Scene(
         engine_config(config)["physics"],
         arena.width,
         arena.height,
         body.radius,
         body.density,
-        body.food_radius,
+        config.world.food_radius,
         len(start.x),
         len(start.food_x),
         walls(arena).tolist(),
@@ -79,7 +81,8 @@ def drive(config: Config, scene: Any, left: NDArray, right: NDArray) -> None:
     angle = scene.array("angle")
     scene.array("force_x")[:] = -np.sin(angle) * (left + right)
     scene.array("force_y")[:] = np.cos(angle) * (left + right)
-    arm = config.body.radius * math.sin(math.radians(config.motor.angle))
+    own = config.species[ONLY]
+    arm = own.body.radius * math.sin(math.radians(own.motor.angle))
     scene.array("force_torque")[:] = (right - left) * arm
 
 

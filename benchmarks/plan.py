@@ -9,7 +9,7 @@ from hedon.config.problem import nearest
 from hedon.error import HedonError
 from hedon.record.provenance import usable_cpus
 
-QUICK = ("learning.rollout_steps=64", "learning.minibatch_size=16", "learning.update_epochs=2")
+QUICK = ("world.rollout_steps=64", "learning.minibatch_size=16", "learning.update_epochs=2")
 """Very short windows, to see that every part works."""
 MAX_COUNT = 1024
 """Most threads or worlds of one measurement."""

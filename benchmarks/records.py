@@ -15,6 +15,7 @@ from benchmarks.measure import Row, Table
 from benchmarks.plan import Plan
 from benchmarks.scene import peopled
 from hedon.config.dump import dump_toml
+from hedon.config.species import ONLY
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
 from hedon.experiment.sample import PopulationSampler, Rows, agent_rows
@@ -37,13 +38,14 @@ def _stream(plan: Plan, folder: Path) -> Row:
     """Writes as many deaths per window as a populated world has, made from its living, and its population row."""
     config, world = plan.config(), peopled(plan)
     windows = 20 if plan.quick else STREAM_WINDOWS
-    deaths = max(1, round(world.counters["deaths"] / (world.step / config.learning.rollout_steps)))
+    deaths = max(1, round(world.counters["deaths"] / (world.step / config.world.rollout_steps)))
     lives = world.agents()
     rng = np.random.default_rng(1)
     stream = [agent_rows(world, _made_up(lives, deaths, rng)) for _ in range(windows)]
     population = PopulationSampler(world).row()
-    steps = windows * config.learning.rollout_steps
-    manifest = Manifest(tuple(config.food), config.genome.neutral_count, (world.seed,), max(steps, world.step))
+    steps = windows * config.world.rollout_steps
+    neutral = config.species[ONLY].genome.neutral_count
+    manifest = Manifest(tuple(config.food), neutral, (world.seed,), max(steps, world.step))
 
     wall, total, own = time.perf_counter(), time.process_time(), time.thread_time()
     with Writer(folder, dump_toml(config), manifest) as writer:
@@ -77,7 +79,7 @@ def _made_up(lives: Rows, count: int, rng: np.random.Generator) -> Rows:
 def _run(plan: Plan, folder: Path) -> Row:
     """A run with its records. All time of its loop outside the engine counts as theirs, including checkpoints."""
     config = plan.config()
-    steps = (2 if plan.quick else RUN_WINDOWS) * config.learning.rollout_steps
+    steps = (2 if plan.quick else RUN_WINDOWS) * config.world.rollout_steps
     with _engine_seconds() as engine:
         manifest = run(RunPlan(config, (1,), steps, folder, plan.threads[-1]))
     require(manifest.status == "finished", f"records: the status of the run is {manifest.status}")

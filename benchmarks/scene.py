@@ -85,6 +85,6 @@ def go_on_from_peopled(plan: Plan, simulation: Simulation) -> None:
 def _source(plan: Plan) -> Simulation:
     config = plan.config()
     simulation = Simulation(config, [1], plan.threads[-1], plan.kernel)
-    simulation.run((2 if plan.quick else WARM_UP_WINDOWS) * config.learning.rollout_steps)
+    simulation.run((2 if plan.quick else WARM_UP_WINDOWS) * config.world.rollout_steps)
     check_world(simulation.worlds[0])
     return simulation

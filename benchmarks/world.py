@@ -24,7 +24,7 @@ def measure(plan: Plan, calibration: Calibration) -> list[Row]:
     cases = [(plan.kernel, *case) for case in plan.cases()]
     cases += [(kernel, plan.threads[-1], 1) for kernel in plan.kernels[1:]]
     simulations = [Simulation(config, range(1, worlds + 1), threads, kernel) for kernel, threads, worlds in cases]
-    window = config.learning.rollout_steps
+    window = config.world.rollout_steps
     for simulation in simulations:
         go_on_from_peopled(plan, simulation)
         simulation.run(window)

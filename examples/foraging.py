@@ -44,7 +44,7 @@ def forage(worlds: hedon.env.VectorEnv, weights: NDArray[np.float64], seeds: ran
 
 def train(worlds: hedon.env.VectorEnv, generations: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """The mean of the candidates after some generations of the cross-entropy method, (rays + 1,)."""
-    rays = worlds.config.sensor.ray_count
+    rays = worlds.config.species["agent"].sensor.ray_count
     mean, sd = np.zeros(rays + 1), np.full(rays + 1, 2.0)
     for generation in range(generations):
         tried = mean + sd * rng.standard_normal((CANDIDATES, rays + 1))

@@ -72,9 +72,9 @@ def food_per_agent_step(condition: Condition, seeds: list[int], windows: int) ->
     simulation = Simulation(config, seeds)
     eaten = np.zeros((len(seeds), windows + 1))
     for window in range(windows):
-        simulation.run(config.learning.rollout_steps)
+        simulation.run(config.world.rollout_steps)
         eaten[:, window + 1] = [world.view("food_stock.eaten")[0] for world in simulation.worlds]
-    agent_steps = config.population.initial_count * config.learning.rollout_steps
+    agent_steps = config.species["agent"].population.initial_count * config.world.rollout_steps
     return np.diff(eaten, axis=1) / agent_steps
 
 
@@ -112,7 +112,7 @@ def main() -> None:
         }
         (before, _), (after, half) = ((1e3 * mean.item(), 1e3 * half.item()) for mean, half in (start, end))
         print(f"{condition.name:40s} {before:6.3f} -> {after:6.3f} ± {half:.3f} foods per 1000 agent-steps", flush=True)
-    axes.set_xlabel(f"window of {load_config('baseline').learning.rollout_steps} steps")
+    axes.set_xlabel(f"window of {load_config('baseline').world.rollout_steps} steps")
     axes.set_ylabel("foods per 1000 agent-steps")
     axes.set_ylim(bottom=0)
     axes.spines[["top", "right"]].set_visible(False)

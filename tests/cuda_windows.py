@@ -18,9 +18,9 @@ from hedon.config.load import load_config
 from hedon.view.engine_text import engine_text
 
 WINDOW = 16
-SHORT = (f"learning.rollout_steps={WINDOW}", "learning.minibatch_size=8", "learning.update_epochs=2")
+SHORT = (f"world.rollout_steps={WINDOW}", "learning.minibatch_size=8", "learning.update_epochs=2")
 FEW = (*SHORT, "population.capacity=16", "population.initial_count=10")
-TINY = ("learning.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
+TINY = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
 TINY_FEW = (*TINY, "population.capacity=6", "population.initial_count=4")
 BOTH = tuple(
     f"species.{name}.population.{size}" for name in ("prey", "predator") for size in ("capacity=8", "initial_count=6")

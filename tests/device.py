@@ -37,7 +37,7 @@ FOR_FILE = {
     "emulation.cpp": ("-mavx2", "-mfma", "-DHEDON_BLOCK_THREADS=64"),
 }
 WINDOW = 1024
-SMALL = {"learning.rollout_steps": 16, "learning.minibatch_size": 8, "learning.update_epochs": 2}
+SMALL = {"world.rollout_steps": 16, "learning.minibatch_size": 8, "learning.update_epochs": 2}
 FEW = {**SMALL, "population.capacity": 16, "population.initial_count": 10}
 FULL = {"population.initial_count": 150}
 """As many agents as a world of the baseline has in the long run."""
@@ -238,7 +238,7 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
         build.build(build.beside_engine())
     hedon = [sys.executable, "-c", "from hedon.cli.start import main; main()"]
     settings = [f"--set={path}={value}" for path, value in (FEW if trial.emulated else FULL).items()]
-    steps = str(30 * SMALL["learning.rollout_steps"] if trial.emulated else 64 * WINDOW)
+    steps = str(30 * SMALL["world.rollout_steps"] if trial.emulated else 64 * WINDOW)
     arguments = ["baseline", "--seeds", "1-4", "--steps", steps, *settings]
     out, whole = folder / "run", folder / "whole"
     begun = time.monotonic()
@@ -272,7 +272,7 @@ def all_parts(trial: Trial, folder: Path) -> None:
     program = str(trial.part("program", lambda: str(build_program(trial.emulated))))
     trial.part("device", lambda: trial.call(program, "describe"))
     steps = (
-        {"one_window": SMALL["learning.rollout_steps"] + 2}
+        {"one_window": SMALL["world.rollout_steps"] + 2}
         if trial.emulated
         else {"first_steps": 3, "one_window": WINDOW + 76}
     )
@@ -285,7 +285,7 @@ def all_parts(trial: Trial, folder: Path) -> None:
                 for preset in presets()
             },
         )
-    length = str(SMALL["learning.rollout_steps"] + 1 if trial.emulated else WINDOW + 1)
+    length = str(SMALL["world.rollout_steps"] + 1 if trial.emulated else WINDOW + 1)
     trial.part("repeat", lambda: trial.call(program, "repeat", length, "16", world("baseline", folder, few)))
     part = str(11 if trial.emulated else 700)
     trial.part("resume", lambda: trial.call(program, "resume", part, world("baseline", folder, few)))

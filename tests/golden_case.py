@@ -12,6 +12,7 @@ from named import Quantities, quantities
 
 from hedon.config.load import FIDELITIES, PRESETS, load_config
 from hedon.config.problem import format_value
+from hedon.config.species import ONLY
 from hedon.experiment.simulation import Simulation
 
 STEPS = 100
@@ -54,7 +55,7 @@ def combinations() -> dict[str, Mixture]:
 def live(case: Case, folder: Path, kernel: str) -> tuple[str, Quantities]:
     """A short life: the digest of its state, and those of its named quantities."""
     simulation = case(folder, kernel)
-    for i, species in enumerate(simulation.config.agents.values()):
+    for i, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external":
             slots = species.population.capacity
             simulation.engine.set_actions(i, np.tile(np.array([0.8, -0.3], np.float32), (1, slots, 1)))
@@ -65,7 +66,7 @@ def live(case: Case, folder: Path, kernel: str) -> tuple[str, Quantities]:
 
 def _preset(preset: str, fidelity: str, folder: Path, kernel: str) -> Simulation:
     laid = tomllib.loads((FOLDER / "preset.toml").read_text())
-    settings = flat(laid["every"]) | flat(laid["several" if load_config(preset).species else "one"])
+    settings = flat(laid["every"]) | flat(laid["one" if list(load_config(preset).species) == [ONLY] else "several"])
     lines = [f"{'.'.join(path)} = {format_value(value)}" for path, value in settings.items()]
     file = folder / "preset.toml"
     file.write_text("\n".join([f'preset = "{preset}"', f'fidelity = "{fidelity}"', *lines]) + "\n")

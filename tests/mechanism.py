@@ -19,7 +19,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.load import load_config
 from hedon.config.problem import format_value
-from hedon.config.species import ONLY, PER_SPECIES, RULES
+from hedon.config.species import ONLY, PER_SPECIES
 
 FOLDER = Path(__file__).parent / "data" / "mechanism"
 NAMES = ("ant", "bee", "cat")
@@ -78,7 +78,7 @@ class Mechanism:
 
 def is_shared(path: tuple[str, ...]) -> bool:
     """Whether a setting holds for the whole world."""
-    return path[0] not in PER_SPECIES or ".".join(path[:2]) in RULES
+    return path[0] not in PER_SPECIES
 
 
 def flat(tables: Mapping[str, Any], path: tuple[str, ...] = ()) -> Settings:

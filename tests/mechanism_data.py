@@ -47,7 +47,7 @@ def begin(world: Mixture, config: Config, seeds: Sequence[int], threads: int, ke
 
 def _size(config: Config, name: str) -> int:
     """Parameters of a network of a species."""
-    sensor, layout = config.agents[name].sensor, layouts(config)[name]
+    sensor, layout = config.species[name].sensor, layouts(config)[name]
     touches = len(layout.touches) * sensor.touch_sectors
     rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches
     return _engine.learning.param_count((sensor.ray_count, len(layout.sees), touches, rest))

@@ -28,7 +28,7 @@ WORLDS = {
     "one species that starves": ('energy.starvation="death"',),
     "two species that leave each other alone": ("species.a.population.capacity=12", "species.b.population.capacity=12"),
     "hunters that share each prey": (
-        'diet.prey_sharing="each"',
+        'world.prey_sharing="each"',
         "species.prey.birth.kappa=0.1",
         'species.hunter.diet.eats=[["prey", 0.5], ["hunter", 0.5]]',
         'species.hunter.energy.starvation="death"',
@@ -46,7 +46,7 @@ WORLDS = {
         "species.prey.genome.neutral_count=3",
         'species.prey.birth.mating="pairs"',
         "species.prey.birth.mating_range=100",
-        "species.prey.reward.relief_coef=0.1",
+        "species.prey.reward.drive_reduction_coef=0.1",
         'species.hunter.diet.eats=[["prey", 0.5]]',
         'species.hunter.energy.starvation="death"',
         "species.hunter.diet.digestion_steps=10",

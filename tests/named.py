@@ -38,7 +38,7 @@ def quantities(world: World) -> Quantities:
     """
     found = {"world": dict(_of_world(world))}
     dead, living = world.deaths(), world.agents()
-    for i, name in enumerate(world.config.agents):
+    for i, name in enumerate(world.config.species):
         here, gone = ({key: of[key][of["species"] == i] for key in of} for of in (living, dead))
         found[name] = {
             **dict(_of_lives(world, name, gone, here)),
@@ -91,13 +91,13 @@ def _of_living(world: World, index: int, living: dict[str, NDArray[Any]]) -> Ite
     for key in INNER_STATES[1:]:
         if key in living:
             yield key, short(living[key])
-    name = list(world.config.agents)[index]
+    name = list(world.config.species)[index]
     inputs = observation_columns(world.config, name)
     seen = dict(zip(inputs, world.observations(index).T, strict=True))
     groups = sorted({_group(column) for column in inputs})
     for group in groups:
         yield f"senses.{group}", short(*(seen[column] for column in sorted(inputs) if _group(column) == group))
-    if world.config.agents[name].learning.policy in ("ppo", "frozen"):
+    if world.config.species[name].learning.policy in ("ppo", "frozen"):
         yield from _networks(world, inputs, living["species"], index)
 
 

@@ -32,7 +32,7 @@ def read_world(simulation: Simulation) -> World:
     ]
     made = tuple(layouts(world.config).values())
     genes = [len(layout.genes) for layout in made]
-    species, kept = len(world.config.agents), world.view("eaten_by")
+    species, kept = len(world.config.species), world.view("eaten_by")
     width = world.view("eaten").size // len(world.view("alive"))
     meals = (kept if len(kept) else np.zeros((species, width), int)).reshape(species, width).tolist()
     numbers = {name: head[name] for name in ("step", "next_agent_id", "births_in_window", "births_before")}
@@ -59,7 +59,7 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
         columns["resident_slot"] = (world.view("resident_slot")[living] != 0).tolist()
     agents = []
     memory = world.view("memory").reshape(len(world.view("alive")), -1)[living]
-    kept = [species.reward.memory for species in world.config.agents.values()]
+    kept = [species.reward.memory for species in world.config.species.values()]
     genomes = rows["genome"].astype(float)
     for i in range(len(living)):
         agent = Agent(**{name: column[i] for name, column in columns.items()}, genome=genomes[i])
@@ -75,7 +75,7 @@ def _sums(world: Any) -> list[dict[str, float]]:
     """Counters and ledger of each species; those of mechanisms that the world does not have are 0."""
     more = [(f"hunt_counters.{name}", name) for name in HUNTED] + [(f"obstacle_counters.{n}", n) for n in HARMED]
     sums = []
-    for s in range(len(world.config.agents)):
+    for s in range(len(world.config.species)):
         counters = world.counters_of(s)
         mine = {name: counters[name] for name in COUNTED}
         for path, name in more:
@@ -88,7 +88,7 @@ def _sums(world: Any) -> list[dict[str, float]]:
 def _vacancies(world: Any, genes: list[int]) -> list[list[Vacancy]]:
     genome = world.view("genome").reshape(len(world.view("alive")), -1).astype(float)
     old, first, found = world.view("resident_slot"), 0, []
-    for s, (species, length) in enumerate(zip(world.config.agents.values(), genes, strict=True)):
+    for s, (species, length) in enumerate(zip(world.config.species.values(), genes, strict=True)):
         free = world.view("free")[first : first + world.view("free_count")[s]].tolist()
         found.append([Vacancy(genome[slot, :length], bool(len(old) and old[slot])) for slot in free])
         first += species.population.capacity
@@ -96,7 +96,7 @@ def _vacancies(world: Any, genes: list[int]) -> list[list[Vacancy]]:
 
 
 def _newborns(world: Any, genes: list[int], births: int) -> list[Newborn]:
-    if world.config.birth.inheritance != "at_window_end":
+    if world.config.world.inheritance != "at_window_end":
         return []
     waiting = world.view("newborn_genome").reshape(len(world.view("newborn.parent")), -1).astype(float)
     species = world.view("newborn_species")
@@ -119,8 +119,8 @@ def rollout_rows(simulation: Simulation, before: World, slots: list[int], name: 
     """What the step after `before` wrote into a rollout for those in `slots`, (agents, width) or (agents,)."""
     world = simulation.worlds[0]
     table = world.view(name).reshape(len(world.view("alive")), -1, width)
-    learns = [species.learning.policy == "ppo" for species in world.config.agents.values()]
-    t = before.step % world.config.learning.rollout_steps
+    learns = [species.learning.policy == "ppo" for species in world.config.species.values()]
+    t = before.step % world.config.world.rollout_steps
     rows = np.array([table[slot, t * learns[agent.species]] for slot, agent in zip(slots, before.agents, strict=True)])
     return rows if width > 1 else rows.reshape(len(slots))
 

@@ -206,7 +206,7 @@ class Judge:
 def command(simulation: Simulation) -> None:
     """Now and then tells the agents that are told what to do something else."""
     step = simulation.worlds[0].step
-    for s, species in enumerate(simulation.config.agents.values()):
+    for s, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external" and step % 7 == 0:
             actions = np.random.default_rng(step).normal(size=(1, species.population.capacity, 2))
             simulation.engine.set_actions(s, actions.astype(np.float32))

@@ -36,14 +36,14 @@ def page_rows(kinds: dict[str, str]) -> dict[str, Row]:
 
 
 def values(part: Any, path: str = "") -> dict[str, Any]:
-    """Each value of a config by its path, lists for tuples."""
+    """Each value of a config by its path in a file of one species, lists for tuples."""
     inner = part.items() if isinstance(part, dict) else ((each.name, getattr(part, each.name)) for each in fields(part))
     found = {}
     for name, value in inner:
         if isinstance(value, dict) or is_dataclass(value):
             found |= values(value, f"{path}{name}.")
         else:
-            found[path + name] = _plain(value)
+            found[f"{path}{name}".removeprefix("species.agent.")] = _plain(value)
     return found
 
 

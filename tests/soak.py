@@ -29,7 +29,7 @@ SETTINGS = {
 def soak(name: str, steps: int) -> None:
     """Runs a setting for so many steps, over as many worlds as it takes."""
     preset, overrides = SETTINGS[name]
-    window = load_config(preset).learning.rollout_steps
+    window = load_config(preset).world.rollout_steps
     begun, done, seed, most = time.perf_counter(), 0, 0, 0
     while done < steps:
         seed += 1

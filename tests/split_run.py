@@ -19,7 +19,7 @@ def record_species(
     folder: Path, steps: int = 256, seeds: tuple[int, ...] = (1, 2), overrides: Sequence[str] = ()
 ) -> Path:
     """Records prey and predators, with a row of the population each 64 steps."""
-    quick = ("learning.rollout_steps=64", "learning.minibatch_size=64")
+    quick = ("world.rollout_steps=64", "learning.minibatch_size=64")
     config = load_config("predator", overrides=[*quick, *overrides])
     run(RunPlan(config, seeds, steps, folder, 1, FRAMES))
     return folder

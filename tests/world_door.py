@@ -125,7 +125,7 @@ CHEAP: dict[str, Callable[[Trial], None]] = {"config": _config, "simulation": _p
 
 def _drive(simulation: Simulation) -> None:
     """Tells the agents that wait for a caller what to do."""
-    for i, species in enumerate(simulation.config.agents.values()):
+    for i, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external":
             actions = np.tile(
                 np.array([0.8, -0.3], np.float32), (len(simulation.worlds), species.population.capacity, 1)
@@ -141,7 +141,7 @@ def _close(world: Any) -> None:
     """The energy of each species is what its ledger says."""
     agents = world.agents()
     hunted, damage = world.view("hunt_counters.energy_hunted"), world.view("obstacle_counters.energy_damage")
-    for i, name in enumerate(world.config.agents):
+    for i, name in enumerate(world.config.species):
         c = world.counters_of(i)
         income = c["energy_initial"] + c["energy_eaten"] + c["energy_forgiven"] + (hunted[i] if len(hunted) else 0.0)
         spent = c["energy_basic"] + c["energy_action"] + c["energy_capped"] + c["energy_lost"]

@@ -12,7 +12,7 @@ from hedon.config.load import load_config
 from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
 
-QUICK = ("learning.rollout_steps=64", "learning.minibatch_size=32", "learning.update_epochs=2")
+QUICK = ("world.rollout_steps=64", "learning.minibatch_size=32", "learning.update_epochs=2")
 """Short windows, so that a test sees several of them."""
 STILL = ("motor.min_force=-1e-6", "motor.max_force=1e-6")
 """Motors so weak that nobody moves."""

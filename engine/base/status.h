@@ -45,7 +45,7 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"contact_outside_skin", "A body moved further than the neighbor list allows.",
      "Raise physics.neighbor_skin or lower physics.max_speed."},
     {"birth_overflow", "There were more births in a window than can wait for their genomes.",
-     "Shorten learning.rollout_steps, or set birth.inheritance to \"at_birth\"."},
+     "Shorten world.rollout_steps, or set world.inheritance to \"at_birth\"."},
     {"not_finite", "A number of the state is not finite.",
      "Check the named agent; lower learning.learning_rate or the forces."},
     {"outside_arena", "A body left the arena.", "Lower physics.max_speed, physics.dt or the forces."},

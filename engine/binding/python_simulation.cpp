@@ -42,7 +42,7 @@ void need_memory(const WorldConfig& config, size_t walls, size_t worlds, int thr
     char text[160];
     snprintf(text, sizeof text,
              "the worlds need %.1f GB of memory, and this machine has %.1f GB: lower population.capacity, "
-             "learning.rollout_steps or the number of seeds",
+             "world.rollout_steps or the number of seeds",
              needed / 1e9, present / 1e9);
     throw EngineError(text);
   }

@@ -174,7 +174,7 @@ HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   const auto bytes = static_cast<size_t>(hedon_bytes_needed(threads)) + SPARE;
   void* room = reserve_pages(bytes);
   if (room == nullptr)
-    return fail("there is no memory left for this world: lower population.capacity or learning.rollout_steps");
+    return fail("there is no memory left for this world: lower population.capacity or world.rollout_steps");
   release_pages(room, bytes);
   simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
                                             std::vector<uint64_t>{input.seed}, threads, find_kernel("portable"),

@@ -12,7 +12,7 @@ from command import hedon
 from hedon.check.run import check_run
 
 COSTLY = (
-    "learning.rollout_steps=64",
+    "world.rollout_steps=64",
     "learning.minibatch_size=32",
     "learning.learning_rate=0.003",
     "learning.gamma=0",
@@ -108,7 +108,7 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
 
 
 def test_a_start_begins_at_its_point(folder: Path) -> None:
-    lively = ("--set", "learning.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
+    lively = ("--set", "world.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
     options = (*lively, "--set", "hazard.kappa=0.1", "--steps", "1024", "--seeds", "1-3", "--out", "start")
     answer = call(folder, "stability", "baseline", "--at", "food=5,action=-4", "--beside", "food=0", *options)
     assert answer.returncode == 0, answer.stderr

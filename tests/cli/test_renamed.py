@@ -38,7 +38,7 @@ def test_what_is_no_manifest_is_left_to_its_reader(content):
 
 
 def test_a_manifest_of_an_earlier_version_says_what_computed(tmp_path: Path):
-    manifest = small_run(tmp_path / "run", 32, overrides=("learning.rollout_steps=32", "learning.minibatch_size=16"))
+    manifest = small_run(tmp_path / "run", 32, overrides=("world.rollout_steps=32", "learning.minibatch_size=16"))
     old = json.loads((tmp_path / "run" / "manifest.json").read_text())
     for each in (old, *old["sessions"]):
         each["kernel"] = each.pop("backend")

@@ -13,7 +13,7 @@ from command import hedon as answer_of
 import hedon
 from hedon.cli.run import RunError, parse_seeds
 
-QUICK = ("--set", "learning.rollout_steps=256", "--set", "learning.update_epochs=1")
+QUICK = ("--set", "world.rollout_steps=256", "--set", "learning.update_epochs=1")
 LIVELY = ("--set", "birth.kappa=0.01", "--set", "hazard.kappa=0.1")
 
 
@@ -53,7 +53,7 @@ def test_the_manifest_says_how_to_repeat_the_run(finished):
     assert manifest["name"] == "poison"
     assert manifest["modified"] is True
     config = hedon.load_config(folder / "config.toml")
-    assert config.genome.mutation_noise == "frozen"
+    assert config.world.mutation_noise == "frozen"
     simulation = hedon.Simulation(config, manifest["seeds"], backend=manifest["backend"])
     simulation.run(1300)
     run = hedon.open_run(folder)

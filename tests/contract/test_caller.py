@@ -94,7 +94,7 @@ def test_the_test_above_would_see_a_mode():
 def test_denormals_change_no_bit():
     """Adam's moments fade below what a float32 holds; epochs are many here, so that they do so in three windows."""
     settings = (
-        "learning.rollout_steps=64",
+        "world.rollout_steps=64",
         "learning.minibatch_size=16",
         "learning.update_epochs=80",
         "population.capacity=6",

@@ -86,7 +86,7 @@ def test_the_host_waits_for_a_device_at_the_ends_of_windows_alone(
     """But in the first, since nobody knows yet how many die: the device has five calls, and is lost in a sixth."""
     monkeypatch.setattr("hedon.experiment.run.PIECE_SECONDS", 1e-9)
     fails(6, NEVER)
-    long = ("learning.rollout_steps=128", "hazard.kappa=0.001")
+    long = ("world.rollout_steps=128", "hazard.kappa=0.001")
     assert small_run(tmp_path / "run", 4 * 128, seeds=(1,), overrides=long, backend=emulated).status == "finished"
 
 

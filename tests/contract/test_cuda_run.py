@@ -25,7 +25,7 @@ from hedon.record.manifest import load_manifest
 pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 
 SETTINGS = (
-    "learning.rollout_steps=32",
+    "world.rollout_steps=32",
     "learning.minibatch_size=16",
     "learning.update_epochs=1",
     "population.capacity=8",

@@ -17,7 +17,7 @@ from hedon.experiment.simulation import Simulation
 
 pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 
-SHORT = ("learning.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
+SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 FEW = ("population.capacity=24", "population.initial_count=12")
 
 
@@ -51,7 +51,12 @@ def test_presets_have_the_same_bits(emulated: str, preset: str):
 MECHANISMS = {
     "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.smell.normal.coef=0.1"),
     "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.see.obstacle.over_rays=max"),
-    "inner": ("food.normal.nutrient=1", "food.normal.toxin=5", "reward.relief_coef=1", "sensor.mouth_spread=180"),
+    "inner": (
+        "food.normal.nutrient=1",
+        "food.normal.toxin=5",
+        "reward.drive_reduction_coef=1",
+        "sensor.mouth_spread=180",
+    ),
     "frozen": ("learning.policy=frozen", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
 }
@@ -68,7 +73,7 @@ def test_mechanisms_have_the_same_bits(emulated: str, name: str):
 def test_threads_that_run_at_the_same_time_have_the_same_bits(emulated: str, monkeypatch: pytest.MonkeyPatch):
     """A barrier that is missing shows where fibers, which take turns, would hide it."""
     monkeypatch.setenv(EMULATION_VARIABLE, str(build(32, system_threads=True)))
-    short = ("learning.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
+    short = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
     one, other = pair(emulated, *short, "population.capacity=6", "population.initial_count=4")
     one.run(5)
     other.run(5)
@@ -93,7 +98,7 @@ def test_the_released_rules_have_the_same_bits(emulated: str):
 @pytest.mark.parametrize("weights", ["float32", "bfloat16"])
 def test_minibatches_of_several_blocks_with_a_rest(emulated: str, weights: str):
     """80 samples: a block of 64, and one of 16."""
-    settings = ("learning.rollout_steps=160", "learning.minibatch_size=80", "learning.update_epochs=1")
+    settings = ("world.rollout_steps=160", "learning.minibatch_size=80", "learning.update_epochs=1")
     acting = f'learning.acting_weights="{weights}"'
     one, other = pair(emulated, *settings, acting, "population.capacity=8", "population.initial_count=4")
     one.run(161)

@@ -42,8 +42,8 @@ REPORTED = [
     ("learning.minibatch_size", 0),
     ("learning.minibatch_size", 63),
     ("learning.minibatch_size", 48),
-    ("learning.rollout_steps", 0),
-    ("learning.rollout_steps", -64),
+    ("world.rollout_steps", 0),
+    ("world.rollout_steps", -64),
     ("sensor.touch_sectors", 1000),
     ("sensor.touch_sectors", -1),
     ("sensor.ray_count", 33),
@@ -144,7 +144,7 @@ def random_config(seed: int) -> Config:
     draw = random.Random(seed)
     config = hedon.load_config(
         draw.choice(PRESETS),
-        overrides=["learning.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=1"],
+        overrides=["world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=1"],
     )
     paths = [path for path, _, _ in leaves(config)]
     for _ in range(draw.randint(1, 3)):
@@ -169,7 +169,7 @@ TRIAL = """
             simulation = hedon.Simulation(config, [1], 1)
             simulation.run(3)
             lived += 1
-            if config.learning.rollout_steps * config.learning.update_epochs <= 1000:
+            if config.world.rollout_steps * config.learning.update_epochs <= 1000:
                 simulation.run(30)
         except hedon.HedonError as error:
             assert str(error).strip()

@@ -18,7 +18,7 @@ from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 
 # Bodies so small that some slip through a wall within a substep at the speed cap.
-TINY = ("body.radius=1.2", "body.food_radius=0.2", "motor.max_force=300", "motor.min_force=-300")
+TINY = ("body.radius=1.2", "world.food_radius=0.2", "motor.max_force=300", "motor.min_force=-300")
 
 
 @pytest.fixture

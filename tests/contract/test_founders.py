@@ -10,7 +10,6 @@ from worlds import QUICK
 
 from hedon.check.run import check_run
 from hedon.config import load_config
-from hedon.config.layout import with_genome
 from hedon.experiment.branch import branch
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
@@ -94,7 +93,7 @@ def test_founders_of_several_species_are_given_and_checked(tmp_path: Path) -> No
     for index, source in enumerate(("normal=1", "prey.action=0.5,hunter.action=-0.5", "RUN")):
         folder = tmp_path / str(index)
         founders = read_founders(source.replace("RUN", str(first)), config)
-        pinned = with_genome(config, founders=founders.digest)
+        pinned = config.with_("world.founders", founders.digest)
         run(RunPlan(pinned, (1,), 150, folder, 1, 0, 1e9, founders))
         assert check_run(folder).findings == ()
         first = folder

@@ -90,7 +90,7 @@ def test_nothing_else_is_eaten_while_one_digests():
 def test_two_eaters_of_one_agent(sharing, gains):
     won = set()
     for seed in range(8):
-        simulation = make(f'diet.prey_sharing="{sharing}"')
+        simulation = make(f'world.prey_sharing="{sharing}"')
         simulation = Simulation(simulation.config, [seed], 1)
         both = [facing(81, 100, (100, 100)), facing(119, 100, (100, 100))]
         set_scene(simulation, [(100, 100, 0.0), *both], species=[PREY, PREDATOR, PREDATOR])

@@ -35,7 +35,7 @@ def make(sharing: str, seed: int) -> Simulation:
         "energy.basic_cost=0",
         "energy.action_cost=0",
         "energy.capacity=150",
-        f'diet.prey_sharing="{sharing}"',
+        f'world.prey_sharing="{sharing}"',
         "population.capacity=40",
         "population.initial_count=1",
         *eats,

@@ -175,8 +175,8 @@ def test_the_threshold_may_be_a_gene(gene):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        (["birth.inheritance=at_window_end", "birth.network=learned"], 'must be "none" with birth.inheritance'),
-        (["birth.inheritance=at_window_end", "birth.mating=pairs"], 'must be "none" with birth.inheritance'),
+        (["world.inheritance=at_window_end", "birth.network=learned"], 'must be "none" with world.inheritance'),
+        (["world.inheritance=at_window_end", "birth.mating=pairs"], 'must be "none" with world.inheritance'),
         (["birth.network=learned", "learning.policy=random"], "there is no network to inherit"),
         (["birth.mating=pairs", "population.capacity=1", "population.initial_count=1"], "nobody mates alone"),
         (["genome.family.threshold.initial_sd=0.1"], 'reward.family = "linear" has no threshold'),

@@ -118,7 +118,7 @@ def test_what_is_observed(scaling, factors):
 
 def test_relief_counts_all_states():
     """Homeostasis over energy, nutrient and toxin: the need before less the need after, with set points as genes."""
-    settings = ("reward.relief_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
+    settings = ("reward.drive_reduction_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
     points = {"set_point": 0.3, "set_point_nutrient": 0.5, "set_point_toxin": 0.1}
     genes = [f"genome.{name}.initial_{what}" for name in points for what in ("mean", "sd")]
     values = [value for mean in points.values() for value in (mean, 0.0)]

@@ -57,12 +57,12 @@ def test_newborns_act_as_their_own_gene_says(inheritance):
         "genome.learning.action_sd.initial_sd=0.5",
         "birth.kappa=0.02",
         "birth.beta=100",
-        "birth.parents=all",
+        "world.parents=all",
     )
     simulation.run(64)
     world = simulation.worlds[0]
     assert world.counters["births"] > 10
-    number = simulation.config.genome.neutral_count + 1
+    number = simulation.config.species["agent"].genome.neutral_count + 1
     own = world.agents()["genome"][:, -number].astype(np.float64)
     assert np.ptp(own) > 0.5
     spread = log_sd(simulation)

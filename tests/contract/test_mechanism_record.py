@@ -48,8 +48,8 @@ def ledgers(run: Run) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:
 def test_columns_follow_from_mechanisms(made: Path) -> None:
     run = open_run(made)
     config = load_config(made / "config.toml")
-    eats = any(name in config.species for each in config.agents.values() for name, _ in each.diet.eats)
-    starves = any(each.energy.starvation == "death" for each in config.agents.values())
+    eats = any(name in config.species for each in config.species.values() for name, _ in each.diet.eats)
+    starves = any(each.energy.starvation == "death" for each in config.species.values())
     assert ("cause" in run.agents().columns) == ("deaths_starved" in run.population().columns) == (eats or starves)
     assert (set(run.population().columns) & HUNTS == HUNTS) == eats
     assert bool(run.columns.prey) == eats
@@ -66,7 +66,7 @@ def test_causes_and_hunts_are_counted(made: Path) -> None:
     for cause, column in (("starved", "deaths_starved"), ("eaten", "deaths_eaten")):
         if column in population.columns:
             assert (dead["cause"] == cause).sum() == population[column].sum()
-    each = load_config(made / "config.toml").diet.prey_sharing == "each"
+    each = load_config(made / "config.toml").world.prey_sharing == "each"
     for name in run.columns.prey:
         own = pl.col("species") == name if run.columns.several else pl.lit(value=True)
         eaten = population.filter(own)["deaths_eaten"].sum()

@@ -23,7 +23,6 @@ from hedon.analysis.world.regime import regimes
 from hedon.analysis.world.species import by_species
 from hedon.assay.end import read_ends
 from hedon.cli.display.summary import summary_table
-from hedon.config.layout import of_species
 from hedon.config.load import load_config
 from hedon.error import ArgumentError
 from hedon.record.reader import Run, open_run
@@ -148,7 +147,7 @@ def test_a_world_knows_what_its_species_eat_and_inherit(different: Run) -> None:
     assert len(worlds["prey"].neutral_names) == 3 < len(worlds["hunter"].neutral_names)
     assert worlds["late"].extinct_step == 0, "it was never there"
     assert all(worlds[name].apart_step == 0 for name in ("prey", "hunter", "idle"))
-    regime = regimes(worlds["hunter"].population, worlds["hunter"].config)
+    regime = regimes(worlds["hunter"].population, worlds["hunter"].config, species="hunter")
     assert np.isnan([each.uptake for each in regime]).all(), "who eats no food takes up none"
 
 
@@ -178,10 +177,10 @@ def test_a_notebook_shows_each_species(different: Run) -> None:
 
 
 def test_ends_are_those_of_one_species(different: Run, tmp_path: Path) -> None:
-    config = of_species(mechanism_config(DIFFERENT), "hunter")
+    config = mechanism_config(DIFFERENT)
     (tmp_path / "summary.json").write_text(json.dumps(summarize(different)))
     for source in (different.path, tmp_path / "summary.json"):
-        ends = read_ends(source, config)
+        ends = read_ends(source, config, "hunter")
         assert len(ends) == 2
         assert all("w_see_prey" in end.weights and "w_normal" not in end.weights for end in ends)
 

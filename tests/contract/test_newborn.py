@@ -4,7 +4,7 @@ import numpy as np
 from worlds import DEATHLESS, QUICK, make_simulation
 
 WINDOW = 64
-LATE = ("birth.inheritance=at_window_end", "birth.kappa=0.02", *QUICK)
+LATE = ("world.inheritance=at_window_end", "birth.kappa=0.02", *QUICK)
 
 
 def by_slot(world, name):
@@ -39,7 +39,7 @@ def test_the_network_that_a_newborn_gets_late_is_the_one_it_would_have_got_at_bi
     quiet = (*QUICK, *DEATHLESS, "birth.kappa=0.02")
     networks = []
     for rule in ("at_window_end", "at_birth"):
-        simulation = make_simulation(*quiet, f"birth.inheritance={rule}", seeds=(3,))
+        simulation = make_simulation(*quiet, f"world.inheritance={rule}", seeds=(3,))
         simulation.run(WINDOW)
         world = simulation.worlds[0]
         ids = world.agents()["agent_id"].tolist()
@@ -53,8 +53,8 @@ def test_the_network_that_a_newborn_gets_late_is_the_one_it_would_have_got_at_bi
 def test_a_restored_world_of_species_with_longer_and_shorter_genomes_ends_with_the_same_bits():
     """A young parent's child waits for its genome in a row where a longer one may have waited in an earlier window."""
     settings = (
-        *("birth.inheritance=at_window_end", "birth.kappa=0.2", "hazard.kappa=0.2", "hazard.alpha_age=0.01"),
-        *("population.capacity=30", "population.initial_count=15", *QUICK, "learning.rollout_steps=32"),
+        *("world.inheritance=at_window_end", "birth.kappa=0.2", "hazard.kappa=0.2", "hazard.alpha_age=0.01"),
+        *("population.capacity=30", "population.initial_count=15", *QUICK, "world.rollout_steps=32"),
         *("species.long.reward.family=scaled", "species.short.reward.family=linear"),
     )
     whole, walked = (make_simulation(*settings) for _ in range(2))

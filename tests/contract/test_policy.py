@@ -92,7 +92,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
 
 
 def test_late_inheritance_goes_without_networks():
-    settings = (*BOTH, 'birth.inheritance="at_window_end"', 'birth.parents="old_slots"')
+    settings = (*BOTH, 'world.inheritance="at_window_end"', 'world.parents="old_slots"')
     once, other = (make_simulation(*settings, seeds=(3,)) for _ in range(2))
     once.run(90)
     other.engine.restore(0, once.engine.save(0))

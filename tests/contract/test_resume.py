@@ -232,7 +232,7 @@ def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
         'sensor.scaling="unit"',
         "genome.neutral_count=3",
         "arena.width=500",
-        "learning.rollout_steps=128",
+        "world.rollout_steps=128",
         "food.normal.capacity=50",
     ],
 )

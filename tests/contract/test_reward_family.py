@@ -66,10 +66,10 @@ def test_weights_that_change_with_age():
 
 @pytest.mark.parametrize(("set_point", "sign"), [(0.9, -1), (0.05, 1)])
 def test_relief_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, sign):
-    cost, capacity = 2.0, load_config("baseline").energy.capacity
+    cost, capacity = 2.0, load_config("baseline").species["agent"].energy.capacity
     found = paid(
         *STILL,
-        "reward.relief_coef=3",
+        "reward.drive_reduction_coef=3",
         f"genome.set_point.initial_mean={set_point}",
         f"energy.basic_cost={cost}",
         "energy.action_cost=0",
@@ -79,7 +79,7 @@ def test_relief_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, s
 
 
 def test_what_a_birth_takes_is_no_relief():
-    capacity = load_config("baseline").energy.capacity
+    capacity = load_config("baseline").species["agent"].energy.capacity
     simulation = make_simulation(
         *QUICK,
         *DEATHLESS,
@@ -87,7 +87,7 @@ def test_what_a_birth_takes_is_no_relief():
         "birth.kappa=1",
         "birth.beta=100",
         "reward.action_coef=0",
-        "reward.relief_coef=1",
+        "reward.drive_reduction_coef=1",
         "genome.set_point.initial_sd=0",
         "energy.basic_cost=0.1",
         "energy.action_cost=0",

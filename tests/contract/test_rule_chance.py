@@ -73,7 +73,7 @@ def living(file, *settings, threads=1, seeds=(3,), preset="baseline", **chosen):
     return make_simulation(*settings, *named, threads=threads, seeds=seeds, preset=preset)
 
 
-@pytest.mark.parametrize("settings", [SEASON, RELEASED, ("birth.order=after_deaths",)])
+@pytest.mark.parametrize("settings", [SEASON, RELEASED, ("world.birth_order=after_deaths",)])
 def test_rules_that_repeat_the_formulas_change_nothing(file, settings):
     """Births, deaths, learning: the same bits. A parent's hazard is asked again with the energy that is left."""
     plain = make_simulation(*LIVELY, *settings, seeds=(3,))
@@ -188,7 +188,7 @@ def test_a_run_goes_on_with_the_rules_that_it_keeps(file, tmp_path):
     run(plan)
     sources = open_run(plan.out).manifest.rules
     assert [source.name for source in sources] == ["hazard", "birth"]
-    assert plan.config.birth.rule == f"my_rules.py:birth@{sources[1].digest}"
+    assert plan.config.species["agent"].birth.rule == f"my_rules.py:birth@{sources[1].digest}"
     whole = RunPlan(load_config("baseline", overrides=overrides), seeds=(1,), steps=128, out=tmp_path / "w", threads=1)
     wanted = run(whole).world_digests
     file.write_text(RULES.replace("def ", "def _"))

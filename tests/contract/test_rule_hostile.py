@@ -1,7 +1,6 @@
 """Rules in Python that are wrong in some way: each is refused in one line, or stops its world."""
 
 import os
-from dataclasses import replace
 
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
@@ -85,7 +84,7 @@ def test_a_relative_file_that_is_not_there_says_where_it_was_looked_for(tmp_path
         make_simulation(*QUIET, 'reward.rule="my.py:rule"')
     config = load_config("baseline", overrides=QUIET)
     with pytest.raises(RuleError, match=rf"cannot read my\.py in {tmp_path}: No such file"):
-        Simulation(replace(config, reward=replace(config.reward, rule="my.py:rule")), [1])
+        Simulation(config.with_("reward.rule", "my.py:rule"), [1])
 
 
 STOPS = {

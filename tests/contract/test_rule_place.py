@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -47,7 +46,7 @@ def plan(study: Path, name: str, steps: int = 96) -> RunPlan:
 
 def test_a_file_of_settings_names_rules_relative_to_itself(study, monkeypatch):
     config = load_config(study / "my.toml")
-    assert config.reward.rule == f"{study}/rules/own.py:pay"
+    assert config.species["agent"].reward.rule == f"{study}/rules/own.py:pay"
     monkeypatch.chdir(study.parent)
     near = load_config("study/my.toml")
     assert near == config
@@ -58,9 +57,10 @@ def test_a_file_of_settings_names_rules_relative_to_itself(study, monkeypatch):
 def test_what_is_typed_is_relative_to_the_current_folder(study, monkeypatch):
     monkeypatch.chdir(study / "rules")
     config = load_config(study / "my.toml", overrides=['reward.rule="own.py:pay"', 'hazard.rule="own.py:die"'])
-    assert (config.reward.rule, config.hazard.rule) == (f"{study}/rules/own.py:pay", f"{study}/rules/own.py:die")
+    own = config.species["agent"]
+    assert (own.reward.rule, own.hazard.rule) == (f"{study}/rules/own.py:pay", f"{study}/rules/own.py:die")
     two = load_config("baseline", overrides=['species.a.reward.rule="own.py:pay"', "species.b.body.radius=10"])
-    assert [each.reward.rule for each in two.agents.values()] == [f"{study}/rules/own.py:pay", ""]
+    assert [each.reward.rule for each in two.species.values()] == [f"{study}/rules/own.py:pay", ""]
 
 
 def test_a_config_with_rules_is_read_back_from_anywhere(study):
@@ -156,7 +156,7 @@ def test_the_config_of_a_run_begins_another_one(study):
 
 def test_a_rule_of_a_program_is_relative_to_the_current_folder(study, monkeypatch):
     config = load_config("baseline", overrides=LIVELY)
-    config = replace(config, reward=replace(config.reward, rule="own.py:pay"))
+    config = config.with_("reward.rule", "own.py:pay")
     with pytest.raises(RuleError, match=rf"cannot read own\.py in {Path.cwd()}: No such file"):
         Simulation(config, [1])
     monkeypatch.chdir(study / "rules")

@@ -15,7 +15,7 @@ TWO = 'sensor.smells=["agent", "normal"]'
 
 def smelled(world, species: int = 0) -> np.ndarray:
     """What each of the living smells, by the names of the entries."""
-    columns = observation_columns(world.config, list(world.config.agents)[species])
+    columns = observation_columns(world.config, list(world.config.species)[species])
     at = [i for i, name in enumerate(columns) if name.startswith("smell_")]
     return world.observations(species)[:, at]
 

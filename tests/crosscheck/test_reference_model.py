@@ -15,7 +15,6 @@ from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.load import load_config
 from hedon.config.physics import PhysicsConfig
-from hedon.config.species import RULES as WORLD_WIDE
 from hedon.experiment.simulation import Simulation
 from hedon.record.founder import make_founders
 
@@ -61,7 +60,7 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
 def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
     """Chains of claims, rivals for one agent, pairs that claim each other, and those who starve meanwhile."""
     settings = (
-        f'diet.prey_sharing="{sharing}"',
+        f'world.prey_sharing="{sharing}"',
         *("population.capacity=100", "population.initial_count=1", "sensor.mouth_spread=40", "birth.kappa=0"),
         *each("prey", "energy.basic_cost=0.7", 'energy.starvation="death"'),
         *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
@@ -129,8 +128,8 @@ JUDGED_ELSEWHERE = {
     **{f"learning.{name}": NETWORKS for name in ("learning_rate", "adam_beta1", "adam_beta2", "adam_epsilon")},
     **{f"learning.{name}": NETWORKS for name in ("value_coef", "entropy_coef", "critic_target")},
     "food.<kind>.color": "for figures alone",
-    "genome.founders": "a digest that a run sets: tests/contract/test_founders.py",
-    "learning.networks": "a digest that a run sets: tests/contract/test_frozen.py",
+    "world.founders": "a digest that a run sets: tests/contract/test_founders.py",
+    "world.networks": "a digest that a run sets: tests/contract/test_frozen.py",
 }
 """Settings that no case of the model judges, and why."""
 
@@ -151,20 +150,17 @@ def every_setting(section: type, path: str = "") -> Iterator[tuple[str, Setting]
     for name, setting in settings(section).items():
         yield f"{path}{name}", setting
     for name, inner in sections(section).items():
-        if name != "species":  # whose sections are those of the config once more
-            yield from every_setting(inner.type, f"{path}{name}." + ("<kind>." if inner.repeated else ""))
+        below = "" if name == "species" else f"{path}{name}." + ("<kind>." if inner.repeated else "")
+        yield from every_setting(inner.type, below)
 
 
 def used(config: Config) -> Iterator[tuple[str, object]]:
-    """The settings of a config that differ from the default, with their values. In a config with species those at the
-    top change nothing where a species could have its own."""
-    default = {path: value for path, _, value in leaves(Config())}
-    alone = {"arena", "physics", "obstacle", "food", "species"} if config.species else set()
+    """The settings of a config that differ from the default, with their values."""
+    default = {general(path): value for path, _, value in leaves(Config())}
     for path, setting, value in leaves(config):
-        if not alone or path.split(".")[0] in alone or path in WORLD_WIDE:
-            place = general(path)
-            if value != default.get(place, setting.default):
-                yield place, value
+        place = general(path)
+        if value != default.get(place, setting.default):
+            yield place, value
 
 
 def test_every_setting_that_changes_rules_has_a_case():

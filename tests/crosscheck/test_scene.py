@@ -33,7 +33,7 @@ CASES = {
     "half a turn": ("sensor.ray_count=32", "sensor.ray_spread=90"),
     "all around": ("sensor.ray_count=32", "sensor.ray_spread=175"),
     "all around with one arc": ("sensor.ray_count=16", "sensor.ray_spread=175"),
-    "foods larger than agents": ("body.radius=4", "body.food_radius=15"),
+    "foods larger than agents": ("body.radius=4", "world.food_radius=15"),
     "inner walls": ("arena.inner_walls=[[100, 100, 300, 120], [240, 20, 200, 340], [400, 50, 401, 51]]",),
     "many inner walls": (f"arena.inner_walls={[[20 + 9 * i, 60, 24 + 9 * i, 300] for i in range(45)]}",),
 }
@@ -44,9 +44,10 @@ def reference(simulation: Simulation, agents: np.ndarray, foods: np.ndarray, sel
     config = simulation.config
     center, heading = agents[self, :2], agents[self, 2]
     others = np.delete(agents, self, 0)[:, :2]
-    radius = np.r_[np.full(len(others), config.body.radius), np.full(len(foods), config.body.food_radius)]
+    own = config.species["agent"]
+    radius = np.r_[np.full(len(others), own.body.radius), np.full(len(foods), config.world.food_radius)]
     place = np.vstack([others, foods]).reshape(-1, 2) - center
-    spread, rays = math.radians(config.sensor.ray_spread), config.sensor.ray_count
+    spread, rays = math.radians(own.sensor.ray_spread), own.sensor.ray_count
     angle = heading + (np.linspace(-spread, spread, rays) if rays > 1 else np.zeros(1))
     segments = np.asarray(walls(config.arena)).reshape(-1, 4) - np.tile(center, 2)
     return Scene(
@@ -54,8 +55,8 @@ def reference(simulation: Simulation, agents: np.ndarray, foods: np.ndarray, sel
         np.r_[np.zeros(len(others), int), np.ones(len(foods), int)],
         segments,
         np.stack([-np.sin(angle), np.cos(angle)], 1),
-        start=config.body.radius,
-        length=config.sensor.ray_length,
+        start=own.body.radius,
+        length=own.sensor.ray_length,
     )
 
 
@@ -103,7 +104,7 @@ def test_random_scenes_are_seen_as_they_are(name: str):
         body = np.column_stack([random_place(simulation, rng, agents), rng.uniform(0, 2 * math.pi, agents)])
         counts = compare(simulation, body.astype(np.float32), random_place(simulation, rng, foods))
         compared, hits = compared + counts[0], hits + counts[1]
-    assert compared > 20 * simulation.config.sensor.ray_count
+    assert compared > 20 * simulation.config.species["agent"].sensor.ray_count
     assert hits > 0 or name == "an empty plain"
 
 

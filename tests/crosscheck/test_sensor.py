@@ -72,7 +72,7 @@ def test_by_the_released_rule_a_ray_that_starts_beyond_a_wall_does_not_meet_it()
 @pytest.mark.parametrize(("rule", "seen"), [("gone", [-1.0, -1.0]), ("seen", [1.0, -1.0])])
 def test_eaten_food_is_seen_for_one_more_step_by_the_released_rule(rule, seen):
     simulation = make_simulation(
-        *STILL, *DEATHLESS, *CHILDLESS, f"sensor.eaten_food={rule}", "food.normal.growth_rate=0"
+        *STILL, *DEATHLESS, *CHILDLESS, f"world.eaten_food={rule}", "food.normal.growth_rate=0"
     )
     set_scene(simulation, [(240, 180, 0.0)], [(240, 193)])
     world = simulation.worlds[0]
@@ -88,7 +88,7 @@ def test_eaten_food_is_seen_for_one_more_step_by_the_released_rule(rule, seen):
 
 @pytest.mark.parametrize(("rule", "meals"), [("nearest", [1, 0]), ("all", [1, 1])])
 def test_two_mouths_at_one_food(rule, meals):
-    simulation = make_simulation(*STILL, *DEATHLESS, *CHILDLESS, f"sensor.mouths={rule}", "food.normal.growth_rate=0")
+    simulation = make_simulation(*STILL, *DEATHLESS, *CHILDLESS, f"world.mouths={rule}", "food.normal.growth_rate=0")
     set_scene(simulation, [(240, 180, 0.0), (240, 207, math.pi)], [(240, 193.2)])
     before = simulation.worlds[0].view("food_stock.number")[0]
     simulation.run(1)

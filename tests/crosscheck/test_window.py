@@ -23,7 +23,7 @@ ROWS = ("action", "log_prob", "value", "reward")
 
 
 def network_shape(simulation: Simulation) -> tuple[int, int, int, int]:
-    sensor, types = simulation.config.sensor, len(simulation.config.food) + 2
+    sensor, types = simulation.config.species["agent"].sensor, len(simulation.config.food) + 2
     return sensor.ray_count, types, types * sensor.touch_sectors, 5 if sensor.scaling == "raw" else 6
 
 
@@ -56,7 +56,7 @@ def live_a_window(simulation: Simulation) -> dict[int, dict[str, Any]]:
 def test_a_window_of_learning(case):
     simulation = make_simulation(*CASES[case], seeds=(SEED,))
     world, shape = simulation.worlds[0], network_shape(simulation)
-    settings = engine_learning(simulation.config.learning)
+    settings = engine_learning(WINDOW, simulation.config.species["agent"].learning)
     simulation.run(WINDOW)  # so that moments are not zero and some agents are born later than others
     told = live_a_window(simulation)
     agents, slots, next_seen = world.agents(), world.living, world.observations()
@@ -114,7 +114,7 @@ def test_a_window_of_learning(case):
 @pytest.mark.parametrize("case", CASES)
 def test_the_first_update_is_that_of_plain_ppo(case):
     simulation = make_simulation(*CASES[case], seeds=(SEED,))
-    world, settings = simulation.worlds[0], engine_learning(simulation.config.learning)
+    world, settings = simulation.worlds[0], engine_learning(WINDOW, simulation.config.species["agent"].learning)
     told = live_a_window(simulation)
     agents = world.agents()
     learners = np.flatnonzero(agents["birth_step"] == 0)[:6]

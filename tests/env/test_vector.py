@@ -109,7 +109,7 @@ def test_others_learn_beside_those_that_are_driven():
     worlds.step(repeat=128)
     world = worlds.simulation.worlds[0]
     assert world.counters_of(0)["learners"] > 0 == world.counters_of(1)["learners"]
-    living = worlds.config.agents["wise"].population.capacity
+    living = worlds.config.species["wise"].population.capacity
     mine = world.living[world.living >= living] - living
     np.testing.assert_array_equal(group.observations[0, mine], world.observations(1))
     assert group.columns == observation_columns(worlds.config, "led")

@@ -10,24 +10,25 @@ from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import sections, settings
 from hedon.config.layout import FAMILY_GENES, LEARNING_GENES
 from hedon.config.load import FIDELITIES, PRESETS
+from hedon.config.species import PER_SPECIES, SpeciesConfig
 
-AS_DATA = {"genome.founders": "founders", "learning.networks": "networks"}
+AS_DATA = {"world.founders": "founders", "world.networks": "networks"}
 """Settings that a run sets by itself, with what mechanisms call them."""
 
 
 def every_setting(section: type = Config, path: str = "") -> Iterator[tuple[str, tuple[str, ...], Any]]:
-    """The path of every setting (`*` for names), its choices and its default; not those of species again."""
+    """The path of every setting in a file of one species (`*` for names), its choices and its default."""
     for name, setting in settings(section).items():
         if name not in PROVENANCE:
             yield path + name, setting.choices, setting.default
     for name, inner in sections(section).items():
-        if name != "species":
-            yield from every_setting(inner.type, f"{path}{name}." + ("*." if inner.repeated else ""))
+        below = "" if name == "species" else f"{path}{name}." + ("*." if inner.repeated else "")
+        yield from every_setting(inner.type, below)
 
 
 def general(path: tuple[str, ...]) -> str:
     """The path of a setting with `*` for names."""
-    here: type = Config
+    here: type = SpeciesConfig if path[0] in PER_SPECIES else Config
     told, words = [], list(path)
     while words:
         told.append(words.pop(0))

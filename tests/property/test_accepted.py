@@ -22,7 +22,7 @@ FUZZ = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 SMALL = (
     "population.capacity=12",
     "population.initial_count=3",
-    "learning.rollout_steps=4",
+    "world.rollout_steps=4",
     "learning.minibatch_size=2",
 )
 ALL_TABLES = (
@@ -34,7 +34,7 @@ ALL_TABLES = (
     "food.normal.placement={form='mixture', centers=[[50, 50], [80, 90]], sd=[9, 9]}",
     "food.normal.nutrient=1",
     "food.normal.toxin=1",
-    "reward.relief_coef=1",
+    "reward.drive_reduction_coef=1",
     "reward.family=by_age",
     "genome.learning={gamma={}, action_sd={}}",
     "genome.family.threshold={}",
@@ -133,7 +133,7 @@ def test_the_engine_takes_what_the_config_accepts(changed):
     if config is None:
         return
     assume(sum(memory_needed(config, 1, 1).values()) < 200e6)
-    assume(all(species.population.initial_count < 1000 for species in config.agents.values()))
+    assume(all(species.population.initial_count < 1000 for species in config.species.values()))
     assume(all(food.initial_count < 1000 for food in config.food.values()))
     refused = _refusal(config)
     assert refused is None or refused.startswith("initial_placement"), refused  # which only placing them tells

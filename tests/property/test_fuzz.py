@@ -150,7 +150,8 @@ def load_from_text(content: str, path: Path) -> Config:
 
 def run_briefly(config: Config) -> bool:
     """What passes as a config can be lived in, or the engine says why not."""
-    if config.physics.substeps * config.population.capacity > 10**5 or config.population.initial_count > 500:
+    size = [own.population for own in config.species.values()]
+    if any(config.physics.substeps * own.capacity > 10**5 or own.initial_count > 500 for own in size):
         return False
     said, _ = outcome(lambda: Simulation(config, (1,), 1).run(3), EngineError)
     assert said is None or ":" in said

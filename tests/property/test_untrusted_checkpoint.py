@@ -181,7 +181,7 @@ def test_spoiled_worlds_of_every_mechanism_are_refused_or_do_no_harm(number, tmp
                 target.engine.restore(0, spoil(saved, draw))
                 taken[-1] = True
                 target.run(draw.choice((3, 40)))
-            for species in range(len(config.agents)):
+            for species in range(len(config.species)):
                 target.worlds[0].observations(species)
     assert 0 < sum(taken) < len(taken)
 

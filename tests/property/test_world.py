@@ -91,7 +91,7 @@ def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_number_of_birth(no
         "birth.kappa=0.05",
         "hazard.kappa=0",
         "genome.weight_limit=1000",
-        f'genome.mutation_noise="{noise}"',
+        f'world.mutation_noise="{noise}"',
     )
     simulation = make_simulation(
         *breeding, "population.capacity=600", "arena.width=1500", "arena.height=1500", seeds=(2,)

@@ -20,7 +20,7 @@ def inputs(rules: Rules, turn: Turn) -> dict[str, float]:
         found[f"see_{name}"] = float(readings.mean() if see.over_rays == "mean" else readings.max())
     for name in settings.smell:
         found[f"smell_{name}"] = float(turn.smelled[species.smells.index(name)].mean())
-    if settings.relief_coef:
+    if settings.drive_reduction_coef:
         found["drive_reduction"] = drive(species, turn.start) - drive(species, turn.agent)
     return found
 

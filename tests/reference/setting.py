@@ -30,7 +30,7 @@ class Species:
     """The sections of one species, its genes by name, and what it eats, sees, touches and smells."""
 
     def __init__(self, config: Config, name: str, number: int) -> None:
-        own, layout = config.agents[name], layouts(config)[name]
+        own, layout = config.species[name], layouts(config)[name]
         self.name, self.number = name, number
         for section in fields(own):
             setattr(self, section.name, held(getattr(own, section.name)))
@@ -49,14 +49,14 @@ class Species:
             for state in ("nutrient", "toxin")
             if any(getattr(food, state) > 0 for kind, food in config.food.items() if kind in self.eats)
         ]
-        every = [*config.agents, *config.food, "wall", *(["obstacle"] if config.obstacle.count else [])]
+        every = [*config.species, *config.food, "wall", *(["obstacle"] if config.obstacle.count else [])]
         solid = ("wall", "obstacle")
         self.sees, self.touches = (
             [each for each in every if each in solid or each in names or "*" in names]
             for names in (own.sensor.sees, own.body.collides)
         )
         self.smells = [
-            each for each in (*config.agents, *config.food) if each in own.sensor.smells or "*" in own.sensor.smells
+            each for each in (*config.species, *config.food) if each in own.sensor.smells or "*" in own.sensor.smells
         ]
         self.genes = layout.gene_names
         self.laws = [self._law(config, gene) for gene in self.genes]
@@ -70,7 +70,7 @@ class Species:
         genome, reward, name = self.genome, self.reward, gene[2:]
         weights = {
             **{kind: food.gene for kind, food in config.food.items()},
-            **dict.fromkeys(config.agents, genome.prey),
+            **dict.fromkeys(config.species, genome.prey),
             "action": genome.action,
             **{f"see_{each}": see.gene for each, see in reward.see.items()},
             **{f"smell_{each}": smell.gene for each, smell in reward.smell.items()},
@@ -109,23 +109,24 @@ class Rules:
     def __init__(self, config: Config, seed: int) -> None:
         self.draw = Draws(seed)
         self.arena = Arena(config, self.draw)
-        self.species = [Species(config, name, i) for i, name in enumerate(config.agents)]
-        self.names, self.kinds = list(config.agents), list(config.food)
+        self.species = [Species(config, name, i) for i, name in enumerate(config.species)]
+        self.names, self.kinds = list(config.species), list(config.food)
         self.foods = [held(food) for food in config.food.values()]
         self.hunting = any(name in each.eats for each in self.species for name in self.names)
         self.obstacle = held(config.obstacle)
-        self.food_radius = held(config.body.food_radius)
-        self.eaten_foods_seen = config.sensor.eaten_food == "seen"
+        self.food_radius = held(config.world.food_radius)
+        self.eaten_foods_seen = config.world.eaten_food == "seen"
         agents = sum(species.population.capacity for species in self.species)
         foods = sum(food.capacity for food in self.foods)
         self.most_sources = agents + foods * (2 if self.eaten_foods_seen else 1)
-        self.all_mouths = config.sensor.mouths == "all"
-        self.each_gains = config.diet.prey_sharing == "each"
-        self.births_first = config.birth.order == "before_deaths"
-        self.inherits_late = config.birth.inheritance == "at_window_end"
-        self.resident_slots_only = config.birth.parents == "old_slots"
-        self.shared_heading = config.birth.heading == "shared"
-        self.window = config.learning.rollout_steps
+        self.all_mouths = config.world.mouths == "all"
+        self.each_gains = config.world.prey_sharing == "each"
+        self.births_first = config.world.birth_order == "before_deaths"
+        self.inherits_late = config.world.inheritance == "at_window_end"
+        self.resident_slots_only = config.world.parents == "old_slots"
+        self.shared_heading = config.world.child_heading == "shared"
+        self.mutation_noise = config.world.mutation_noise
+        self.window = config.world.rollout_steps
 
     def of(self, agent: Any) -> Species:
         return self.species[agent.species]

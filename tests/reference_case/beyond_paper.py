@@ -46,7 +46,7 @@ SPECIES = {
     "shared prey": Case(
         "all who claim an agent gain",
         (
-            'diet.prey_sharing="each"',
+            'world.prey_sharing="each"',
             *each("prey", "population.capacity=30", "population.initial_count=26", "birth.kappa=0.2"),
             *each("hunter", "population.capacity=20", "population.initial_count=18", 'diet.eats=[["prey", 0.6]]'),
             *each("hunter", "sensor.mouth_spread=120", "energy.basic_cost=0.1"),
@@ -60,7 +60,7 @@ SPECIES = {
             *each("ghost", "population.capacity=12", "population.initial_count=8", "hazard.kappa=0.1"),
             *each("solid", 'body.collides=["solid", "normal"]', "body.radius=7", "body.density=0.2"),
             *each("solid", "population.heading_range=1", "reward.action_coef=0.2", 'reward.action_norm="none"'),
-            "body.food_radius=3",
+            "world.food_radius=3",
         ),
         {"passed": 20, "births": 10},
     ),
@@ -73,7 +73,7 @@ SPECIES = {
             *each("two", 'sensor.smells=["normal", "one"]', "sensor.noses=2", "sensor.nose_angle=70"),
             *each("one", "sensor.smell_decay=0.15"),
             *each("two", 'sensor.scaling="unit"', "reward.smell.normal.coef=0.3"),
-            *("population.capacity=20", "population.initial_count=12", 'sensor.eaten_food="seen"'),
+            *("population.capacity=20", "population.initial_count=12", 'world.eaten_food="seen"'),
         ),
         {"smelled": 100, "paid_smell_two": 500, "paid_smell_normal": 500, "eaten_foods": 3},
     ),
@@ -108,17 +108,22 @@ INNER = {
         (
             *("food.normal.nutrient=1", "nutrient.initial=1", "nutrient.capacity=3", "nutrient.basic_cost=0.01"),
             *("food.normal.toxin=1", "toxin.decay=0.1", "energy.capacity=6"),
-            *("reward.relief_coef=2", "reward.meal_coef=0", "reward.action_coef=0", "genome.set_point.initial_sd=0.3"),
+            *(
+                "reward.drive_reduction_coef=2",
+                "reward.meal_coef=0",
+                "reward.action_coef=0",
+                "genome.set_point.initial_sd=0.3",
+            ),
             *("genome.set_point_nutrient.initial_mean=0.8", "genome.set_point_toxin.initial_sd=0.2"),
             *("genome.set_point.initial_mean=0.7", "genome.set_point_nutrient.initial_sd=0.3"),
             *("genome.set_point_toxin.initial_mean=0.3", "genome.mutation.set_point.scale=0.1"),
         ),
-        {"paid_relief": 1000, "eaten": 10},
+        {"paid_drive_reduction": 1000, "eaten": 10},
     ),
     "relief by energy": Case(
         "relief with energy alone, beside the other terms",
-        ("reward.relief_coef=1.5", "energy.capacity=8", 'diet.eats=[["normal", 0.7]]'),
-        {"paid_relief": 1000},
+        ("reward.drive_reduction_coef=1.5", "energy.capacity=8", 'diet.eats=[["normal", 0.7]]'),
+        {"paid_drive_reduction": 1000},
     ),
 }
 
@@ -275,11 +280,11 @@ COMBINED = {
         "several mechanisms at once, in species that differ in them",
         (
             *("obstacle.count=3", "obstacle.damage=0.2", "obstacle.max_side=30", "obstacle.min_side=20"),
-            *("obstacle.schedule.harmful.points=[[0, 1], [50, 0.4]]", 'birth.order="after_deaths"'),
+            *("obstacle.schedule.harmful.points=[[0, 1], [50, 0.4]]", 'world.birth_order="after_deaths"'),
             *("food.fruit.energy=0.3", "food.fruit.nutrient=1", "food.fruit.growth_rate=1", "food.fruit.capacity=12"),
             *("food.fungus.energy=1", "food.fungus.toxin=3", "food.fungus.growth_rate=1", "food.fungus.capacity=12"),
             *("nutrient.initial=1", "nutrient.basic_cost=0.02", "toxin.decay=0.1", "birth.kappa=0.15"),
-            *each("grazer", "reward.relief_coef=1", "reward.see.hunter.coef=0.3", 'birth.mating="pairs"'),
+            *each("grazer", "reward.drive_reduction_coef=1", "reward.see.hunter.coef=0.3", 'birth.mating="pairs"'),
             *each("grazer", "birth.mating_window=8", "birth.mating_range=40", "population.capacity=24"),
             *each(
                 "grazer",
@@ -294,7 +299,14 @@ COMBINED = {
             *each("drifter", 'learning.policy="random"', 'body.collides=["grazer", "hunter"]', "diet.eats=[]"),
             *each("drifter", "population.capacity=8", "population.initial_count=5", 'genome.mutation_law="normal"'),
         ),
-        {"deaths_eaten": 6, "harmed": 10, "mated": 3, "paid_smell_grazer": 100, "paid_relief": 300, "starved": 1},
+        {
+            "deaths_eaten": 6,
+            "harmed": 10,
+            "mated": 3,
+            "paid_smell_grazer": 100,
+            "paid_drive_reduction": 300,
+            "starved": 1,
+        },
     ),
     "released hunters": Case(
         "late inheritance in several species, all of whose mouths are fed",

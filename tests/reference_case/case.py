@@ -6,7 +6,7 @@ from hedon.config.config import Config
 from hedon.config.load import load_config
 
 LIVELY = (
-    *("learning.rollout_steps=32", "learning.minibatch_size=16", "learning.update_epochs=1"),
+    *("world.rollout_steps=32", "learning.minibatch_size=16", "learning.update_epochs=1"),
     *("arena.width=240", "arena.height=200", "population.capacity=30", "population.initial_count=20"),
     *("energy.initial=3", "energy.basic_cost=0.02", "energy.action_cost=4e-5", "birth.kappa=0.05"),
     *("hazard.kappa=0.4", "hazard.alpha_age=2e-4", "hazard.beta_age=0.01"),

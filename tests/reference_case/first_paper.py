@@ -42,8 +42,8 @@ FIRST_PAPER = {
     "one by one": Case(
         "some settings of released alone",
         (
-            *('genome.mutation_noise="frozen"', 'birth.parents="old_slots"', 'birth.order="after_deaths"'),
-            *('sensor.mouths="all"', 'sensor.eaten_food="seen"', 'learning.acting_weights="float32"'),
+            *('world.mutation_noise="frozen"', 'world.parents="old_slots"', 'world.birth_order="after_deaths"'),
+            *('world.mouths="all"', 'world.eaten_food="seen"', 'learning.acting_weights="float32"'),
         ),
         {"births_failed_full": 5, "acts_ppo_float32": 100, "eaten_foods": 5},
         steps=104,

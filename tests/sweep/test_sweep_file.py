@@ -29,9 +29,9 @@ def test_factors_are_crossed_and_reach_the_configs(tmp_path):
     assert [tuple(c.settings.values()) for c in found.conditions] == [
         (5.0, "baseline"), (5.0, "poison"), (7.0, "baseline"), (7.0, "poison")
     ]  # fmt: skip
-    assert [c.config.energy.initial for c in found.conditions] == [5.0, 5.0, 7.0, 7.0]
+    assert [c.config.species["agent"].energy.initial for c in found.conditions] == [5.0, 5.0, 7.0, 7.0]
     assert ["poison" in c.config.food for c in found.conditions] == [False, True, False, True]
-    assert {c.config.birth.kappa for c in found.conditions} == {0.01}
+    assert {c.config.species["agent"].birth.kappa for c in found.conditions} == {0.01}
     assert found.seeds == (1, 2, 3)
 
 
@@ -133,4 +133,4 @@ def test_all_problems_are_told_at_once(tmp_path):
 def test_a_base_file_is_found_beside_the_sweep(tmp_path):
     (tmp_path / "own.toml").write_text('preset = "small"\n[energy]\ninitial = 3.5\n')
     found = read(tmp_path, 'steps = 64\nbase = "own.toml"\n')
-    assert found.conditions[0].config.energy.initial == 3.5
+    assert found.conditions[0].config.species["agent"].energy.initial == 3.5

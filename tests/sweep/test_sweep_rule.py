@@ -38,7 +38,7 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
     for name in ("first", "second"):
         plan, store = planned(file, str(tmp_path / name))
         first = load_condition(store, 0)
-        assert first.reward.rule == f"my.py:once@{load_rules(store, first)[0].digest}"
+        assert first.species["agent"].reward.rule == f"my.py:once@{load_rules(store, first)[0].digest}"
         if name == "second":  # the plan needs the files no more
             shutil.rmtree(home)
         for batch in plan.batches():

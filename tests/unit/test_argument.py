@@ -56,7 +56,7 @@ def test_a_plan_takes_what_means_the_same():
 
 def test_paths_may_be_texts_everywhere(tmp_path):
     out = str(tmp_path / "run")
-    quick = hedon.load_config("small", overrides=["learning.rollout_steps=64", "learning.minibatch_size=32"])
+    quick = hedon.load_config("small", overrides=["world.rollout_steps=64", "learning.minibatch_size=32"])
     assert hedon.run(hedon.RunPlan(quick, [1], 70, out, 1)).status == "finished"
     assert hedon.resume(out, 100, threads=1).steps_asked == 100
     assert hedon.branch(out, str(tmp_path / "branch"), steps=120, threads=1).status == "finished"
@@ -86,7 +86,7 @@ def test_other_calls_do_too(call, words):
 
 
 def test_one_override_need_not_stand_in_a_list():
-    assert hedon.load_config("small", overrides="energy.initial=7").energy.initial == 7.0
+    assert hedon.load_config("small", overrides="energy.initial=7").species["agent"].energy.initial == 7.0
 
 
 def test_every_error_is_public_and_can_be_caught_as_one():

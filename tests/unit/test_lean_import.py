@@ -9,7 +9,7 @@ import json, sys
 before = set(sys.modules)
 import hedon
 alone = sorted({name.partition(".")[0] for name in set(sys.modules) - before})
-config = hedon.load_config("predator", overrides=["learning.rollout_steps=64", "learning.minibatch_size=32"])
+config = hedon.load_config("predator", overrides=["world.rollout_steps=64", "learning.minibatch_size=32"])
 simulation = hedon.Simulation(config, seeds=[1])
 simulation.run(64)
 world = simulation.worlds[0]

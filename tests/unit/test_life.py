@@ -162,7 +162,7 @@ def test_deaths_follow_the_hazard(energy):
         *STILL, *CHILDLESS, "hazard.kappa=0.5", "energy.basic_cost=0", "energy.action_cost=0", seeds=(3,)
     )
     config = load_config("baseline", overrides=("hazard.kappa=0.5",))
-    expected = float(hazard(config.hazard, 1.0, energy))
+    expected = float(hazard(config.species["agent"].hazard, 1.0, energy))
     places = [(20 + 30 * (i % 15), 20 + 30 * (i // 15), 0.0) for i in range(150)]
     deaths = trials = 0
     set_scene(simulation, places, energy=energy)
@@ -182,7 +182,7 @@ def test_births_follow_the_birth_function_and_share_the_energy():
     simulation.run(1)
     agents, counters = _agents(simulation), simulation.worlds[0].counters
     tried = counters["births"] + counters["births_failed_space"]
-    rate = float(birth_rate(config.birth, 20.0))
+    rate = float(birth_rate(config.species["agent"].birth, 20.0))
     assert tried == pytest.approx(30 * rate, abs=4 * np.sqrt(30 * rate))
     assert counters["births"] > 0
     children = agents["parent_id"] >= 0
@@ -321,7 +321,7 @@ def test_headings_are_wrapped_however_fast_a_body_turns():
 
 def test_a_body_that_slips_through_a_wall_is_named():
     # Of radius 0.5, a body passes a wall within one substep at the speed cap of 10 u/s.
-    simulation = make_simulation(*SAFE, "body.radius=0.5", "body.food_radius=0.2", "motor.max_force=1000")
+    simulation = make_simulation(*SAFE, "body.radius=0.5", "world.food_radius=0.2", "motor.max_force=1000")
     with pytest.raises(EngineError, match=r"outside_arena.*World 0, step \d+, value .*, agent \d+.*max_speed"):
         simulation.run(500)
 
@@ -335,6 +335,6 @@ def test_an_agent_whose_numbers_are_not_finite_is_named():
 
 
 def test_worlds_that_do_not_fit_into_memory_are_refused():
-    huge = ("population.capacity=100000", "learning.rollout_steps=65536")
+    huge = ("population.capacity=100000", "world.rollout_steps=65536")
     with pytest.raises(EngineError, match=r"need [\d.]+ GB of memory.*population\.capacity"):
         make_simulation(*huge, seeds=range(100))

@@ -7,7 +7,7 @@ from hedon.experiment.run import RunPlan, run
 
 # A window in which far more die than the engine's buffer of 16 per slot holds.
 BRIEF = (
-    "learning.rollout_steps=16384",
+    "world.rollout_steps=16384",
     "learning.update_epochs=0",
     "population.capacity=12",
     "population.initial_count=12",

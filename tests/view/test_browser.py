@@ -53,8 +53,8 @@ def test_agents_and_foods_are_drawn_where_the_records_have_them(run_folder, watc
         ground = image[image.shape[0] // 2, 2]
         rows = open_run(run_folder).frames().filter(pl.col("step") == STEP).collect()
         left, top, zoom = on_canvas(watched, rows["x"].to_numpy(), rows["y"].to_numpy())
-        bodies = load_config("poison").body
-        radius = np.where(rows["kind"] == "agent", bodies.radius, bodies.food_radius) * zoom
+        config = load_config("poison")
+        radius = np.where(rows["kind"] == "agent", config.species["agent"].body.radius, config.world.food_radius) * zoom
         rows_of, columns = np.mgrid[0 : image.shape[0], 0 : image.shape[1]]
         distance = np.min(
             [np.hypot(columns + 0.5 - x, rows_of + 0.5 - y) - r for x, y, r in zip(left, top, radius, strict=True)],

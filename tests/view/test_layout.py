@@ -5,8 +5,8 @@ import json
 import pytest
 
 from hedon.config import PRESETS, engine_config, load_config
-from hedon.config.field import leaves
-from hedon.config.layout import layouts, with_section
+from hedon.config.dump import flatten
+from hedon.config.layout import layouts
 from hedon.record.schema import columns_of
 from hedon.view.engine_text import engine_settings, engine_text
 from hedon.view.layout import describe
@@ -18,9 +18,10 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
     config = load_config(preset)
     layout = describe(config)
     assert [gene["name"] for gene in layout["genes"]] == list(columns_of(config).gene_names)
-    assert [gene["role"] for gene in layout["genes"]].count("neutral") == config.genome.neutral_count
+    neutral = max(own.genome.neutral_count for own in config.species.values())
+    assert [gene["role"] for gene in layout["genes"]].count("neutral") == neutral
     obstacles = ["obstacle"] if config.obstacle.count else []
-    assert layout["types"] == [*config.agents, *config.food, "wall", *obstacles]
+    assert layout["types"] == [*config.species, *config.food, "wall", *obstacles]
     assert (layout["obstacle_corners"] > 0) == bool(obstacles)
     for species, own in zip(layout["species"], layouts(config).values(), strict=True):
         assert [layout["genes"][gene]["name"] for gene in species["genes"]] == list(own.gene_names)
@@ -39,7 +40,9 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
     ("changes", "rest"), [({"family": "sinh"}, ["normal", "poison", "action"]), ({"rule": "my_rules.py:pay"}, [])]
 )
 def test_meals_tell_of_a_reward_only_where_it_is_linear_in_them(changes, rest):
-    config = with_section(load_config("poison"), "reward", **changes)
+    config = load_config("poison")
+    for name, value in changes.items():
+        config = config.with_(f"reward.{name}", value)
     assert describe(config)["species"][0]["reward"] == {"meals": [], "rest": rest}
 
 
@@ -47,7 +50,7 @@ def test_meals_tell_of_a_reward_only_where_it_is_linear_in_them(changes, rest):
 def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
     config = load_config(preset)
     engine, world = engine_settings(config), live_world(config, preset)
-    values = {path: value for path, _, value in leaves(config)}
+    values = flatten(config)
     assert len(world["settings"]) > 70
     for setting in world["settings"]:
         assert setting["value"] == values[setting["path"]]

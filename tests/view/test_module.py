@@ -57,7 +57,7 @@ def native_digest(preset: str, kernel: str, steps: int, *overrides: str) -> str:
 @pytest.mark.parametrize(("preset", "window"), [("poison", 1024), ("predator", 256)])
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
 def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, window, tmp_path):
-    shorter, steps = f"learning.rollout_steps={window}", window + 6
+    shorter, steps = f"world.rollout_steps={window}", window + 6
     found = run_in_node(module, engine_text(load_config(preset, overrides=[shorter]), 1), tmp_path, steps)
     assert found["digest"] == native_digest(preset, kernel, steps, shorter)
     assert found["step"] == steps
@@ -151,7 +151,7 @@ def test_the_module_refuses_what_the_engine_refuses(tmp_path):
         run_in_node("hedon.wasm", "\n".join(x for x in text.split("\n") if "energy.initial=" not in x), tmp_path, 1)
 
 
-SHORT = ["learning.rollout_steps=256", "population.capacity=90"]
+SHORT = ["world.rollout_steps=256", "population.capacity=90"]
 
 
 @pytest.fixture(scope="module")

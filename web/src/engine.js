@@ -67,7 +67,7 @@ function memoryOf(shared, bytes) {
   try {
     return new WebAssembly.Memory({ initial: FIRST_PAGES, maximum, shared });
   } catch {
-    throw new EngineError(`this browser refuses ${gigabytes(bytes)} of memory: lower population.capacity or learning.rollout_steps`);
+    throw new EngineError(`this browser refuses ${gigabytes(bytes)} of memory: lower population.capacity or world.rollout_steps`);
   }
 }
 
@@ -140,7 +140,7 @@ export class Engine {
     if (planned > limit) {
       throw new EngineError(
         `the world needs ${gigabytes(planned)} of memory, and a page has at most ${gigabytes(limit)}: ` +
-          "lower population.capacity or learning.rollout_steps",
+          "lower population.capacity or world.rollout_steps",
       );
     }
     const engine = new Engine(module, shared, 2 * planned + threads * 2 ** 21);

@@ -191,7 +191,7 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, st
 
 
 def _members(founders: Founders, world: WorldRecord, group: str) -> list[bool]:
-    return [name == group for name in founders.groups(world.seed, world.config.population.initial_count)]
+    return [name == group for name in founders.groups(world.seed, world.own.population.initial_count)]
 
 
 def _exchange(lines: Sequence[Lines], rng: np.random.Generator) -> float:

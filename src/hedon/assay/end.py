@@ -32,15 +32,16 @@ class End:
     reported: bool = False
 
 
-def read_ends(path: Path, config: Config) -> list[End]:
+def read_ends(path: Path, config: Config, species: str) -> list[End]:
     """The ends of the worlds that a run's folder, its `summary.json`, or a `study.json` has.
 
     Of studies with several conditions only the rows of the config's own condition count, if there are any; of a
-    run with several species, the species that the config has first.
+    run with several species, the given one.
 
     Args:
         path: a run's folder, a `summary.json` or a `reproduction.json`.
-        config: of the assay; of several species, its first one counts.
+        config: of the assay.
+        species: the one of the ends.
 
     Raises:
         AssayError: There are none, or the file cannot be read.
@@ -49,11 +50,10 @@ def read_ends(path: Path, config: Config) -> list[End]:
     name = brief(str(path))
     if path.is_dir():
         run = open_run(path)
-        own = next(iter(config.agents))
-        mine = by_species(run.agents(), run.columns).get(own if run.columns.several else run.columns.species[0])
+        mine = by_species(run.agents(), run.columns).get(species if run.columns.several else run.columns.species[0])
         if mine is None:
             there = ", ".join(run.columns.species)
-            raise AssayError(f"--ends {name}: the run has no species {own} (there are {there})")
+            raise AssayError(f"--ends {name}: the run has no species {species} (there are {there})")
         found = world_weights(mine, [gene for gene in run.reward_names if mine[gene].is_not_null().any()])
         seeds = run.manifest.seeds
         ends = [
@@ -67,17 +67,17 @@ def read_ends(path: Path, config: Config) -> list[End]:
             raise AssayError(f"--ends {name}: cannot be read: {error}") from None
         if not isinstance(content, dict):
             raise AssayError(f"--ends {name}: is neither a summary.json nor a study.json")
-        ends = _summary_ends(content, path, config) if "worlds" in content and "tables" not in content else []
+        ends = _summary_ends(content, path, species) if "worlds" in content and "tables" not in content else []
         ends = ends or _study_ends(content, path, config)
     if not ends:
         raise AssayError(f"--ends {name}: has no mean weights of a world")
     return ends
 
 
-def _summary_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
-    ends, own = [], next(iter(config.agents))
+def _summary_ends(content: Mapping[str, Any], path: Path, species: str) -> list[End]:
+    ends = []
     for whole in content["worlds"]:
-        world = whole.get("species", {}).get(own, {}) | {"seed": whole["seed"]} if "species" in whole else whole
+        world = whole.get("species", {}).get(species, {}) | {"seed": whole["seed"]} if "species" in whole else whole
         weights = {gene: spread.get("mean") for gene, spread in world.get("weights", {}).items()}
         if weights and all(isinstance(mean, float) for mean in weights.values()):
             ends.append(End(f"{path.parent.name}, seed {world['seed']}", weights))

@@ -13,7 +13,7 @@ from hedon.assay.resample import Floats, relative
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
 from hedon.config.gene import limit_of
-from hedon.config.layout import gene_columns, layouts, with_genome
+from hedon.config.layout import layouts
 from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
 from hedon.record.reader import Run
@@ -96,23 +96,30 @@ class Landscape:
 
 def assay_config(config: Config) -> Config:
     """The condition without mutation, and with the assay's neutral markers."""
-    return with_genome(config, mutation_scale=0.0, mutation={}, neutral_count=NEUTRAL, founders="")
+    return without_mutation(config).with_("genome.neutral_count", NEUTRAL)
 
 
-def spread_founders(config: Config, spread: Spread, species: str | None = None, rows: int = ROWS) -> Founders:
-    """A table of genomes spread over all genes, independently; the same for the same arguments.
+def without_mutation(config: Config) -> Config:
+    """A config without mutation, whose founders are not those of another run."""
+    for path, value in (("genome.mutation_scale", 0.0), ("genome.mutation", {}), ("world.founders", "")):
+        config = config.with_(path, value)
+    return config
 
-    With a species, only its genes; those of the others are drawn from the laws in the config.
+
+def spread_founders(config: Config, spread: Spread, species: str, rows: int = ROWS) -> Founders:
+    """A table of genomes of one species spread over all its genes, independently; the same for the same arguments.
+
+    Those of the other species are drawn from the laws in the config.
 
     Args:
         config: with the genes and their limits.
         spread: the law that all genes are drawn from; values beyond a gene's limit are clipped.
-        species: whose genes; None for those of all.
+        species: whose genes.
         rows: genomes in the table.
     """
-    names = gene_columns(config) if species is None else layouts(config)[species].gene_names
+    names = layouts(config)[species].gene_names
     rng = np.random.default_rng(_SEED)
-    prefix = "" if species is None else f"{species}."
+    prefix = f"{species}." if len(config.species) > 1 else ""
     limits = np.array([limit_of(config, prefix + name) for name in names])
     if spread.sd is None:
         values = rng.uniform(spread.low, spread.high, (rows, len(names)))
@@ -125,7 +132,7 @@ def spread_founders(config: Config, spread: Spread, species: str | None = None, 
 def _read_outcomes(runs: Sequence[Run], species: str | None = None) -> tuple[list[WorldRecord], pl.DataFrame]:
     """The worlds of an assay, or one species of them, and a row per founder: world (from 0 on), seed, agent_id, genes,
     measures."""
-    worlds = [world for world in read_worlds(runs) if species is None or world.condition.endswith(f": {species}")]
+    worlds = [world for world in read_worlds(runs) if species in (None, world.species)]
     tables = [
         founder_outcomes(world.agents, world.weight_names, world.last_step).select(
             pl.lit(i, pl.Int64).alias("world"), pl.lit(world.seed, pl.Int64).alias("seed"), pl.all()
@@ -141,7 +148,7 @@ def measure_landscape(run: Run, genes: tuple[str, str], species: str | None = No
     Args:
         run: of the assay.
         genes: the two columns of the surface.
-        species: whose; None where there is only one.
+        species: whose; None for all, where there is only one.
 
     Raises:
         AssayError: all worlds died out before anything could be measured.
@@ -160,7 +167,7 @@ def measure_landscape(run: Run, genes: tuple[str, str], species: str | None = No
         steps=max(run.manifest.steps_done, default=0),
         seeds=run.manifest.seeds,
         extinct=tuple(world.seed for world in worlds if world.extinct_step is not None),
-        founders=worlds[0].config.population.initial_count,
+        founders=worlds[0].own.population.initial_count,
         genes=genes,
         surfaces=surfaces,
         outcomes=outcomes.drop("world"),

@@ -1,13 +1,13 @@
 """The options of assays: which genes, how founders are spread, which runs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from hedon.assay.landscape import NEUTRAL, AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
-from hedon.config.layout import with_genome
+from hedon.config.evolution import GenomeConfig
+from hedon.config.layout import choose_species
 from hedon.experiment.plan import RunPlan, seed_span
 from hedon.record.folder import CONFIG
 from hedon.record.founder import Founders, column_of, join, unknown_gene
@@ -15,18 +15,20 @@ from hedon.record.founder_source import read_source, source_label
 from hedon.text import brief
 
 
-def choose_genes(text: str | None, config: Config) -> tuple[str, str]:
-    """The columns of two genes from a text such as "food,action", which is also the default.
+def choose_genes(text: str | None, config: Config, species: str | None = None) -> tuple[str, str]:
+    """The columns of two genes of a species from a text such as "food,action", which is also the default.
 
     Args:
         text: two names with a comma between them; None for the default.
         config: that has the genes.
+        species: by default the first.
 
     Raises:
         AssayError: They are not two genes of the config.
     """
     names = [name.strip() for name in (text if text is not None else "food,action").split(",")]
-    columns = [column_of(config, name) for name in names]
+    own = choose_species(species, config)
+    columns = [column_of(config, name, own) for name in names]
     for name, column in zip(names, columns, strict=True):
         if column is None:
             raise AssayError(f"--genes {brief(str(text))}: {unknown_gene(config, name)}")
@@ -36,18 +38,18 @@ def choose_genes(text: str | None, config: Config) -> tuple[str, str]:
     return first, second
 
 
-def parse_spread(text: str, sd: float | None, config: Config) -> Spread:
+def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
     """How founders are spread, from a range such as "-8:8", or normally if `sd` is given.
 
     Args:
         text: LOW:HIGH.
         sd: standard deviation of a normal law around 0, which then holds instead of the range; or None.
-        config: with the limit of weights.
+        genome: with the limit of weights.
 
     Raises:
         AssayError: It is not a range within the weight limit, or the standard deviation is not above 0.
     """
-    limit = config.genome.weight_limit
+    limit = genome.weight_limit
     if sd is not None:
         if not 0 < sd <= limit:
             raise AssayError(f"--sd {sd:g}: must be above 0 and at most genome.weight_limit = {limit:g}")
@@ -145,11 +147,6 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
     return next((str(folder / CONFIG) for folder in folders if (folder / CONFIG).is_file()), "baseline")
 
 
-def without_mutation(config: Config) -> Config:
-    """A config without mutation, whose founders are not those of another run."""
-    return with_genome(config, mutation_scale=0.0, mutation={}, founders="")
-
-
 def stability_config(config: Config, point: Mapping[str, float]) -> Config:
     """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
 
@@ -160,14 +157,13 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
     Raises:
         AssayError: The point has a neutral marker.
     """
-    genome = replace(config.genome, neutral_count=NEUTRAL, founders="")
-    food = dict(config.food)
+    changed = config.with_("genome.neutral_count", NEUTRAL).with_("world.founders", "")
     for column, value in point.items():
         kind = column.removeprefix("w_")
         if column == "w_action":
-            genome = replace(genome, action=replace(genome.action, initial_mean=value))
-        elif kind in food:
-            food[kind] = replace(food[kind], gene=replace(food[kind].gene, initial_mean=value))
+            changed = changed.with_("genome.action.initial_mean", value)
+        elif kind in config.food:
+            changed = changed.with_(f"food.{kind}.gene.initial_mean", value)
         else:
             raise AssayError(f"--at {column}={value:g}: a neutral marker is the control, so give food kinds and action")
-    return replace(config, genome=genome, food=food)
+    return changed

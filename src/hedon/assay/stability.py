@@ -10,7 +10,6 @@ from scipy import stats
 from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.world.record import generator, read_worlds
 from hedon.assay.resample import Floats
-from hedon.config.gene import gene_of
 from hedon.record.reader import Run
 from hedon.statistic.drift import rank_score
 from hedon.statistic.interval import Interval, mean_interval
@@ -81,12 +80,12 @@ def measure_stability(run: Run) -> Stability:
     steps = max(run.manifest.steps_done)
     found = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
     courses = [course for course in found if course is not None]
-    names, config = worlds[0].weight_names, worlds[0].config
+    names = worlds[0].weight_names
     step = np.arange(TIMES + 1) * steps / TIMES
-    weights = {name: _weight(name, gene_of(config, name).law.initial_mean, step, courses) for name in names}
+    weights = {name: _weight(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
     return Stability(
         name=run.path.name,
-        point={name: gene_of(config, name).law.initial_mean for name in worlds[0].reward_names},
+        point={name: worlds[0].gene(name).law.initial_mean for name in worlds[0].reward_names},
         worlds=len(worlds),
         extinct=sum(world.extinct_step is not None for world in worlds),
         generations=float(np.mean([course.generations for course in courses])) if courses else 0.0,

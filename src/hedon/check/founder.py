@@ -35,7 +35,7 @@ def check_founders(
     if founders is None or manifest is None or agents is None:
         return
     first, made = 0, layouts(config)
-    for name, species in config.agents.items():  # founders have ids in the order of their species
+    for name, species in config.species.items():  # founders have ids in the order of their species
         count, genes = species.population.initial_count, made[name].gene_names
         own = pl.col("agent_id").is_between(first, first + count - 1) & (pl.col("generation") == 0)
         for world, seed in enumerate(manifest.seeds):

@@ -239,7 +239,7 @@ def _check_rows(folder: _Folder) -> None:
     complete = ended and folder.whole
     pairs = None
     if folder.config is not None:
-        pairs = [name for name, each in folder.config.agents.items() if each.birth.mating == "pairs"]
+        pairs = [name for name, each in folder.config.species.items() if each.birth.mating == "pairs"]
     broken = folder.add(check_agents(agents, manifest, pairs, complete=complete))
     compared = agents if complete and not broken else None
     folder.add(check_population(folder.tables["population"], compared, manifest, ended=ended))

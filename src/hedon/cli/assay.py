@@ -80,16 +80,15 @@ def landscape(
     from hedon.assay.landscape import assay_config, measure_landscape, spread_founders
     from hedon.assay.option import assay_plan, choose_genes, parse_spread
     from hedon.assay.report_landscape import landscape_tables, write_landscape
-    from hedon.config.layout import choose_species, of_species
+    from hedon.config.layout import choose_species
     from hedon.config.load import load_config
 
     config = assay_config(load_config(source, fidelity, overrides or ()))
     own = choose_species(species, config)
-    mine = config if own is None else of_species(config, own)
-    pair = choose_genes(genes, mine)
-    found = [] if own else reported_ends(config)
-    found += [end for path in ends or () for end in read_ends(path, mine)]
-    founders = spread_founders(config, parse_spread(spread, sd, mine), own)
+    pair = choose_genes(genes, config, own)
+    found = [] if len(config.species) > 1 else reported_ends(config)
+    found += [end for path in ends or () for end in read_ends(path, config, own)]
+    founders = spread_founders(config, parse_spread(spread, sd, config.species[own].genome), own)
     plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
     console = make_console()
     runs = make([plan], console)

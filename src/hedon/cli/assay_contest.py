@@ -114,7 +114,7 @@ def add_to(app: typer.Typer) -> None:
 
 
 def _config(source: str, fidelity: str | None, overrides: list[str] | None) -> "Config":
-    from hedon.assay.option import without_mutation
+    from hedon.assay.landscape import without_mutation
     from hedon.config.load import load_config
 
     return without_mutation(load_config(source, fidelity, overrides or ()))

@@ -31,10 +31,9 @@ def forecast(
     """
     from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config
-    from hedon.config.layout import choose_species, of_species
+    from hedon.config.layout import choose_species
     from hedon.demography.forecast import forecast as predict
 
     config = load_config(source, fidelity, overrides or ())
-    chosen = choose_species(species, config)
-    config = config if chosen is None else of_species(config, chosen)
-    make_console().print(forecast_group(config, predict(config)))
+    own = choose_species(species, config)
+    make_console().print(forecast_group(config, own, predict(config, own)))

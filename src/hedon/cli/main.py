@@ -26,7 +26,7 @@ from hedon.error import HedonError
 from hedon.text import printable
 
 NO_MEMORY = (
-    "there is no more memory: lower population.capacity, learning.rollout_steps or the number of seeds, "
+    "there is no more memory: lower population.capacity, world.rollout_steps or the number of seeds, "
     "or check the limit `ulimit -v`"
 )
 ADDRESSES = 2_000_000_000

@@ -18,10 +18,6 @@ class BodyConfig:
         float,
         Doc("mass of an agent per area", "mass/u²", EITHER, Range(gt=0, le=1e3)),
     ] = 0.1
-    food_radius: Annotated[
-        float,
-        Doc("radius of a piece of food", "u", EITHER, Range(gt=0, le=1e3)),
-    ] = 4.0
     collides: Annotated[
         tuple[str, ...],
         Doc(
@@ -134,19 +130,3 @@ class SensorConfig:
             OURS + '; the code has "behind"',
         ),
     ] = "hit"
-    eaten_food: Annotated[
-        Literal["gone", "seen"],
-        Doc(
-            "whether rays still meet a food in the step after it was eaten",
-            "",
-            OURS + '; the code has "seen"',
-        ),
-    ] = "gone"
-    mouths: Annotated[
-        Literal["nearest", "all"],
-        Doc(
-            "who is fed if several mouths touch a food in the same step",
-            "",
-            OURS + '; the code has "all"',
-        ),
-    ] = "nearest"

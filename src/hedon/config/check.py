@@ -139,8 +139,8 @@ def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]
 
 def _founders(config: Config) -> Iterator[Problem]:
     digests = {
-        "genome.founders": "a table of founders, which `--founders` sets",
-        "learning.networks": "a file of networks, which `--networks` sets",
+        "world.founders": "a table of founders, which `--founders` sets",
+        "world.networks": "a file of networks, which `--networks` sets",
     }
     for path, what in digests.items():
         section, name = path.split(".")

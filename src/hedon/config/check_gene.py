@@ -15,7 +15,7 @@ def law_problems(config: Config, species: SpeciesConfig, path: str) -> Iterator[
     Args:
         config: Whose layouts can be made.
         species: One of its species.
-        path: Of its sections, "species.NAME." or "".
+        path: Of its sections, "species.NAME.".
     """
     genes = layout_of(config, species).genes
     for place, law in _laws(config, species, path):
@@ -25,7 +25,8 @@ def law_problems(config: Config, species: SpeciesConfig, path: str) -> Iterator[
         gene = min(using, key=lambda each: each.mutation.limit, default=None)
         limit = gene.mutation.limit if gene else species.genome.weight_limit
         if abs(law.initial_mean) > limit:
-            rule = f"must be within ± {_limit_name(species, gene, path)}{limit:g}"
+            owner = path if len(config.species) > 1 else ""
+            rule = f"must be within ± {_limit_name(species, gene, owner)}{limit:g}"
             yield Problem(f"{place}.initial_mean", rule, format_value(law.initial_mean))
 
 

@@ -23,7 +23,7 @@ from hedon.config.layout import (
 from hedon.config.problem import Problem, format_value, nearest, single
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.schedule import MAX_FACTOR
-from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, RULES, SpeciesConfig
+from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, SpeciesConfig
 
 MAX_TOUCH_BITS = 128
 """Most types times touch sectors that the engine has room for."""
@@ -42,9 +42,10 @@ MAX_COVERAGE = 0.45
 def species_problems(config: Config) -> Iterator[Problem]:
     """Yields what is wrong with a species, or with several together."""
     yield from _names(config)
-    for name, species in config.agents.items():
-        path = f"species.{name}." if config.species else ""
-        yield from _rules(config, species, path)
+    if not config.species:
+        return
+    for name, species in config.species.items():
+        path = f"species.{name}."
         yield from _body(config, species, path)
         yield from _life(config, species, path)
         yield from _lists(config, species, path)
@@ -60,21 +61,12 @@ def species_problems(config: Config) -> Iterator[Problem]:
 
 
 def _names(config: Config) -> Iterator[Problem]:
-    if len(config.species) > MAX_SPECIES:
-        yield Problem("species", f"there must be at most {MAX_SPECIES} species, not {len(config.species)}")
+    if not 1 <= len(config.species) <= MAX_SPECIES:
+        yield Problem("species", f"there must be from 1 to {MAX_SPECIES} species, not {len(config.species)}")
     for name in config.species:
         if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in (*config.food, *SOLID, "action"):
             rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
             yield Problem(f"species.{name}", f"{rule} and be no kind of food and not {' or '.join((*SOLID, 'action'))}")
-
-
-def _rules(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
-    """A species has no rules of its own where one rule holds for the world."""
-    for rule in RULES:
-        section, setting = rule.split(".")
-        own, common = getattr(getattr(species, section), setting), getattr(getattr(config, section), setting)
-        if own != common:
-            yield Problem(path + rule, f"holds for the whole world: set it in [{section}]", format_value(own))
 
 
 def _body(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
@@ -86,7 +78,7 @@ def _body(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
     if max(map(abs, forces)) > MAX_FORCE:
         rule = f"makes forces of {max(map(abs, forces)):g}: at most {MAX_FORCE:g} is allowed"
         yield Problem(f"{path}motor.force_scale", rule, format_value(motor.force_scale))
-    if 2 * single(max(species.body.radius, config.body.food_radius)) >= single(min(arena.width, arena.height)):
+    if 2 * single(max(species.body.radius, config.world.food_radius)) >= single(min(arena.width, arena.height)):
         yield Problem(f"{path}body.radius", "a body does not fit into the arena", format_value(species.body.radius))
     touched = len(chosen(config, species.body.collides))
     if touched * species.sensor.touch_sectors > MAX_TOUCH_BITS:
@@ -104,10 +96,10 @@ def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
     if birth.distance_unit == "arena_width" and birth.distance_sd > 1:
         rule = 'must be at most 1 with birth.distance_unit = "arena_width"'
         yield Problem(f"{path}birth.distance_sd", rule, format_value(birth.distance_sd))
-    if birth.inheritance == "at_window_end":
+    if config.world.inheritance == "at_window_end":
         for setting, plain in (("network", "none"), ("mating", "none")):
             if getattr(birth, setting) != plain:
-                rule = f'must be "{plain}" with birth.inheritance = "at_window_end"'
+                rule = f'must be "{plain}" with world.inheritance = "at_window_end"'
                 yield Problem(f"{path}birth.{setting}", rule, format_value(getattr(birth, setting)))
     if learning.policy == "frozen" and birth.network != "initial":
         rule = 'must be "initial" with learning.policy = "frozen": a new network would never learn'
@@ -121,13 +113,13 @@ def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
     if energy.initial > energy.capacity:
         rule = f"must be at most energy.capacity = {energy.capacity:g}"
         yield Problem(f"{path}energy.initial", rule, format_value(energy.initial))
-    if learning.rollout_steps % learning.minibatch_size:
-        rule = f"must divide learning.rollout_steps = {learning.rollout_steps}"
+    if config.world.rollout_steps % learning.minibatch_size:
+        rule = f"must divide world.rollout_steps = {config.world.rollout_steps}"
         yield Problem(f"{path}learning.minibatch_size", rule, format_value(learning.minibatch_size))
 
 
 def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem]:
-    everything = [*config.agents, *config.food]
+    everything = [*config.species, *config.food]
     yield from _known(f"{path}sensor.sees", species.sensor.sees, everything)
     yield from _known(f"{path}sensor.smells", species.sensor.smells, everything)
     yield from _known(f"{path}body.collides", species.body.collides, everything)
@@ -140,7 +132,7 @@ def _lists(config: Config, species: SpeciesConfig, path: str) -> Iterator[Proble
 
 
 def _rule(config: Config, name: str, path: str) -> Iterator[Problem]:
-    species = config.agents[name]
+    species = config.species[name]
     for use in RULE_USES:
         place, rule = f"{path}{use}.rule", getattr(species, use).rule
         if rule and not re.fullmatch(RULE_PATTERN, rule):
@@ -222,15 +214,15 @@ def _known(path: str, names: Sequence[str], known: Sequence[str]) -> Iterator[Pr
 
 
 def _nobody(config: Config) -> Iterator[Problem]:
-    if all(species.population.initial_count == 0 for species in config.agents.values()):
-        name = f"species.{next(iter(config.species))}." if config.species else ""
-        yield Problem(f"{name}population.initial_count", "there must be at least one founder", "0")
+    if all(species.population.initial_count == 0 for species in config.species.values()):
+        name = next(iter(config.species))
+        yield Problem(f"species.{name}.population.initial_count", "there must be at least one founder", "0")
 
 
 def _crowd(config: Config) -> Iterator[Problem]:
     """Founders of all species together must fit into the arena."""
     area, room = 0.0, MAX_COVERAGE * config.arena.width * config.arena.height
-    for name, species in config.agents.items():
+    for name, species in config.species.items():
         if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
             return  # that is said already
         each = math.pi * species.body.radius**2
@@ -238,7 +230,7 @@ def _crowd(config: Config) -> Iterator[Problem]:
         area += species.population.initial_count * each
         if area > room:
             most = math.floor(free / each)
-            path = f"species.{name}.population.initial_count" if config.species else "population.initial_count"
+            path = f"species.{name}.population.initial_count"
             rule = f"too many to place: the arena has room for {most}"
             yield Problem(path, rule, format_value(species.population.initial_count))
 

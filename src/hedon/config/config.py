@@ -4,18 +4,12 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from hedon.config.arena import ArenaConfig
-from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
-from hedon.config.energy import EnergyConfig
-from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, Doc
 from hedon.config.food import FoodConfig
-from hedon.config.inner import NutrientConfig, ToxinConfig
-from hedon.config.learning import LearningConfig
-from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.obstacle import ObstacleConfig
 from hedon.config.physics import PhysicsConfig
-from hedon.config.population import PopulationConfig
-from hedon.config.species import ONLY, PER_SPECIES, DietConfig, SpeciesConfig
+from hedon.config.species import ONLY, SpeciesConfig
+from hedon.config.world import WorldConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
 """Fields that say where a config came from; they change no result."""
@@ -23,7 +17,11 @@ PROVENANCE = ("name", "preset", "fidelity")
 
 @dataclass(frozen=True, slots=True)
 class Config:
-    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`."""
+    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`.
+
+    What stands beside `species` is the world. There is at least one species; the only one of a file without `[species]`
+    is called `agent`.
+    """
 
     # For the validator: no conversion between types, no unknown names, no NaN or infinity, in any section.
     __pydantic_config__: ClassVar[Any] = {"strict": True, "extra": "forbid", "allow_inf_nan": False}
@@ -42,26 +40,22 @@ class Config:
     ] = "corrected"
     arena: ArenaConfig = field(default_factory=ArenaConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
-    body: BodyConfig = field(default_factory=BodyConfig)
-    motor: MotorConfig = field(default_factory=MotorConfig)
-    sensor: SensorConfig = field(default_factory=SensorConfig)
-    population: PopulationConfig = field(default_factory=PopulationConfig)
-    diet: DietConfig = field(default_factory=DietConfig)
     obstacle: ObstacleConfig = field(default_factory=ObstacleConfig)
     food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
-    energy: EnergyConfig = field(default_factory=EnergyConfig)
-    nutrient: NutrientConfig = field(default_factory=NutrientConfig)
-    toxin: ToxinConfig = field(default_factory=ToxinConfig)
-    hazard: HazardConfig = field(default_factory=HazardConfig)
-    birth: BirthConfig = field(default_factory=BirthConfig)
-    genome: GenomeConfig = field(default_factory=GenomeConfig)
-    reward: RewardConfig = field(default_factory=RewardConfig)
-    learning: LearningConfig = field(default_factory=LearningConfig)
-    species: dict[str, SpeciesConfig] = field(default_factory=dict)
+    world: WorldConfig = field(default_factory=WorldConfig)
+    species: dict[str, SpeciesConfig] = field(default_factory=lambda: {ONLY: SpeciesConfig()})
 
-    @property
-    def agents(self) -> dict[str, SpeciesConfig]:
-        """Every species by name, in order; without `[species]` there is one, which the config's sections describe."""
-        if self.species:
-            return self.species
-        return {ONLY: SpeciesConfig(**{name: getattr(self, name) for name in PER_SPECIES})}
+    def with_(self, path: str, value: Any) -> "Config":
+        """The same config with another value of one setting, checked.
+
+        Args:
+            path: As in a complete file, `species.prey.birth.kappa`, or as in a short one: `birth.kappa` is that of all
+                species, `food.*.energy` that of all kinds of food.
+            value: Of the setting's type; a table for a section.
+
+        Raises:
+            ConfigError: There is no such setting, or the value cannot be used.
+        """
+        from hedon.config.load import with_setting
+
+        return with_setting(self, path, value)

@@ -69,16 +69,6 @@ class GenomeConfig:
             Range(ge=0, le=16),
         ),
     ] = 16
-    founders: Annotated[
-        str,
-        Doc(
-            "digest of the table that the founders' genes come from, `founders.csv` in the run's folder; set by "
-            "`--founders`. Genes that the table does not have are drawn as below",
-            "",
-            OURS,
-            Range(form="64 hexadecimal digits"),
-        ),
-    ] = ""
     mutation_scale: Annotated[
         float,
         Doc("scale of the noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
@@ -87,15 +77,6 @@ class GenomeConfig:
         float,
         Doc("weights are clipped to ± this", "", EITHER, Range(gt=0, le=1e3)),
     ] = 10.0
-    mutation_noise: Annotated[
-        Literal["independent", "frozen"],
-        Doc(
-            "new noise for every birth, or noise fixed by seed, gene, the number of births in a window and the birth's "
-            "index among them",
-            "",
-            PAPER + '; the code has "frozen"',
-        ),
-    ] = "independent"
     mutation_law: Annotated[
         Literal["cauchy", "student_t", "normal", "uniform"],
         Doc(
@@ -183,7 +164,7 @@ class RewardConfig:
         float,
         Doc("factor of the terms for what is eaten; 0: their weights do nothing", "", PAPER, Range(ge=-1e3, le=1e3)),
     ] = 1.0
-    relief_coef: Annotated[
+    drive_reduction_coef: Annotated[
         float,
         Doc(
             "factor of relief: by how much a step's meals and costs bring energy, nutrient and toxin closer to set "

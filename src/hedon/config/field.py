@@ -174,11 +174,11 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
 def places(section: type, name: str, path: str = "") -> Iterator[str]:
     """The paths of all settings of this name in a section and its inner sections, in order."""
     for inner_name, inner in sections(section).items():
-        below = f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
+        # A file has the sections of species at the top too.
+        below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
         if name in settings(inner.type):
             yield below + name
-        if inner_name != "species":  # whose sections are those of the config once more
-            yield from places(inner.type, name, below)
+        yield from places(inner.type, name, below)
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:

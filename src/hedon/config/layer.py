@@ -1,9 +1,10 @@
 """Merges layers of nested tables: a later layer replaces the settings of earlier ones, one by one."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from hedon.config.problem import Problem, format_value, nearest
+from hedon.config.species import ONLY, PER_SPECIES
 
 Table = dict[str, Any]
 _MUTATION = {
@@ -54,14 +55,19 @@ def settle_food(tables: Table) -> Iterator[Problem]:
             yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
 
 
-def settle_species(tables: Table, common: Table) -> Iterator[Problem]:
-    """Completes the tables of each species, in place: what they do not say, `common` says.
+def settle_species(tables: Table, layers: Sequence[Table]) -> Iterator[Problem]:
+    """Moves the sections at the top, which are defaults for all species, into each species, in place.
 
-    A species that is false is removed; yields what is wrong with the species.
+    A species that is false is removed; if none is left, there is one that has the defaults. Yields what is wrong with
+    the species, and each default of `layers`, those of the user, that changes nothing: where every species has its own.
     """
-    species = tables.get("species")
+    common = {name: tables.pop(name) for name in PER_SPECIES if name in tables}
+    species = tables.setdefault("species", {})
     if not isinstance(species, dict):
+        yield Problem("species", "must be a table", format_value(species))
         return
+    owners = {name: own for name, own in species.items() if isinstance(own, dict)}
+    yield from _unreached(owners, layers)
     for name, own in list(species.items()):
         if own is False:
             del species[name]
@@ -69,28 +75,16 @@ def settle_species(tables: Table, common: Table) -> Iterator[Problem]:
             yield Problem(f"species.{name}", "must be a table", format_value(own))
         else:
             species[name] = _lay(common, own)
+    if not species:
+        species[ONLY] = common
 
 
-def reach_species(
-    tables: Table, layers: Sequence[Table], sections: Collection[str], rules: Collection[str]
-) -> Iterator[Problem]:
-    """Lets what users' layers say of the config's sections reach the species of `tables`, in place.
-
-    A rule of the world is every species' rule. Any other setting reaches those species that have none of their own:
-    yields a problem where all have one from below, so that the user's would change nothing.
-    """
-    species = tables.get("species")
-    owners = {name: own for name, own in species.items() if isinstance(own, dict)} if isinstance(species, dict) else {}
+def _unreached(owners: dict[str, Table], layers: Sequence[Table]) -> Iterator[Problem]:
     for i, layer in enumerate(layers) if owners else ():
         over = stack(layers[i:]).get("species", {})
-        for path, value in _flat({name: layer[name] for name in sections if name in layer}):
-            name = ".".join(path)
-            if name in rules:
-                for own in owners.values():
-                    own.update(_lay(own, _nested(path, value)))
-            elif all(has(own, path) for own in owners.values()) and not all(
-                has(over, (each, *path)) for each in owners
-            ):
+        for path, value in _flat({name: layer[name] for name in PER_SPECIES if name in layer}):
+            if all(has(own, path) for own in owners.values()) and not all(has(over, (each, *path)) for each in owners):
+                name = ".".join(path)
                 said = " and ".join(f"species.{each}.{name}" for each in owners)
                 yield Problem(name, f"changes nothing, since each species has its own: set {said}", format_value(value))
 
@@ -103,10 +97,13 @@ def _flat(table: Table, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
             yield (*path, name), value
 
 
-def _nested(path: Sequence[str], value: Any) -> Any:
-    for name in reversed(path):
-        value = {name: value}
-    return value
+def with_defaults(complete: Table) -> Table:
+    """The tables of a complete file, whose only species is put at the top, where single settings reach it."""
+    species = complete.get("species")
+    if not isinstance(species, dict) or len(species) != 1:
+        return complete
+    name, own = next(iter(species.items()))
+    return complete | own | {"species": {name: {}}} if isinstance(own, dict) else complete
 
 
 def has(table: Any, path: Sequence[str]) -> bool:
@@ -119,9 +116,9 @@ def has(table: Any, path: Sequence[str]) -> bool:
 
 
 def settle_mutation(tables: Table) -> None:
-    """Completes `genome.mutation` of a config and of its species, in place: what a gene does not say, `genome` says."""
+    """Completes `genome.mutation` of each species, in place: what a gene does not say, `genome` says."""
     species = tables.get("species")
-    owners = [tables, *(species.values() if isinstance(species, dict) else [])]
+    owners = species.values() if isinstance(species, dict) else []
     for genome in (owner.get("genome") for owner in owners if isinstance(owner, dict)):
         if not isinstance(genome, dict) or not isinstance(genome.get("mutation"), dict):
             continue

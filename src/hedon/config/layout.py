@@ -6,12 +6,11 @@ The engine gets these layouts as data, the records carry them, and columns, labe
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.evolution import GeneConfig, GenomeConfig, MutationConfig
 from hedon.config.problem import nearest
-from hedon.config.species import EVERYTHING, PER_SPECIES, SpeciesConfig
+from hedon.config.species import EVERYTHING, SpeciesConfig
 from hedon.error import ArgumentError
 from hedon.text import brief
 
@@ -114,12 +113,12 @@ class SpeciesLayout:
 
 def types(config: Config) -> tuple[str, ...]:
     """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
-    return (*config.agents, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
+    return (*config.species, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
 
 
 def layouts(config: Config) -> dict[str, SpeciesLayout]:
     """The layouts of every species, by name, in the order of the config."""
-    return {name: layout_of(config, species) for name, species in config.agents.items()}
+    return {name: layout_of(config, species) for name, species in config.species.items()}
 
 
 def gene_columns(config: Config) -> tuple[str, ...]:
@@ -133,7 +132,7 @@ def gene_columns(config: Config) -> tuple[str, ...]:
 
 def observation_columns(config: Config, name: str) -> tuple[str, ...]:
     """Names of the entries of what a species observes, in order: model page, section 5."""
-    species, layout = config.agents[name], layout_of(config, config.agents[name])
+    species, layout = config.species[name], layout_of(config, config.species[name])
     heading = ("heading",) if species.sensor.scaling == "raw" else ("heading_sine", "heading_cosine")
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
@@ -170,50 +169,26 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     Where there are other inner states than energy, they stand before it, each as it was at the start of the step and as
     it is.
     """
-    layout, memory = layout_of(config, config.agents[name]), config.agents[name].reward.memory
-    inner = inner_states(config, config.agents[name])[1:]
+    layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
+    inner = inner_states(config, config.species[name])[1:]
     states = (column for state in inner for column in (f"{state}_before", state))
     inputs = (term.name for term in layout.terms)
     own = "linear" if use == "reward" else "chance"
     return (*inputs, *layout.gene_names, *RULE_INPUTS, *states, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
-def choose_species(name: str | None, config: Config) -> str | None:
-    """The species of this name, or by default the first; None where there is only one, without a name.
+def choose_species(name: str | None, config: Config) -> str:
+    """The species of this name, or by default the first.
 
     Raises:
         ArgumentError: There is no such species.
     """
     known = list(config.species)
     if name is not None and name not in known:
-        there = "there are " + ", ".join(known) if known else "the config has only one, without a name"
         near = nearest(name, known)
         hint = f"; did you mean {near}?" if near else ""
-        raise ArgumentError(f"species {brief(name)!r}: there is no such species ({there}){hint}")
-    return name if name is not None else next(iter(known), None)
-
-
-def of_species(config: Config, name: str) -> Config:
-    """A config whose sections are those of one of its species, which also comes first among the species."""
-    if not config.species:
-        return config
-    own = config.species[name]
-    sections = {section: getattr(own, section) for section in PER_SPECIES}
-    return replace(config, **sections, species={name: own} | config.species)
-
-
-def with_section(config: Config, section: str, **changes: Any) -> Config:
-    """A config with other settings of a section, in all of its species."""
-
-    def changed(owner: Any) -> Any:
-        return replace(owner, **{section: replace(getattr(owner, section), **changes)})
-
-    return replace(changed(config), species={name: changed(each) for name, each in config.species.items()})
-
-
-def with_genome(config: Config, **changes: Any) -> Config:
-    """A config with other settings of `[genome]`, in all of its species."""
-    return with_section(config, "genome", **changes)
+        raise ArgumentError(f"species {brief(name)!r}: there is no such species (there are {', '.join(known)}){hint}")
+    return known[0] if name is None else name
 
 
 def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
@@ -248,7 +223,7 @@ def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
 
 def smelled(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     """The sources of smell that a list of names stands for, in order: species and kinds of food."""
-    return tuple(name for name in (*config.agents, *config.food) if name in names or EVERYTHING in names)
+    return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)
 
 
 def set_point_of(state: str) -> str:
@@ -309,7 +284,7 @@ def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     for index, (kind, food) in enumerate(config.food.items()):
         if kind in eaten:
             made.add_term("food", index, kind, f"a food of kind {kind}", food.gene, reward.meal_coef)
-    for index, name in enumerate(config.agents, len(config.food)):
+    for index, name in enumerate(config.species, len(config.food)):
         if name in eaten:
             made.add_term("food", index, name, f"eating a {name}", genome.prey, reward.meal_coef)
     made.add_term("action", 0, "action", "motor action", genome.action, reward.action_coef)
@@ -319,12 +294,12 @@ def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
     smells = smelled(config, species.sensor.smells)
     for name, smell in reward.smell.items():
         made.add_term("smell", smells.index(name), f"smell_{name}", f"smelling {name}", smell.gene, smell.coef)
-    if reward.relief_coef:
+    if reward.drive_reduction_coef:
         for state in inner:
             name = set_point_of(state)
             meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
             made.add_gene(name, "reward", meaning, getattr(genome, name))
-        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.relief_coef))
+        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.drive_reduction_coef))
     for name, law in genome.family.items():
         made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], law)
     for name, law in genome.learning.items():

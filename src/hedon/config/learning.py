@@ -19,25 +19,6 @@ class LearningConfig:
             OURS,
         ),
     ] = "ppo"
-    networks: Annotated[
-        str,
-        Doc(
-            'digest of the file that the founders\' networks come from where `policy` is "frozen", `networks.npz` in '
-            "the run's folder; set by `--networks`. Without one they are new networks",
-            "",
-            OURS,
-            Range(form="64 hexadecimal digits"),
-        ),
-    ] = ""
-    rollout_steps: Annotated[
-        int,
-        Doc(
-            "steps of a window; at its end, every agent that lived through all of it learns",
-            "step",
-            EITHER,
-            Range(ge=1, le=65_536),
-        ),
-    ] = 1024
     minibatch_size: Annotated[
         int,
         Doc("steps per gradient; must divide rollout_steps", "step", EITHER, Range(ge=1, le=65_536)),

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from hedon.config.arena import ArenaConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
 from hedon.config.schedule import ScheduleConfig
 
@@ -93,40 +94,6 @@ class BirthConfig:
         Literal["u", "arena_width"],
         Doc("unit of distance_sd", "", EITHER),
     ] = "u"
-    order: Annotated[
-        Literal["before_deaths", "after_deaths"],
-        Doc(
-            "which comes first in a step; after deaths, the dying do not breed, their slots are free, and the hazard "
-            "takes the parent's energy before it is shared",
-            "",
-            OURS + '; the code has "after_deaths"',
-        ),
-    ] = "before_deaths"
-    inheritance: Annotated[
-        Literal["at_birth", "at_window_end"],
-        Doc(
-            "when a newborn gets its network and its genome; until the window's end it acts with the network of the "
-            "agent that died in its slot, and gets that agent's rewards",
-            "",
-            PAPER + '; the code has "at_window_end"',
-        ),
-    ] = "at_birth"
-    parents: Annotated[
-        Literal["all", "old_slots"],
-        Doc(
-            "who may have children: all, or only agents in slots that were taken when the window began",
-            "",
-            PAPER + '; the code has "old_slots"',
-        ),
-    ] = "all"
-    heading: Annotated[
-        Literal["own", "shared"],
-        Doc(
-            "whether each child has a random heading of its own, or the children of one step share one",
-            "",
-            OURS + '; the code has "shared"',
-        ),
-    ] = "own"
     network: Annotated[
         Literal["none", "initial", "learned"],
         Doc(
@@ -166,3 +133,8 @@ class BirthConfig:
         float,
         Doc("how far the surfaces of two parents may be apart; 0: they touch", "u", OURS, Range(ge=0, le=1e4)),
     ] = 20.0
+
+
+def distance_sd(arena: ArenaConfig, birth: BirthConfig) -> float:
+    """Standard deviation of a child's place around its parent, along x and along y [u]."""
+    return birth.distance_sd * (arena.width if birth.distance_unit == "arena_width" else 1.0)

@@ -2,20 +2,20 @@
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import EARLIER, digest, is_earlier
-from hedon.config.earlier import with_genes
+from hedon.config.dump import SCHEMA, digest
 from hedon.config.field import leaves
-from hedon.config.layer import Table, has, reach_species, settle_food, settle_mutation, settle_species, stack
-from hedon.config.override import parse_override
-from hedon.config.problem import ConfigError, Problem, format_value, nearest
+from hedon.config.layer import EVERY, Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
+from hedon.config.override import parse_override, parse_path
+from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
-from hedon.config.species import PER_SPECIES, RULES
+from hedon.config.species import PER_SPECIES
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import from_tables
 from hedon.error import ArgumentError
@@ -85,7 +85,32 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Something in it is wrong or missing.
     """
-    return _from_layers([_earlier()], [parse_toml(text, origin) | {"complete": True}], origin)
+    return _from_layers([], [parse_toml(text, origin) | {"complete": True}], origin)
+
+
+def with_setting(config: Config, path: str, value: Any) -> Config:
+    """The same config with another value of one setting, as `Config.with_`."""
+    tables, names = asdict(config), parse_path(path)
+    if not names:
+        raise ConfigError(config.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
+    roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
+    kinds = list(tables["food"]) if names[:2] == ["food", EVERY] else []
+    for root in [["food", kind] for kind in kinds] or roots:
+        if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
+            raise ConfigError(config.name, [Problem(path, "there is no such setting")])
+    settle_mutation(tables)
+    return from_tables(tables, config.name)
+
+
+def _put(tables: Table, names: list[str], value: Any) -> bool:
+    """Sets a value in nested tables, if there is a place; a gene's mutation, which may have none yet, gets a table."""
+    for depth, name in enumerate(names[:-1]):
+        below = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
+        if not isinstance(below, dict):
+            return False
+        tables = below
+    tables[names[-1]] = value
+    return True
 
 
 def is_modified(config: Config) -> bool:
@@ -139,7 +164,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
         if fidelity not in (None, own.get("fidelity")):
             message = "the file already has all settings, so a fidelity changes none; start from its preset instead"
             problems.append(Problem("--fidelity", message, fidelity))
-        return [_earlier()]
+        return []
     if "complete" in own:
         problems.append(Problem("complete", "must be true or left out", format_value(own["complete"])))
     own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
@@ -156,14 +181,9 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
     complete = above[0].get("complete") is True
-    if complete:
-        above = [with_genes(above[0]), *above[1:]]
+    above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
     merged = stack([*below, *above])
-    merged.pop("complete", None)
-    problems = [*settle_food(merged), *reach_species(merged, above, PER_SPECIES, RULES)]
-    # The species of a complete file have all their settings. A table of the config that they lack, they lack.
-    common = _earlier() if complete else merged
-    problems += settle_species(merged, {name: common[name] for name in PER_SPECIES if name in common})
+    problems = [*_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
     settle_mutation(merged)
     if problems:
         raise ConfigError(origin, problems)
@@ -173,26 +193,24 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     return config
 
 
+def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:
+    """Takes the version of the schema and the mark of a complete file from the tables; yields what is wrong."""
+    tables.pop("complete", None)
+    schema = tables.pop("schema", None if complete else SCHEMA)
+    if schema != SCHEMA:
+        rule = f'must be "{SCHEMA}": `hedon config migrate` rewrites files of earlier versions'
+        yield Problem("schema", rule, None if schema is None else format_value(schema))
+
+
 def _require_complete(config: Config, tables: Table, origin: str) -> None:
     """ConfigError: a file that says it is complete lacks a setting, which would have a default that nobody chose."""
-    problems = []
-    for path, setting, value in leaves(config):
-        if path not in PROVENANCE and not has(tables, path.split(".")) and not is_earlier(path, value):
-            problems.append(Problem(path, f"is missing in a file that says it is complete; {setting.allowed}"))
+    problems = [
+        Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
+        for path, setting, _ in leaves(config)
+        if path not in PROVENANCE and not has(tables, path.split("."))
+    ]
     if problems:
-        raise ConfigError(origin, problems)
-
-
-def _earlier() -> Table:
-    """The layer below a complete file: values for settings that did not exist when an older file was written."""
-    tables: Table = {}
-    for path, value in EARLIER.items():
-        *sections, name = path.split(".")
-        below = tables
-        for section in sections:
-            below = below.setdefault(section, {})
-        below[name] = value
-    return tables
+        raise ConfigError(origin, folded(problems, tuple(config.species)))
 
 
 def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Problem]) -> bool:

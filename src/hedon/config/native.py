@@ -8,7 +8,7 @@ from hedon.config.config import Config
 from hedon.config.food import FoodConfig
 from hedon.config.layout import FAMILY_GENES, INNER_STATES, SpeciesLayout, diet, layouts, set_point_of, types
 from hedon.config.learning import LearningConfig
-from hedon.config.life import HazardConfig
+from hedon.config.life import HazardConfig, distance_sd
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
@@ -23,8 +23,8 @@ PYTHON_ONLY = (
     "arena.corner_chords",
     "arena.inner_walls",
     "food.color",
-    "genome.founders",
-    "learning.networks",
+    "world.founders",
+    "world.networks",
     "birth.distance_unit",
 )
 """Settings that the engine does not get: names, colors, and what it gets as walls or as lengths in u."""
@@ -37,31 +37,23 @@ def engine_config(config: Config) -> dict[str, Any]:
         "arena": {"width": config.arena.width, "height": config.arena.height},
         "physics": asdict(config.physics),
         "rules": {
-            "eaten_food": config.sensor.eaten_food,
-            "mouths": config.sensor.mouths,
-            "prey_sharing": config.diet.prey_sharing,
-            "birth_order": config.birth.order,
-            "inheritance": config.birth.inheritance,
-            "parents": config.birth.parents,
-            "child_heading": config.birth.heading,
+            name: getattr(config.world, name)
+            for name in (
+                *("eaten_food", "mouths", "prey_sharing"),
+                *("birth_order", "inheritance", "parents", "child_heading"),
+            )
         },
-        "food_radius": config.body.food_radius,
+        "food_radius": config.world.food_radius,
         "obstacle": asdict(config.obstacle) | {"schedule": _schedule(config.obstacle.schedule, OBSTACLE_SCHEDULE)},
         "food": [_food(food) for food in config.food.values()],
-        "species": [_species(config, species, made[name]) for name, species in config.agents.items()],
+        "species": [_species(config, species, made[name]) for name, species in config.species.items()],
     }
 
 
-def engine_learning(learning: LearningConfig) -> dict[str, Any]:
+def engine_learning(rollout_steps: int, learning: LearningConfig) -> dict[str, Any]:
     """The settings of learning as the engine takes them."""
-    return {name: value for name, value in asdict(learning).items() if f"learning.{name}" not in PYTHON_ONLY}
-
-
-def distance_sd(config: Config, species: SpeciesConfig) -> tuple[float, float]:
-    """Standard deviation of a child's place around its parent along x and y [u]."""
-    scale = config.arena.width if species.birth.distance_unit == "arena_width" else 1.0
-    sd = species.birth.distance_sd * scale
-    return sd, sd
+    policy, *others = asdict(learning).items()
+    return dict([policy, ("rollout_steps", rollout_steps), *others])
 
 
 def _food(food: FoodConfig) -> dict[str, Any]:
@@ -77,12 +69,12 @@ def _schedule(schedules: Mapping[str, ScheduleConfig], name: str) -> dict[str, A
 
 def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
     number = {name: i for i, name in enumerate(types(config))}
-    sensor = _without(asdict(species.sensor), "eaten_food", "mouths")
+    sensor = asdict(species.sensor)
     sensor["sees"] = [number[name] for name in layout.sees]
     sensor["smells"] = [number[name] for name in layout.smells]
     sensor["collides"] = [number[name] for name in layout.touches]
-    eaten = diet(config, species)
-    birth = _without(asdict(species.birth), "distance_unit", "order", "inheritance", "parents", "heading")
+    eaten, sd = diet(config, species), distance_sd(config.arena, species.birth)
+    birth = _without(asdict(species.birth), "distance_unit")
     return {
         "body": {"radius": species.body.radius, "density": species.body.density},
         "motor": {
@@ -94,16 +86,16 @@ def _species(config: Config, species: SpeciesConfig, layout: SpeciesLayout) -> d
         "population": asdict(species.population),
         "diet": {
             "food": [eaten.get(kind, 0.0) for kind in config.food],
-            "prey": [eaten.get(name, 0.0) for name in config.agents],
+            "prey": [eaten.get(name, 0.0) for name in config.species],
             "digestion_steps": species.diet.digestion_steps,
         },
         "energy": asdict(species.energy),
         **{state: _inner(species, layout, state) for state in INNER_STATES if state != "energy"},
         "hazard": _hazard(species.hazard),
-        "birth": birth | {"rule": _ruled(species.birth.rule), "distance_sd": distance_sd(config, species)},
-        "genome": _genome(species, layout),
+        "birth": birth | {"rule": _ruled(species.birth.rule), "distance_sd": (sd, sd)},
+        "genome": {"mutation_noise": config.world.mutation_noise} | _genome(species, layout),
         "reward": _reward(species, layout),
-        "learning": engine_learning(species.learning),
+        "learning": engine_learning(config.world.rollout_steps, species.learning),
     }
 
 
@@ -118,7 +110,6 @@ def _inner(species: SpeciesConfig, layout: SpeciesLayout, state: str) -> dict[st
 
 def _genome(species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
     return {
-        "mutation_noise": species.genome.mutation_noise,
         "genes": [
             {
                 "initial_mean": gene.law.initial_mean,

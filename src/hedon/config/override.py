@@ -23,7 +23,7 @@ def parse_override(text: str) -> Table | Problem:
         The tables, or what is wrong with the text.
     """
     path, sign, value_text = text.partition("=")
-    names = _names(path.strip())
+    names = parse_path(path.strip())
     if not sign or not names:
         return Problem("--set", 'must be "section.name=value", as in energy.initial=20', repr(text))
     try:
@@ -35,7 +35,8 @@ def parse_override(text: str) -> Table | Problem:
     return value
 
 
-def _names(path: str) -> list[str]:
+def parse_path(path: str) -> list[str]:
+    """The names of a path, without the quotes around them; none if it is no path."""
     names, at = [], 0
     while match := _PART.match(path, at):
         names.append(match[1] or match[2])

@@ -3,8 +3,8 @@
 import json
 import math
 import struct
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
@@ -58,6 +58,19 @@ class ConfigError(HedonError):
         else:
             more = [f"and {count - SHOWN:,} more"] if count > SHOWN else []
             super().__init__("\n  ".join([f"{brief(origin)}: {count:,} problems", *lines, *more]))
+
+
+def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
+    """The same problems, each once under the path of a file's default where all species have it."""
+    found: list[Problem] = list(problems)
+    short: dict[Problem, set[Problem]] = {}
+    for problem in found:
+        for name in species:
+            path = problem.path.removeprefix(f"species.{name}.")
+            if path != problem.path:
+                short.setdefault(replace(problem, path=path), set()).add(problem)
+    shared = {each: default for default, own in short.items() if len(own) == len(species) for each in own}
+    return list(dict.fromkeys(shared.get(each, each) for each in found))
 
 
 def format_value(value: Any) -> str:

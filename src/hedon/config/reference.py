@@ -70,8 +70,8 @@ def _sections(default: object, path: str) -> Iterator[str]:
         yield _table(("name", "default", "meaning", "unit", "allowed", "source"), rows)
     if section is SpeciesConfig:
         names = ", ".join(f"`{name}`" for name in sections(section))
-        yield f"Each has the sections above that describe agents: {names}.\n"
-        return
+        yield f"At the top of a file, each of these sections is a default for all its species: {names}.\n"
+        path = ""
     for name, inner in sections(section).items():
         below = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
         yield from _sections(inner.type() if inner.repeated else getattr(default, name), below)

@@ -14,7 +14,7 @@ RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
 
 def rule_places(config: Config) -> tuple[str, ...]:
     """The places of all rules of a config."""
-    places = (getattr(species, use).rule for species in config.agents.values() for use in RULE_USES)
+    places = (getattr(species, use).rule for species in config.species.values() for use in RULE_USES)
     return tuple(place for place in places if place)
 
 

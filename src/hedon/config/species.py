@@ -1,7 +1,7 @@
-"""Species: everything that makes a kind of agent, in the sections that a config has anyway."""
+"""Species: everything that makes a kind of agent."""
 
 from dataclasses import dataclass, field, fields
-from typing import Annotated, Literal
+from typing import Annotated
 
 from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
 from hedon.config.energy import EnergyConfig
@@ -15,7 +15,7 @@ from hedon.config.population import PopulationConfig
 MAX_SPECIES = 4
 """Most species that the engine has room for."""
 ONLY = "agent"
-"""The name of the species of a config without `[species]`."""
+"""The name of the species of a file without `[species]`."""
 EVERYTHING = "*"
 """In a list of names, what stands for all of them."""
 
@@ -38,19 +38,11 @@ class DietConfig:
         int,
         Doc("after eating an agent, for how long no other is eaten", "step", OURS, Range(ge=0, le=1_000_000)),
     ] = 0
-    prey_sharing: Annotated[
-        Literal["one", "each"],
-        Doc(
-            "who gains by an agent that several eat in the same step: one of them, by a draw, or each in full",
-            "",
-            OURS + '; the code of the sequel has "each"',
-        ),
-    ] = "one"
 
 
 @dataclass(frozen=True, slots=True)
 class SpeciesConfig:
-    """What describes one species: `[species.NAME.energy]` changes what differs from `[energy]`, and so on."""
+    """What describes one species. In a file, `[species.NAME.energy]` has what differs from `[energy]`, and so on."""
 
     body: BodyConfig = field(default_factory=BodyConfig)
     motor: MotorConfig = field(default_factory=MotorConfig)
@@ -68,22 +60,6 @@ class SpeciesConfig:
 
 
 PER_SPECIES = tuple(each.name for each in fields(SpeciesConfig))
-"""The sections of a config that describe every species."""
-
+"""The sections of a species. At the top of a file they are defaults for all its species."""
 RULE_USES = ("reward", "hazard", "birth")
 """The sections of a species that may have a rule in Python."""
-RULES = (
-    "body.food_radius",
-    "sensor.eaten_food",
-    "sensor.mouths",
-    "diet.prey_sharing",
-    "birth.order",
-    "birth.inheritance",
-    "birth.parents",
-    "birth.heading",
-    "genome.founders",
-    "genome.mutation_noise",
-    "learning.rollout_steps",
-    "learning.networks",
-)
-"""Settings in these sections that hold for the whole world: a species cannot have its own."""

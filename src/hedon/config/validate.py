@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from hedon.config.check import contradictions
 from hedon.config.config import Config
 from hedon.config.field import Setting, find, places, sections, settings
-from hedon.config.problem import ConfigError, Problem, format_path, format_value, nearest
+from hedon.config.problem import ConfigError, Problem, folded, format_path, format_value, nearest
+from hedon.config.species import PER_SPECIES
 from hedon.config.toml import require_plain
 from hedon.error import ArgumentError
 from hedon.text import brief
@@ -43,7 +44,8 @@ def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
             each for each in contradictions(config) if not any(_overlap(_parts(each.path), path) for path in wrong)
         ]
     if problems or config is None:
-        raise ConfigError(origin, problems)
+        species = tables.get("species")
+        raise ConfigError(origin, folded(problems, tuple(species) if isinstance(species, Mapping) else ()))
     return config
 
 
@@ -124,5 +126,6 @@ def _nearest_name(location: Sequence[str | int]) -> str | None:
     name, section = str(location[-1]), find(Config, location[:-1])
     if not isinstance(section, type):
         return None
-    beside = nearest(name, [*settings(section), *sections(section)])
+    default = PER_SPECIES if section is Config else ()
+    beside = nearest(name, [*settings(section), *sections(section), *default])
     return beside or " or ".join(places(Config, name)) or None

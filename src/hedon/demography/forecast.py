@@ -8,8 +8,9 @@ from functools import partial
 import numpy as np
 
 from hedon.config import Config
+from hedon.config.body import MotorConfig
 from hedon.config.food import FoodConfig
-from hedon.config.layout import diet, inner_states
+from hedon.config.layout import choose_species, diet, inner_states
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
@@ -77,77 +78,95 @@ class Forecast:
     warnings: tuple[str, ...]
 
 
-def forecast(config: Config) -> Forecast:
-    """Computes the forecast of a setting."""
-    capacity = config.population.capacity
+def forecast(config: Config, species: str | None = None) -> Forecast:
+    """Computes the forecast of a setting.
+
+    Args:
+        config: Of the worlds.
+        species: Whose; by default the first.
+
+    Raises:
+        ArgumentError: There is no such species.
+    """
+    species = choose_species(species, config)
+    own = config.species[species]
+    capacity = own.population.capacity
     sizes = np.unique(np.linspace(1, max(capacity - 1, 1), _SIZES).astype(int)).tolist()
-    found = placement_success(config, sizes, np.random.default_rng(_SEED))
+    found = placement_success(config, species, sizes, np.random.default_rng(_SEED))
     places = tuple(Room(n, float(success)) for n, success in zip(sizes, found, strict=True))
-    levels = tuple(_level(config, energy, places) for energy in _energies(config))
-    force, (need, supply, fed) = fresh_force(config), _balance(config)
-    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, setting_warnings(config))
+    levels = tuple(_level(own, energy, places) for energy in _energies(own))
+    force, (need, supply, fed) = fresh_force(own.motor), _balance(config, species)
+    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, setting_warnings(config, species))
 
 
-def setting_warnings(config: Config) -> tuple[str, ...]:
-    """What to know of a setting before running, in sentences: those of its forecast, without sampling places."""
-    levels = tuple(_level(config, energy, ()) for energy in _energies(config))
-    return _warnings(config, levels, _balance(config)[2])
+def setting_warnings(config: Config, species: str | None = None) -> tuple[str, ...]:
+    """What to know of a setting before running, in sentences: those of its forecast, without sampling places.
+
+    Args:
+        config: Of the worlds.
+        species: Whose; by default the first.
+
+    Raises:
+        ArgumentError: There is no such species.
+    """
+    species = choose_species(species, config)
+    levels = tuple(_level(config.species[species], energy, ()) for energy in _energies(config.species[species]))
+    return _warnings(config, species, levels, _balance(config, species)[2])
 
 
-def fresh_force(config: Config) -> float:
+def fresh_force(motor: MotorConfig) -> float:
     """Mean norm of both forces under a fresh policy, whose raw actions are standard normal, by quadrature."""
-    low, high = (config.motor.force_scale * force for force in (config.motor.min_force, config.motor.max_force))
+    low, high = (motor.force_scale * force for force in (motor.min_force, motor.max_force))
     force = low + (high - low) / (1.0 + np.exp(-_NODES))
     return float(_WEIGHTS @ np.hypot(force[:, None], force[None, :]) @ _WEIGHTS)
 
 
-def _energies(config: Config) -> list[float]:
+def _energies(own: SpeciesConfig) -> list[float]:
     """Energies at which lives are computed, up to the capacity."""
-    return [e for e in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if e < config.energy.capacity] + [config.energy.capacity]
+    most = own.energy.capacity
+    return [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < most), most]
 
 
-def _balance(config: Config) -> tuple[float, float, float]:
+def _need(own: SpeciesConfig) -> float:
+    """Energy that an agent with a fresh policy is charged [energy/step]."""
+    return own.energy.basic_cost + own.energy.action_cost * fresh_force(own.motor)
+
+
+def _balance(config: Config, species: str) -> tuple[float, float, float]:
     """Energy that an agent with a fresh policy is charged, energy that grows [energy/step], agents that it pays for."""
-    need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
-    supply = _supply(config, lambda food: mean_factor(food.schedule, "growth_rate"))
-    return need, supply, _fed(config, supply)
+    supply = _supply(config, species, lambda food: mean_factor(food.schedule, "growth_rate"))
+    return _need(config.species[species]), supply, _fed(config, species, supply)
 
 
-def _supply(config: Config, factor: Callable[[FoodConfig], float]) -> float:
+def _supply(config: Config, species: str, factor: Callable[[FoodConfig], float]) -> float:
     """Energy of the food that a species eats that grows [energy/step], for a factor of each kind's growth."""
-    return sum(
-        config.food[kind].growth_rate * factor(config.food[kind]) * each for kind, each in _feeding(config).items()
-    )
+    feeding = _feeding(config, species).items()
+    return sum(config.food[kind].growth_rate * factor(config.food[kind]) * energy for kind, energy in feeding)
 
 
-def _fed(config: Config, supply: float) -> float:
+def _fed(config: Config, species: str, supply: float) -> float:
     """Agents that a supply pays for; NaN for a species that eats no food."""
-    if not _eats_food(config):
+    if not _eats_food(config, species):
         return math.nan
-    need = config.energy.basic_cost + config.energy.action_cost * fresh_force(config)
+    need = _need(config.species[species])
     return supply / need if need else math.inf
 
 
-def _eats_food(config: Config) -> bool:
-    return any(kind in config.food for kind in diet(config, _own(config)))
+def _eats_food(config: Config, species: str) -> bool:
+    return any(kind in config.food for kind in diet(config, config.species[species]))
 
 
-def _feeding(config: Config) -> dict[str, float]:
+def _feeding(config: Config, species: str) -> dict[str, float]:
     """The energy that a species gains by each kind of food that feeds it."""
-    eaten = diet(config, _own(config))
+    eaten = diet(config, config.species[species])
     energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
     return {kind: energy for kind, energy in energies.items() if energy > 0}
 
 
-def _own(config: Config) -> SpeciesConfig:
-    """The species whose forecast it is: the first."""
-    return next(iter(config.agents.values()))
-
-
-def _level(config: Config, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
-    hazard = mean_hazard(config.hazard)
+def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
+    hazard = mean_hazard(own.hazard)
     lifetime = float(expected_lifetime(hazard, energy))
-    r0 = float(reproduction_number(hazard, config.birth, energy)) if config.birth.kappa else 0.0
+    r0 = float(reproduction_number(hazard, own.birth, energy)) if own.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
     population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
     return EnergyLevel(energy, lifetime, r0, refusal, population)
@@ -162,11 +181,12 @@ def _alive_at(success: float, places: tuple[Room, ...]) -> float:
     return float(np.interp(-success, -falling, alive))
 
 
-def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tuple[str, ...]:
+def _warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...], fed: float) -> tuple[str, ...]:
+    own = config.species[species]
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
-    capacity, founders = config.population.capacity, config.population.initial_count
-    floor = config.energy.starvation == "floor"
-    found = list(_rule_warnings(config))
+    capacity, founders = own.population.capacity, own.population.initial_count
+    floor = own.energy.starvation == "floor"
+    found = list(_rule_warnings(own))
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
     if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime):
@@ -179,7 +199,8 @@ def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tu
         found.append("It cannot die: at energy 0 the chance of death is 0, and it rises with neither hunger nor age.")
     elif math.isinf(best.lifetime):
         found.append(f"It need not die: at energy {best.energy:g} the chance of death is 0 at any age.")
-    begun = _fed(config, _supply(config, lambda food: float(factor_at(food.schedule, "growth_rate", 0))))
+    growing = _supply(config, species, lambda food: float(factor_at(food.schedule, "growth_rate", 0)))
+    begun = _fed(config, species, growing)
     if begun < founders:
         rest = "the others starve" if floor else "the others starve to death"
         found.append(f"Food is short from the start: it pays for {begun:,.0f} of {founders} founders; {rest}.")
@@ -189,23 +210,24 @@ def _warnings(config: Config, levels: tuple[EnergyLevel, ...], fed: float) -> tu
             f"It can fill up and stand still: food pays for {many} agents, the capacity is {capacity}, and those who "
             f"eat well live {best.lifetime:,.0f} steps. Then hardly anybody is born or dies, and selection fades."
         )
-    return (*found, *_scheduled(config, best.energy), *_others(config), *_beyond(config))
+    return (*found, *_scheduled(config, species, best.energy), *_others(config, species), *_beyond(config, species))
 
 
-def _scheduled(config: Config, energy: float) -> Iterator[str]:
+def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
     """What follows time: at which factor the numbers are, and what they are at the others."""
-    low, high = factor_range(config.hazard.schedule, "scale")
+    own = config.species[species]
+    low, high = factor_range(own.hazard.schedule, "scale")
     if low < high:
-        ends = [scaled_hazard(config.hazard, factor) for factor in (low, high)]
+        ends = [scaled_hazard(own.hazard, factor) for factor in (low, high)]
         lives = [_steps(float(expected_lifetime(end, energy))) for end in ends]
-        r0 = [float(reproduction_number(end, config.birth, energy)) if config.birth.kappa else 0.0 for end in ends]
-        which = _which(config.hazard.schedule, "scale")
+        r0 = [float(reproduction_number(end, own.birth, energy)) if own.birth.kappa else 0.0 for end in ends]
+        which = _which(own.hazard.schedule, "scale")
         yield (
             f"The chance of death follows a schedule, from {low:g} to {high:g} times what is set: lives and R0 are "
             f"those at {which}. Held at its lowest, it would give {lives[0]} and R0 {r0[0]:.2f} at energy {energy:g}; "
             f"at its highest {lives[1]} and R0 {r0[1]:.2f}. What a life meets depends on when it begins."
         )
-    grown = {kind: config.food[kind] for kind in _feeding(config)}
+    grown = {kind: config.food[kind] for kind in _feeding(config, species)}
     bounds = {kind: factor_range(food.schedule, "growth_rate") for kind, food in grown.items()}
     if any(low < high for low, high in bounds.values()):
         parts = [
@@ -213,7 +235,8 @@ def _scheduled(config: Config, energy: float) -> Iterator[str]:
             for kind, (low, high) in bounds.items()
             if low < high
         ]
-        least, most = (_fed(config, _supply(config, partial(_extreme, which=which))) for which in (0, 1))
+        ends = (_supply(config, species, partial(_extreme, which=which)) for which in (0, 1))
+        least, most = (_fed(config, species, supply) for supply in ends)
         yield f"Growth follows a schedule, {', '.join(parts)}: food pays for {least:,.0f} to {most:,.0f} agents."
     for kind, food in grown.items():
         low, high = factor_range(food.schedule, "capacity")
@@ -239,24 +262,23 @@ def _steps(lifetime: float) -> str:
     return "an endless life" if math.isinf(lifetime) else f"a mean life of {lifetime:,.0f} steps"
 
 
-def _others(config: Config) -> Iterator[str]:
+def _others(config: Config, species: str) -> Iterator[str]:
     """What a species has to do with agents that it eats, that eat it, and that eat and live beside it."""
-    own, name = _own(config), next(iter(config.agents))
-    eaten = diet(config, own)
+    eaten = diet(config, config.species[species])
     prey = [each for each in config.species if each in eaten]
     if prey:
-        only = "" if _eats_food(config) else "no food, but "
+        only = "" if _eats_food(config, species) else "no food, but "
         what = f"{only}{' and '.join(prey)}"
         yield f"It eats {what}: how many it catches depends on what agents learn, and is not forecast."
-    elif not _eats_food(config):
+    elif not _eats_food(config, species):
         yield "It eats nothing: nobody gains energy."
-    eaters = [other for other, each in config.species.items() if name in diet(config, each)]
+    eaters = [other for other, each in config.species.items() if species in diet(config, each)]
     if eaters:
         yield f"It is eaten by {' and '.join(eaters)}: lives here are without such deaths."
     beside = [
         other
         for other, each in config.species.items()
-        if other != name and set(_feeding(config)) & set(diet(config, each))
+        if other != species and set(_feeding(config, species)) & set(diet(config, each))
     ]
     if beside:
         yield f"Its food is also eaten by {' and '.join(beside)}: what it pays for is shared with them."
@@ -264,19 +286,19 @@ def _others(config: Config) -> Iterator[str]:
         yield "Places that agents of other species take are not counted: there is less room than this."
 
 
-def _beyond(config: Config) -> Iterator[str]:
+def _beyond(config: Config, species: str) -> Iterator[str]:
     """What enters births and deaths, but not this forecast."""
-    species = _own(config)
-    inner = inner_states(config, species)
+    own = config.species[species]
+    inner = inner_states(config, own)
     if config.obstacle.count and config.obstacle.damage:
         yield (
             f"Obstacles cost {config.obstacle.damage:g} energy per step of touch: how often they are touched depends "
             "on what agents learn, and is not forecast."
         )
     if "nutrient" in inner:
-        empty = species.nutrient.hazard_share * float(energy_hazard(config.hazard, 0.0))
+        empty = own.nutrient.hazard_share * float(energy_hazard(own.hazard, 0.0))
         yield f"Without nutrient the chance of death is {empty:.3g} per step higher; lives here are with enough."
-    if species.birth.mating == "pairs":
+    if own.birth.mating == "pairs":
         yield (
             "Children need two parents that wait near one another: R0 counts draws, of which two make one child, and "
             "the chance to meet is not forecast."
@@ -285,8 +307,8 @@ def _beyond(config: Config) -> Iterator[str]:
         yield "Toxin weakens motors, so agents that eat it move and spend less; this is not forecast."
 
 
-def _rule_warnings(config: Config) -> Iterator[str]:
-    for what, rule in (("death", config.hazard.rule), ("birth", config.birth.rule)):
+def _rule_warnings(own: SpeciesConfig) -> Iterator[str]:
+    for what, rule in (("death", own.hazard.rule), ("birth", own.birth.rule)):
         if rule:
             yield (
                 f"The chance of {what} comes from a rule, {rule}: what it answers is not known before a run. The "

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from hedon.config import Config
 from hedon.config.arena import outline, walls
+from hedon.config.life import distance_sd
 
 SCENES = 12
 """Random scenes per number of agents; each is tried with every agent as a parent."""
@@ -16,7 +17,9 @@ _THROWS = 200  # of a batch; a scene too full for these stays with fewer agents
 Floats = NDArray[np.float64]
 
 
-def placement_success(config: Config, sizes: Sequence[int], rng: np.random.Generator, scenes: int = SCENES) -> Floats:
+def placement_success(
+    config: Config, species: str, sizes: Sequence[int], rng: np.random.Generator, scenes: int = SCENES
+) -> Floats:
     """The chance that a birth finds a place among some numbers of agents, in scenes as at the start of a run.
 
     Agents and the foods of the start lie at random without overlap; a parent, any of them, tries as many
@@ -25,6 +28,7 @@ def placement_success(config: Config, sizes: Sequence[int], rng: np.random.Gener
 
     Args:
         config: the settings.
+        species: whose births.
         sizes: numbers of agents in the arena, ascending, from 1 on.
         rng: source of chance.
         scenes: how many random scenes are averaged.
@@ -32,54 +36,52 @@ def placement_success(config: Config, sizes: Sequence[int], rng: np.random.Gener
     Returns:
         One chance per size, (sizes,).
     """
-    return np.mean([_scene_success(config, sizes, rng) for _ in range(scenes)], axis=0)
+    return np.mean([_scene_success(config, species, sizes, rng) for _ in range(scenes)], axis=0)
 
 
-def is_free(config: Config, places: Floats, agents: Floats, foods: Floats) -> NDArray[np.bool_]:
+def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods: Floats) -> NDArray[np.bool_]:
     """Which places an agent's disc fits at: within the walls, clear of all agents and foods.
 
     Args:
         config: the settings.
+        radius: of the disc, and of all agents [u].
         places: centers [u], shape (n, 2).
         agents: centers of those who are there [u], shape (a, 2).
         foods: centers of the foods that are there [u], shape (f, 2).
     """
-    radius = config.body.radius
-    free = _is_within_walls(config, places)
-    for others, reach in ((agents, 2 * radius), (foods, radius + config.body.food_radius)):
+    free = _is_within_walls(config, radius, places)
+    for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
         if len(others):
             offset = places[:, None] - others[None]
             free &= (np.einsum("nfi,nfi->nf", offset, offset) >= reach**2).all(axis=1)
     return free
 
 
-def _birth_distance(config: Config) -> float:
-    """Standard deviation of a child's place around its parent, along x and y [u]."""
-    unit = config.arena.width if config.birth.distance_unit == "arena_width" else 1.0
-    return config.birth.distance_sd * unit
-
-
-def _scene_success(config: Config, sizes: Sequence[int], rng: np.random.Generator) -> list[float]:
+def _scene_success(config: Config, species: str, sizes: Sequence[int], rng: np.random.Generator) -> list[float]:
     """One scene that fills up: the share of successful births at each size."""
     size = np.array([config.arena.width, config.arena.height])
     foods = rng.uniform(0, 1, (sum(food.initial_count for food in config.food.values()), 2)) * size
-    agents, shares, attempts = np.empty((0, 2)), [], config.birth.attempts
+    own = config.species[species]
+    radius, attempts, sd = own.body.radius, own.birth.attempts, distance_sd(config.arena, own.birth)
+    agents, shares = np.empty((0, 2)), []
     for count in sizes:
-        agents = _fill(config, agents, foods, count, size, rng)
-        tried = agents[:, None] + _birth_distance(config) * rng.normal(size=(len(agents), attempts, 2))
-        free = is_free(config, tried.reshape(-1, 2), agents, foods).reshape(-1, attempts)
+        agents = _fill(config, radius, agents, foods, count, size, rng)
+        tried = agents[:, None] + sd * rng.normal(size=(len(agents), attempts, 2))
+        free = is_free(config, radius, tried.reshape(-1, 2), agents, foods).reshape(-1, attempts)
         shares.append(float(free.any(axis=1).mean()) if len(agents) else 0.0)
     return shares
 
 
-def _fill(config: Config, agents: Floats, foods: Floats, count: int, size: Floats, rng: np.random.Generator) -> Floats:
+def _fill(
+    config: Config, radius: float, agents: Floats, foods: Floats, count: int, size: Floats, rng: np.random.Generator
+) -> Floats:
     """Adds agents at random free places until there are `count`, or no more fit."""
     for _ in range(_THROWS):
         if len(agents) >= count:
             break
         places = rng.uniform(0, 1, (min(_BATCH, 2 * (count - len(agents))), 2)) * size
-        places = places[is_free(config, places, agents, foods)]
-        near = np.linalg.norm(places[:, None] - places[None], axis=2) < 2 * config.body.radius
+        places = places[is_free(config, radius, places, agents, foods)]
+        near = np.linalg.norm(places[:, None] - places[None], axis=2) < 2 * radius
         taken = np.zeros(len(places), bool)
         for i in range(len(places)):
             taken[i] = not (near[i] & taken).any()
@@ -87,9 +89,8 @@ def _fill(config: Config, agents: Floats, foods: Floats, count: int, size: Float
     return agents
 
 
-def _is_within_walls(config: Config, places: Floats) -> NDArray[np.bool_]:
+def _is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np.bool_]:
     """Whether a disc lies within the outer polygon, which is convex, and clear of all inner walls."""
-    radius = config.body.radius
     corners = np.array(outline(config.arena))
     along = np.roll(corners, -1, axis=0) - corners
     along /= np.linalg.norm(along, axis=1, keepdims=True)

@@ -4,13 +4,11 @@ The engine reads and writes the arrays that the groups of agents hold: a step ma
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.config.problem import nearest
-from hedon.config.species import ONLY, SpeciesConfig
 from hedon.env.group import Group
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_STEPS, integer, seed_list
@@ -49,7 +47,7 @@ class VectorEnv:
         self.config = _with_callers(config, names)
         self._threads, self._backend = threads, backend
         self.simulation = Simulation(self.config, seeds, threads, backend)
-        every = list(config.agents)
+        every = list(config.species)
         meals = (*config.food, *every)[: self.simulation.engine.meals(0).shape[1]]
         self.groups = {
             name: Group(
@@ -57,7 +55,7 @@ class VectorEnv:
                 observation_columns(config, name),
                 meals,
                 len(self.simulation.seeds),
-                config.agents[name].population.capacity,
+                config.species[name].population.capacity,
             )
             for name in names
         }
@@ -149,9 +147,9 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
     """
     if not isinstance(config, Config):
         raise ArgumentError(f"config: must be a Config, as load_config gives it, not {brief(repr(config))}")
-    known = list(config.agents)
+    known = list(config.species)
     if species is None:
-        external = [name for name, each in config.agents.items() if each.learning.policy == "external"]
+        external = [name for name, each in config.species.items() if each.learning.policy == "external"]
         return tuple(external or known)
     if not isinstance(species, str | Iterable):
         raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
@@ -169,12 +167,6 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
 
 def _with_callers(config: Config, names: Sequence[str]) -> Config:
     """The config with the policy `external` for these species."""
-
-    def external(species: SpeciesConfig) -> SpeciesConfig:
-        return replace(species, learning=replace(species.learning, policy="external"))
-
-    if not config.species:
-        return replace(config, learning=external(config.agents[ONLY]).learning)
-    return replace(
-        config, species={name: external(each) if name in names else each for name, each in config.species.items()}
-    )
+    for name in names:
+        config = config.with_(f"species.{name}.learning.policy", "external")
+    return config

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.config.config import Config
-from hedon.config.dump import diff, digest
+from hedon.config.dump import default_path, diff, digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_backend
@@ -32,10 +32,10 @@ SHAPE = (
     "sensor.touch_sectors",
     "sensor.scaling",
     "genome.neutral_count",
-    "genome.founders",
-    "learning.networks",
+    "world.founders",
+    "world.networks",
     "reward.memory",
-    "learning.rollout_steps",
+    "world.rollout_steps",
 )
 """Settings and sections that fix the shapes of a world's arrays, or how it began. The kinds of food and their
 capacities do so too, and whether anybody starves to death, where agents would else die of age and energy alone."""
@@ -174,7 +174,7 @@ def _check_shape(config: Config, changed: Config) -> None:
     fixed = [
         path
         for path, _, _ in diff(config, changed)
-        if path.startswith(SHAPE)
+        if default_path(path).startswith(SHAPE)
         or path == "food"
         or (path.startswith("food.") and path.endswith(".capacity"))
         or (path.endswith("energy.starvation") and columns_of(config).causes != columns_of(changed).causes)

@@ -51,7 +51,7 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
     if head.seeds != seeds:
         raise RecordError(f"{name} has seeds {_text(head.seeds)}, and the run has {_text(seeds)}")
     worlds = (len(head.sampled), len(head.digests))
-    if worlds != (len(seeds) * len(config.agents), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
+    if worlds != (len(seeds) * len(config.species), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
         raise RecordError(f"{name} is not complete: worlds or tables are missing")
 
 
@@ -90,7 +90,7 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
         RecordError: The simulation cannot use the arrays. Do not use the simulation after that.
     """
     head = checkpoint.head
-    species = len(simulation.config.agents)
+    species = len(simulation.config.species)
     for world, digest in zip(simulation.worlds, head.digests, strict=True):
         try:
             simulation.engine.restore(world.index, checkpoint.world(world.index))

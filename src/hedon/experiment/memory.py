@@ -75,8 +75,9 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     total = sum(need.values())
     if total > present:
         parts = ", ".join(f"{name} {size / 1e9:.1f}" for name, size in need.items())
+        slots = sum(own.population.capacity for own in config.species.values())
         raise MemoryNeedError(
             f"the run may need {total / 1e9:.1f} GB of memory, and there are {present / 1e9:.1f} GB ({parts}): lower "
-            f"population.capacity ({config.population.capacity:,}), learning.rollout_steps "
-            f"({config.learning.rollout_steps:,}) or the number of seeds ({worlds:,})"
+            f"population.capacity ({slots:,}), world.rollout_steps "
+            f"({config.world.rollout_steps:,}) or the number of seeds ({worlds:,})"
         )

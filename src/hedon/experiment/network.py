@@ -46,7 +46,7 @@ def _of_run(folder: Path) -> Networks:
         raise NetworkError(f"--networks {brief(str(folder))}: the run has no checkpoint, so no networks")
     config = parse_config(checkpoint.head.config, f"config in the checkpoint of {folder}")
     params, inputs = {}, {}
-    for name in config.agents:
+    for name in config.species:
         rows = [_learned(checkpoint, config, name, world) for world in range(len(checkpoint.head.seeds))]
         if sum(map(len, rows)):
             params[name] = np.concatenate(rows)
@@ -59,8 +59,8 @@ def _of_run(folder: Path) -> Networks:
 def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> NDArray[np.float32]:
     """The networks of those of a species who have learned, (agents, parameters)."""
     arrays = checkpoint.world(world)
-    policies = [species.learning.policy for species in config.agents.values()]
-    mine = list(config.agents).index(name)
+    policies = [species.learning.policy for species in config.species.values()]
+    mine = list(config.species).index(name)
     if policies[mine] not in ("ppo", "frozen"):
         return np.zeros((0, 0), np.float32)
     species = arrays.get("species", np.zeros(len(arrays["life.agent_id"]), np.int32))
@@ -74,7 +74,7 @@ def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> N
 
 def _network_shape(config: Config, name: str) -> tuple[int, int, int, int]:
     """Rays, types that they tell apart, entries of touch, and all others, of what a species' networks read."""
-    sensor, layout = config.agents[name].sensor, layouts(config)[name]
+    sensor, layout = config.species[name].sensor, layouts(config)[name]
     touches = len(layout.touches) * sensor.touch_sectors
     rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches
     return sensor.ray_count, len(layout.sees), touches, rest

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Protocol
 
 from hedon.config.config import Config
-from hedon.config.layout import with_genome, with_section
 from hedon.config.validate import validated
 from hedon.error import ArgumentError
 from hedon.experiment.argument import (
@@ -134,9 +133,9 @@ class Display(Protocol):
 
 def _without_caller(config: Config) -> Config:
     """The config. ArgumentError: a species waits for actions, which a run has nobody to give."""
-    for name, species in config.agents.items():
+    for name, species in config.species.items():
         if species.learning.policy == "external":
-            place = f"species.{name}.learning.policy" if config.species else "learning.policy"
+            place = f"species.{name}.learning.policy" if len(config.species) > 1 else "learning.policy"
             raise ArgumentError(
                 f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
                 'hedon.env (docs/guide/environment.md), or choose "ppo", "frozen", "random" or "still"'
@@ -148,11 +147,11 @@ def _with_founders(config: Config, founders: Founders | None) -> Config:
     """The config with the digest of its founders' table."""
     if founders is not None:
         founders.require(config)
-        return with_genome(config, founders=founders.digest)
-    if config.genome.founders:
+        return config.with_("world.founders", founders.digest)
+    if config.world.founders:
         raise ArgumentError(
             "founders: the config names a table of founders, so give it, as in --founders RUN/founders.csv, or leave "
-            'it out with --set genome.founders=""'
+            'it out with --set world.founders=""'
         )
     return config
 
@@ -161,11 +160,11 @@ def _with_networks(config: Config, networks: Networks | None) -> Config:
     """The config with the digest of the networks that its agents begin with."""
     if networks is not None:
         networks.require(config)
-        return with_section(config, "learning", networks=networks.digest)
-    if config.learning.networks:
+        return config.with_("world.networks", networks.digest)
+    if config.world.networks:
         raise ArgumentError(
             "networks: the config names a file of networks, so give it, as in --networks RUN/networks.npz, or leave it "
-            'out with --set learning.networks=""'
+            'out with --set world.networks=""'
         )
     return config
 

@@ -52,7 +52,7 @@ class Recorder:
         self.simulation = simulation
         self.writer = writer
         self.frames = frames
-        sampled = [(world, species) for world in simulation.worlds for species in range(len(world.config.agents))]
+        sampled = [(world, species) for world in simulation.worlds for species in range(len(world.config.species))]
         since = start.sampled or (None,) * len(sampled)
         self.samplers = [PopulationSampler(*which, at) for which, at in zip(sampled, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
@@ -149,5 +149,5 @@ class Recorder:
             seconds: Spent in this session [s].
         """
         extinct = tuple(sampler.world.extinct_step for sampler in self.samplers)
-        window = self.simulation.config.learning.rollout_steps
+        window = self.simulation.config.world.rollout_steps
         return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct, window)

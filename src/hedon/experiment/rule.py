@@ -25,7 +25,7 @@ from hedon.config.config import Config
 from hedon.config.layout import layouts, rule_columns
 from hedon.config.problem import nearest
 from hedon.config.rule_path import RULE_PATTERN
-from hedon.config.species import PER_SPECIES, RULE_USES
+from hedon.config.species import RULE_USES
 from hedon.error import ArgumentError, HedonError
 from hedon.record.folder import CONFIG, MANIFEST
 from hedon.record.manifest import RuleSource, load_manifest
@@ -180,7 +180,7 @@ def rules(config: Config, kept: Sequence[RuleSource] = ()) -> tuple[Rule, ...]:
     """
     return tuple(
         _rule(config, name, use, _source(getattr(species, use).rule, kept))
-        for name, species in config.agents.items()
+        for name, species in config.species.items()
         for use in RULE_USES
         if getattr(species, use).rule
     )
@@ -199,17 +199,12 @@ def pinned(config: Config, found: Sequence[Rule]) -> Config:
         config: Whose rules name files, by any path.
         found: All of its rules, as `rules` gives them.
     """
-    if not found:
-        return config
-    agents = dict(config.agents)
+    agents = dict(config.species)
     for rule in found:
         own = agents[rule.species]
         section = replace(getattr(own, rule.use), rule=rule.source.place)
         agents[rule.species] = replace(own, **{rule.use: section})
-    if config.species:
-        return replace(config, species=agents)
-    (own,) = agents.values()
-    return replace(config, **{section: getattr(own, section) for section in PER_SPECIES})
+    return replace(config, species=agents)
 
 
 def rules_beside(source: str | Path) -> tuple[RuleSource, ...]:

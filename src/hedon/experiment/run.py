@@ -148,7 +148,7 @@ def advance(
             seconds = start.seconds + time.perf_counter() - begun
             writer.require_folder()
             recorder.deaths()
-            if step % plan.config.learning.rollout_steps == 0:
+            if step % plan.config.world.rollout_steps == 0:
                 recorder.interval()
             if plan.frames and step % plan.frames == 0:
                 recorder.frame()
@@ -192,7 +192,7 @@ class _Due:
 
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
     """Advances to each step at which something must be done, and yields it."""
-    window = plan.config.learning.rollout_steps
+    window = plan.config.world.rollout_steps
     on_device = simulation.engine.device_count > 0
     piece = 64
     while step < plan.steps and not simulation.extinct:

@@ -132,7 +132,7 @@ def frame_rows(world: World) -> list[Rows]:
     lives, foods = world.agents(), world.foods()
     here = {"world": world.index, "step": world.step}
     rows = []
-    for species, name in enumerate(world.config.agents):
+    for species, name in enumerate(world.config.species):
         mine = lives["species"] == species
         agents = {column: lives[column][mine] for column in ("x", "y", "angle", "energy")}
         rows.append({**here, "kind": name, "id": lives["agent_id"][mine], **agents})
@@ -145,7 +145,7 @@ def frame_rows(world: World) -> list[Rows]:
 def snapshot(world: World) -> Snapshot:
     """The present state of a world, for a picture."""
     lives, foods, config = world.agents(), world.foods(), world.config
-    kinds = list(config.agents.values())
+    kinds = list(config.species.values())
     return Snapshot(
         world=world.index,
         seed=world.seed,
@@ -158,8 +158,8 @@ def snapshot(world: World) -> Snapshot:
         walls=walls(config.arena),
         obstacles=world.obstacles,
         food_kinds=tuple(config.food),
-        species_names=tuple(config.agents),
-        food_radius=config.body.food_radius,
+        species_names=tuple(config.species),
+        food_radius=config.world.food_radius,
         radius=np.array([kind.body.radius for kind in kinds]),
         ray_count=np.array([kind.sensor.ray_count for kind in kinds]),
         ray_length=np.array([kind.sensor.ray_length for kind in kinds]),
@@ -171,7 +171,7 @@ def snapshot(world: World) -> Snapshot:
 def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
     """The rays of all agents, by the types of the world."""
     every = types(world.config)
-    most = max(kind.sensor.ray_count for kind in world.config.agents.values())
+    most = max(kind.sensor.ray_count for kind in world.config.species.values())
     rays = np.full((len(species), most, len(every)), -1.0, np.float32)
     for i, layout in enumerate(layouts(world.config).values()):
         mine = np.flatnonzero(species == i)

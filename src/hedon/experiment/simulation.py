@@ -80,7 +80,7 @@ class Simulation:
         )
         self.rules = find_rules(self.config, rules)
         for rule in self.rules:
-            species = list(self.config.agents).index(rule.species)
+            species = list(self.config.species).index(rule.species)
             self.engine.set_rule(species, rule.use, rule.compiled.address)
         self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
 
@@ -125,7 +125,7 @@ class Simulation:
             NetworkError: The networks do not fit the config.
         """
         networks.require(self.config)
-        names = list(self.config.agents)
+        names = list(self.config.species)
         for world in self.worlds:
             species = world.agents()["species"]
             for name in fixed_species(self.config):
@@ -194,7 +194,7 @@ class World:
     @property
     def counters(self) -> dict[str, Any]:
         """Births, deaths, failures and the energy ledger since the world began, over all species."""
-        each = [self.counters_of(species) for species in range(len(self.config.agents))]
+        each = [self.counters_of(species) for species in range(len(self.config.species))]
         return {name: sum(counters[name] for counters in each) for name in each[0]}
 
     def counters_of(self, species: int) -> dict[str, Any]:
@@ -277,8 +277,8 @@ class World:
 
     def rays(self, species: int = 0) -> NDArray[np.float32]:
         """The rays of the observations of a species: (alive, rays, types that it sees)."""
-        name = list(self.config.agents)[species]
-        rays, seen = self.config.agents[name].sensor.ray_count, len(layouts(self.config)[name].sees)
+        name = list(self.config.species)[species]
+        rays, seen = self.config.species[name].sensor.ray_count, len(layouts(self.config)[name].sees)
         return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
 
     def digest(self) -> str:

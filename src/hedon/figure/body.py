@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hedon.config import Config
 from hedon.config.food import FoodConfig
+from hedon.config.species import SpeciesConfig
 from hedon.figure.style import BLUE, INK, MUTED, VERMILION, new_figure, styled
 
 _BODY = "#dce8f2"
@@ -27,31 +28,32 @@ Point = tuple[float, float]
 
 def draw_body(config: Config) -> Figure:
     """The body with mouth, touch sectors and motors; beside it the rays at full length."""
+    own = next(iter(config.species.values()))
     with styled():
         figure = new_figure(8.6, 3.7)
         body, rays = figure.subplots(1, 2)
-        _draw_parts(body, config)
-        _draw_rays(rays, config)
+        _draw_parts(body, config, own)
+        _draw_rays(rays, own)
         for axes in (body, rays):
             axes.set_aspect("equal")
             axes.axis("off")
     return figure
 
 
-def ray_directions(config: Config) -> NDArray[np.float64]:
+def ray_directions(own: SpeciesConfig) -> NDArray[np.float64]:
     """Unit vectors of the rays of an agent that looks along +y, the right-most first, shape (rays, 2)."""
-    spread = math.radians(config.sensor.ray_spread)
-    angle = np.linspace(-spread, spread, config.sensor.ray_count)
+    spread = math.radians(own.sensor.ray_spread)
+    angle = np.linspace(-spread, spread, own.sensor.ray_count)
     return np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
 
 
-def _draw_parts(axes: Axes, config: Config) -> None:
-    radius = config.body.radius
+def _draw_parts(axes: Axes, config: Config, own: SpeciesConfig) -> None:
+    radius = own.body.radius
     axes.add_patch(Circle((0, 0), radius, facecolor=_BODY, edgecolor=MUTED, linewidth=0.8))
-    _draw_touch(axes, config)
-    _draw_mouth(axes, config)
-    _draw_motors(axes, config)
-    _draw_food(axes, config, next(iter(config.food.values())))
+    _draw_touch(axes, own)
+    _draw_mouth(axes, own)
+    _draw_motors(axes, own)
+    _draw_food(axes, own, next(iter(config.food.values())), config.world.food_radius)
     axes.annotate(
         "",
         (0, 1.75 * radius),
@@ -59,13 +61,13 @@ def _draw_parts(axes: Axes, config: Config) -> None:
         arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.2, "shrinkA": 0},
     )
     axes.text(-0.08 * radius, 1.6 * radius, "heading", ha="right", fontsize=8)
-    mass = config.body.density * math.pi * radius**2
+    mass = own.body.density * math.pi * radius**2
     axes.set_title(f"the body: radius {radius:g} u, mass {mass:.3g}")
     axes.set(xlim=(-_VIEW * radius, _VIEW * radius), ylim=(-1.42 * radius, 1.8 * radius))
 
 
-def _draw_touch(axes: Axes, config: Config) -> None:
-    radius, count = config.body.radius, config.sensor.touch_sectors
+def _draw_touch(axes: Axes, own: SpeciesConfig) -> None:
+    radius, count = own.body.radius, own.sensor.touch_sectors
     edges = [[(0.0, 0.0), _at(radius, 360.0 * i / count)] for i in range(count)]
     axes.add_collection(LineCollection(edges, colors="white", linewidths=1.4))
     for sector in range(count):
@@ -75,15 +77,15 @@ def _draw_touch(axes: Axes, config: Config) -> None:
     _point_out(axes, text, _at(0.9 * radius, 180.0 * (1 + 1 / count)), (0.0, -1.3 * radius))
 
 
-def _draw_mouth(axes: Axes, config: Config) -> None:
-    radius, spread = config.body.radius, config.sensor.mouth_spread
+def _draw_mouth(axes: Axes, own: SpeciesConfig) -> None:
+    radius, spread = own.body.radius, own.sensor.mouth_spread
     width = _MOUTH_WIDTH * radius
     axes.add_patch(Wedge((0, 0), radius, 90 - spread, 90 + spread, width=width, facecolor=INK, zorder=3))
     _point_out(axes, f"mouth: ±{spread:g}°", _at(radius, 0.75 * spread), (-1.5 * radius, 1.1 * radius))
 
 
-def _draw_motors(axes: Axes, config: Config) -> None:
-    radius, motor = config.body.radius, config.motor
+def _draw_motors(axes: Axes, own: SpeciesConfig) -> None:
+    radius, motor = own.body.radius, own.motor
     unit = _FORCE_LENGTH * radius / motor.max_force
     places = np.array([_at(radius, motor.angle), _at(radius, -motor.angle)])
     for x, y in places:
@@ -108,17 +110,17 @@ def _draw_motors(axes: Axes, config: Config) -> None:
         )
 
 
-def _draw_food(axes: Axes, config: Config, food: FoodConfig) -> None:
-    radius, size = config.body.radius, config.body.food_radius
-    place = _at(radius + size, -0.7 * config.sensor.mouth_spread)
+def _draw_food(axes: Axes, own: SpeciesConfig, food: FoodConfig, size: float) -> None:
+    radius = own.body.radius
+    place = _at(radius + size, -0.7 * own.sensor.mouth_spread)
     axes.add_patch(Circle(place, size, facecolor=food.color, edgecolor="white", linewidth=0.5))
     text = f"food, radius {size:g} u:\nthe mouth eats\nwhat it touches"
     axes.text(place[0] + 1.3 * size, place[1], text, va="center", fontsize=8)
 
 
-def _draw_rays(axes: Axes, config: Config) -> None:
-    radius, sensor = config.body.radius, config.sensor
-    directions = ray_directions(config)
+def _draw_rays(axes: Axes, own: SpeciesConfig) -> None:
+    radius, sensor = own.body.radius, own.sensor
+    directions = ray_directions(own)
     reach = radius + sensor.ray_length
     segments = np.stack([radius * directions, reach * directions], axis=1)
     axes.add_collection(LineCollection(list(segments), colors=BLUE, linewidths=0.9))

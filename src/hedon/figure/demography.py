@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hedon.analysis.world.population import run_tail
-from hedon.config import Config
+from hedon.config.species import SpeciesConfig
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.schedule import mean_hazard
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
@@ -22,21 +22,21 @@ _LINEAR_SCALE = (1.0 - 1.0 / 10.0) / math.log(10.0)
 """Length of the linear part in decades: the axis then has the same slope on either side, and curves have no kink."""
 
 
-def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
+def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figure:
     """R0 and mean life at constant energy; shaded, where the living were in the last tenth of the runs.
 
     Args:
-        config: the settings.
+        own: the settings of the species.
         populations: tables `population` of the worlds; none where there was no run.
     """
-    energy = _energies(config)
-    lifetime = expected_lifetime(mean_hazard(config.hazard), energy)
+    energy = _energies(own)
+    lifetime = expected_lifetime(mean_hazard(own.hazard), energy)
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
         figure = new_figure(8.6, 3.2)
         left, right = figure.subplots(1, 2, sharex=True)
-        handles: list[Artist] = [draw_reproduction(left, config)]
+        handles: list[Artist] = [draw_reproduction(left, own)]
         right.plot(energy, np.where(np.isfinite(lifetime), lifetime / unit, np.nan), color=BLUE, linewidth=2.0)
         right.set_title(f"mean life [{name}]")
         _set_axes(right, energy)
@@ -51,18 +51,18 @@ def draw_demography(config: Config, populations: list[pl.DataFrame]) -> Figure:
     return figure
 
 
-def draw_reproduction(axes: Axes, config: Config) -> Line2D:
+def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
     """Draws R0 at constant energy, and the line R0 = 1 at which a lineage keeps its size.
 
     Args:
         axes: to draw on.
-        config: the settings.
+        own: the settings of the species.
 
     Returns:
         The line R0 = 1, with its label, for the legend.
     """
-    energy = _energies(config)
-    r0 = reproduction_number(mean_hazard(config.hazard), config.birth, energy)
+    energy = _energies(own)
+    r0 = reproduction_number(mean_hazard(own.hazard), own.birth, energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
     one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
     axes.set_title("children tried in a life, R0")
@@ -70,8 +70,8 @@ def draw_reproduction(axes: Axes, config: Config) -> Line2D:
     return one
 
 
-def _energies(config: Config) -> NDArray[np.float64]:
-    return np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(config.energy.capacity, 2.0), 160)[1:]])
+def _energies(own: SpeciesConfig) -> NDArray[np.float64]:
+    return np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(own.energy.capacity, 2.0), 160)[1:]])
 
 
 def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.gene import limit_of
-from hedon.config.layout import gene_columns, layouts, of_species
+from hedon.config.layout import gene_columns, layouts
 from hedon.config.problem import nearest
 from hedon.error import HedonError
 from hedon.text import brief
@@ -187,7 +187,7 @@ def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[flo
     return make_founders(genes, np.concatenate(values), group, dict(zip(labels, shares, strict=True)))
 
 
-def column_of(config: Config, name: str) -> str | None:
+def column_of(config: Config, name: str, own: str | None = None) -> str | None:
     """The column of a gene that is named by its column, its kind of food, or `action`; None if there is no such gene.
 
     `food` is the first kind, unless a kind has this name. A gene of only one species begins with the name of the
@@ -196,12 +196,16 @@ def column_of(config: Config, name: str) -> str | None:
     Args:
         config: that has the gene, or not.
         name: as a user gives it.
+        own: only of this species; None for the columns of all.
     """
     species, dot, gene = name.rpartition(".")
     if dot:
-        column = column_of(of_species(config, species), gene) if species in config.species else None
-        return None if column is None or column not in layouts(config)[species].gene_names else f"{species}.{column}"
-    columns = gene_columns(config)
+        column = column_of(config, gene, species) if species in config.species else None
+        return None if column is None else f"{species}.{column}"
+    return _column_among(gene_columns(config) if own is None else layouts(config)[own].gene_names, name)
+
+
+def _column_among(columns: Sequence[str], name: str) -> str | None:
     return next((column for column in (name, f"w_{name}") if column in columns), columns[0] if name == "food" else None)
 
 
@@ -214,7 +218,8 @@ def unknown_gene(config: Config, name: str) -> str:
     """
     columns = gene_columns(config)
     shown = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
-    neutral = f", neutral_1 to neutral_{config.genome.neutral_count}" if config.genome.neutral_count else ""
+    count = sum(column.startswith("neutral_") for column in columns)
+    neutral = f", neutral_1 to neutral_{count}" if count else ""
     near = nearest(name, [*columns, *shown, "food"])
     hint = f"; did you mean {near}?" if near else ""
     return f"there is no gene {brief(repr(name))} (there are {', '.join(shown)}{neutral}){hint}"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.gene import limit_of
-from hedon.config.layout import layouts
+from hedon.config.layout import gene_columns, layouts
 from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, unknown_gene
 from hedon.record.founder_table import read_table
 from hedon.record.reader import Run, open_run
@@ -111,7 +111,8 @@ def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], ND
     for gene in run.reward_names:
         if column_of(config, gene) != gene:
             raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, gene)}")
-    genes = [*run.reward_names, *run.neutral_names[: config.genome.neutral_count]]
+    columns = gene_columns(config)
+    genes = [*run.reward_names, *(name for name in run.neutral_names if name in columns)]
     return genes, now.select(genes).to_numpy()
 
 
@@ -119,7 +120,7 @@ def _by_species(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str],
     """The genes of each species that both the run and the config have; each row holds an agent of each of them."""
     shared = [name for name in run.columns.species if name in config.species]
     if not shared:
-        known = f"{', '.join(config.species)} here" if config.species else "here there is one, without a name"
+        known = f"{', '.join(config.species)} here"
         there = ", ".join(run.columns.species)
         raise FounderError(f"founders {brief(str(run.path))!r}: its species ({there}) have other names ({known})")
     made, columns = layouts(config), {}

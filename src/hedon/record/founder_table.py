@@ -76,10 +76,10 @@ def load_founders(folder: Path, config: Config) -> Founders | None:
     Raises:
         FounderError: The table is missing or was changed.
     """
-    if not config.genome.founders:
+    if not config.world.founders:
         return None
     founders = read_table(folder / FOUNDERS, config)
-    if founders.digest != config.genome.founders:
+    if founders.digest != config.world.founders:
         raise FounderError(f"{folder / FOUNDERS}: was changed: its digest differs from the one in the config")
     return founders
 

@@ -105,7 +105,7 @@ class Networks:
 
 def fixed_species(config: Config) -> list[str]:
     """The species that act by networks that never learn."""
-    return [name for name, species in config.agents.items() if species.learning.policy == "frozen"]
+    return [name for name, species in config.species.items() if species.learning.policy == "frozen"]
 
 
 def load_networks(folder: Path, config: Config) -> Networks | None:
@@ -118,11 +118,11 @@ def load_networks(folder: Path, config: Config) -> Networks | None:
     Raises:
         NetworkError: They are missing, damaged, or not those that the config names.
     """
-    if not config.learning.networks:
+    if not config.world.networks:
         return None
     path = folder / NETWORKS
     networks = read_networks(path)
-    if networks.digest != config.learning.networks:
+    if networks.digest != config.world.networks:
         raise NetworkError(f"{brief(str(path))}: is not the file that the config names: its digest differs")
     networks.require(config, str(path))
     return networks

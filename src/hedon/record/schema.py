@@ -85,19 +85,19 @@ def columns_of(config: Config) -> Columns:
     """The columns of a config's runs."""
     made = layouts(config)
     rewards = dict.fromkeys(gene.name for each in made.values() for gene in each.genes if gene.role != "neutral")
-    neutral = max(species.genome.neutral_count for species in config.agents.values())
-    eaten = {name for species in config.agents.values() for name in diet(config, species)}
-    prey = tuple(name for name in config.agents if name in eaten)
+    neutral = max(species.genome.neutral_count for species in config.species.values())
+    eaten = {name for species in config.species.values() for name in diet(config, species)}
+    prey = tuple(name for name in config.species if name in eaten)
     inner = tuple(name for name in INNER_STATES[1:] if any(name in each.inner for each in made.values()))
-    starving = any(species.energy.starvation == "death" for species in config.agents.values())
+    starving = any(species.energy.starvation == "death" for species in config.species.values())
     return Columns(
         food_kinds=tuple(config.food),
         neutral_count=neutral,
-        species=tuple(config.agents),
+        species=tuple(config.species),
         rewards=tuple(rewards),
         prey=prey,
         obstacles=config.obstacle.count > 0,
-        mating=any(species.birth.mating == "pairs" for species in config.agents.values()),
+        mating=any(species.birth.mating == "pairs" for species in config.species.values()),
         inner=inner,
         causes=bool(prey) or starving,
     )

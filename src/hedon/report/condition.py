@@ -46,7 +46,7 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
     selected = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
     yield figure.SELECTION.drawn(selected)
     yield figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
-    energies = draw_demography(first.config, [world.population for world in worlds])
+    energies = draw_demography(first.own, [world.population for world in worlds])
     yield figure.DEMOGRAPHY.drawn(energies)
 
 

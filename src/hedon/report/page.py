@@ -91,7 +91,7 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
     conditions = [
         condition_context(name, worlds)
         | {
-            "warnings": setting_warnings(worlds[0].config),
+            "warnings": setting_warnings(worlds[0].config, worlds[0].species),
             "figures": [figure for figure in figures if figure.condition == name],
         }
         for name, worlds in analysis.conditions.items()
@@ -128,7 +128,7 @@ def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any
         name: Of the condition.
         worlds: All of one config.
     """
-    config = worlds[0].run_config
+    config = worlds[0].config
     changes: list[tuple[str, Any, Any]] = []
     if config.preset in PRESETS:
         changes = diff(load_config(config.preset, config.fidelity), config)

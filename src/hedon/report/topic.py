@@ -64,7 +64,7 @@ def run_topics(conditions: Conditions, names: Sequence[str] = tuple(TOPICS)) -> 
     trees = {
         condition: alone
         for condition, worlds in conditions.items()
-        if (alone := [world for world in worlds if world.config.birth.mating == "none"])
+        if (alone := [world for world in worlds if world.own.birth.mating == "none"])
     }
     tables = [table for name in names for table in TOPICS[name](trees if name in ONE_PARENT else conditions)]
     return [table for table in tables if not table.rows.is_empty()]

@@ -42,7 +42,7 @@ class Gathered:
         configs = {condition.label: condition.config(fidelity) for condition in item.conditions}
         digests = {label: digest(config) for label, config in configs.items()}
         shown = {
-            condition.label: condition.species or next(iter(configs[condition.label].agents))
+            condition.label: condition.species or next(iter(configs[condition.label].species))
             for condition in item.conditions
         }
         worlds = {
@@ -68,7 +68,7 @@ class Gathered:
             self.worlds[need.digest, seed, species].until(steps)
             for need in needs(self.request)
             for seed, steps in need.steps.items()
-            for species in need.config.agents
+            for species in need.config.species
             if (need.digest, seed, species) in self.worlds
         ]
 
@@ -118,7 +118,7 @@ def gather(request: Request, folder: Path) -> Gathered:
         if need is not None and world.seed in need.steps:
             known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
             # Equal settings can be written in several ways, so the need names them, not each run.
-            name = setting_name(need.config) + (f": {world.species}" if len(need.config.agents) > 1 else "")
+            name = setting_name(need.config) + (f": {world.species}" if len(need.config.species) > 1 else "")
             kept[need.digest, world.seed, world.species] = replace(known, condition=name)
     used = {world.run for world in kept.values()}
     snapshots = _snapshots(request, runs, faults)

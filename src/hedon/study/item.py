@@ -9,7 +9,7 @@ import polars as pl
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config, digest, load_config
-from hedon.config.layout import of_species
+from hedon.config.layout import choose_species
 from hedon.figure.named import NamedFigure
 from hedon.record.snapshot import Snapshot
 
@@ -38,7 +38,8 @@ class Condition:
 
     def is_of(self, world: WorldRecord) -> bool:
         """Whether a world has these settings and nothing else is changed, and is of the species that is meant."""
-        return digest(world.config) == _digest(self, world.config.fidelity)
+        own = choose_species(self.species or None, self.config(world.config.fidelity))
+        return world.species == own and digest(world.config) == _digest(self, world.config.fidelity)
 
 
 @cache
@@ -48,8 +49,7 @@ def _config(preset: str, fidelity: str, overrides: tuple[str, ...]) -> Config:
 
 @cache
 def _digest(condition: Condition, fidelity: str) -> str:
-    config = condition.config(fidelity)
-    return digest(of_species(config, condition.species) if condition.species else config)
+    return digest(condition.config(fidelity))
 
 
 @dataclass(frozen=True)

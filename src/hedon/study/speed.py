@@ -1,7 +1,7 @@
 """Estimates how long runs take on this machine, measured with worlds as they are in the middle of a run."""
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from hedon.config import Config
 from hedon.experiment.simulation import Simulation
@@ -37,11 +37,10 @@ def measure_speed(config: Config, threads: int) -> Speed:
         threads: number of threads that the runs will use.
     """
     worlds = min(threads, MOST_WORLDS)
-    count = min(TYPICAL_ALIVE, config.population.capacity)
-    population, birth = replace(config.population, initial_count=count), replace(config.birth, kappa=0.0)
-    peopled = replace(config, population=population, birth=birth)
+    count = min(TYPICAL_ALIVE, *(own.population.capacity for own in config.species.values()))
+    peopled = config.with_("population.initial_count", count).with_("birth.kappa", 0.0)
     simulation = Simulation(peopled, range(1, worlds + 1), worlds)
-    window = config.learning.rollout_steps
+    window = config.world.rollout_steps
     simulation.run(1)  # touches all memory for the first time
     begun = time.perf_counter()
     simulation.run(window)

@@ -87,10 +87,10 @@ class Footage:
 
     def _snapshot(self, rows: pl.DataFrame) -> Snapshot:
         config, manifest = self.config, self.run.manifest
-        species, foods = list(config.agents), list(config.food)
+        species, foods = list(config.species), list(config.food)
         agents = rows.filter(pl.col("id").is_not_null()).sort("id")
         food = rows.filter(pl.col("id").is_null())
-        bodies = list(config.agents.values())
+        bodies = list(config.species.values())
         obstacles = manifest.obstacle_places[self.world] if manifest.obstacle_places else np.zeros((0, 3, 2))
         return Snapshot(
             world=self.world,
@@ -112,7 +112,7 @@ class Footage:
             mouth_spread=np.array([each.sensor.mouth_spread for each in bodies]),
             food_kinds=tuple(foods),
             species_names=tuple(species),
-            food_radius=config.body.food_radius,
+            food_radius=config.world.food_radius,
         )
 
 

@@ -30,24 +30,24 @@ def describe(config: Config) -> dict[str, Any]:
     """
     made = layouts(config)
     foods = [
-        {"name": name, "radius": config.body.food_radius, "energy": food.energy, "color": food.color}
+        {"name": name, "radius": config.world.food_radius, "energy": food.energy, "color": food.color}
         for name, food in config.food.items()
     ]
-    hunting = any(name in config.species for each in config.agents.values() for name in diet(config, each))
+    hunting = any(name in config.species for each in config.species.values() for name in diet(config, each))
     return {
-        "species": [_species(config, name, each, made[name]) for name, each in config.agents.items()],
+        "species": [_species(config, name, each, made[name]) for name, each in config.species.items()],
         "types": list(types(config)),
         "foods": foods,
         "genes": _genes(config, made),
-        "meals": [*config.food, *(config.agents if hunting else ())],
+        "meals": [*config.food, *(config.species if hunting else ())],
         "obstacle_corners": config.obstacle.corners if config.obstacle.count else 0,
         "arena": {
             "width": config.arena.width,
             "height": config.arena.height,
             "walls": [[float(value) for value in wall] for wall in walls(config.arena)],
         },
-        "window": config.learning.rollout_steps,
-        "energy_capacity": max(each.energy.capacity for each in config.agents.values()),
+        "window": config.world.rollout_steps,
+        "energy_capacity": max(each.energy.capacity for each in config.species.values()),
     }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import dump_toml
+from hedon.config.dump import default_path, dump_toml, flatten
 from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
 from hedon.view.engine_text import engine_settings, engine_text
@@ -67,12 +67,13 @@ def _origin(config: Config) -> str:
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
     """The settings that the engine gets as they are, with their schema."""
     before = engine_settings(config)
-    for path, setting, value in leaves(config):
-        if path in PROVENANCE or path.startswith(PLACE) or path.endswith(PYTHON):
+    rows = [row for row in leaves(config) if row[0] not in PROVENANCE]
+    for (path, setting, value), shown in zip(rows, flatten(config), strict=True):
+        if default_path(path).startswith(PLACE) or path.endswith(PYTHON):
             continue
         reached = _reached(config, path, setting, value, before)
         if reached:
-            yield _setting(path, reached, setting, value)
+            yield _setting(shown, reached, setting, value)
 
 
 def _reached(config: Config, path: str, setting: Setting, value: Any, before: dict[str, Any]) -> list[str]:

@@ -99,7 +99,7 @@ def _extinct(world: WorldRecord) -> float | None:
 
 
 def _lifespan(world: WorldRecord) -> float | None:
-    hazard, energy = world.config.hazard, world.config.energy.capacity
+    hazard, energy = world.own.hazard, world.own.energy.capacity
     if hazard.alpha_age <= 0:
         return None
     limit = -math.log(OLD_SHARE)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hedon.analysis import SEED, mutation_law
-from hedon.config import Config, gene_of
+from hedon.config import ONLY, Config, gene_of
 from hedon.demography import birth_rate, expected_lifetime, reproduction_number
 from hedon.figure import NamedFigure, draw_birth, draw_hazard, draw_walk_ends, draw_walks
 from hedon.study import Item, ItemInputs, sentences
@@ -24,28 +24,29 @@ _LINES = (
 
 def window_births(config: Config) -> int:
     """The births that an arena full of agents without energy tries in a window of learning."""
-    chance = float(birth_rate(config.birth, 0.0))
-    return max(round(config.population.capacity * chance * config.learning.rollout_steps), 1)
+    own = config.species[ONLY]
+    chance = float(birth_rate(own.birth, 0.0))
+    return max(round(own.population.capacity * chance * config.world.rollout_steps), 1)
 
 
 def _hazard(inputs: ItemInputs) -> Iterator[NamedFigure]:
-    config = BASELINE.config(inputs.fidelity)
-    poor, rich = (float(expected_lifetime(config.hazard, energy)) for energy in (0.0, config.energy.capacity))
+    own = BASELINE.config(inputs.fidelity).species[ONLY]
+    poor, rich = (float(expected_lifetime(own.hazard, energy)) for energy in (0.0, own.energy.capacity))
     caption = (
         f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
         "agent can hold."
     )
-    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(config.hazard), caption)
+    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(own.hazard), caption)
 
 
 def _birth(inputs: ItemInputs) -> Iterator[NamedFigure]:
-    config = BASELINE.config(inputs.fidelity)
-    children = float(reproduction_number(config.hazard, config.birth, 0.0))
+    own = BASELINE.config(inputs.fidelity).species[ONLY]
+    children = float(reproduction_number(own.hazard, own.birth, 0.0))
     caption = (
         f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
         "at 1, if all of them find a place."
     )
-    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(config), caption)
+    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(own), caption)
 
 
 def _walk(inputs: ItemInputs) -> Iterator[NamedFigure]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hedon.analysis import ResultTable, make_table
-from hedon.config import FIDELITIES, PAPER_PRESETS, PROVENANCE, describe_preset, flatten, format_value, leaves
+from hedon.config import FIDELITIES, PAPER_PRESETS, describe_preset, file_leaves, flatten, format_value
 from hedon.study import Condition, Item, ItemInputs
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
@@ -15,8 +15,9 @@ CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_life": ("Energy, birth and death", ("population", "energy", "nutrient", "toxin", "hazard", "birth")),
     "parameters_evolution": ("Genome and reward", ("genome", "reward")),
     "parameters_learning": ("Learning", ("learning",)),
+    "parameters_world": ("Rules of the world", ("world",)),
 }
-"""Per table its title and the sections of the config that it tells; the paper has one species."""
+"""Per table its title and the sections of a file that it tells; the paper has one species."""
 _ORIGIN = (
     'Origin: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, '
     '"ours" is a choice of this project; "paper or code" is the paper\'s value where it prints one, else the code\'s.'
@@ -43,9 +44,7 @@ def _parameters(inputs: ItemInputs) -> Iterator[ResultTable]:
 def _settings(fidelity: str) -> Iterator[Row]:
     """A row per setting of the baseline; the fidelities' own values where these differ."""
     values = {other: flatten(BASELINE.config(other)) for other in FIDELITIES}
-    for path, setting, value in leaves(BASELINE.config(fidelity)):
-        if path in PROVENANCE:
-            continue
+    for path, setting, value in file_leaves(BASELINE.config(fidelity)):
         each = {_column(other): format_value(values[other][path]) for other in FIDELITIES}
         differ = len(set(each.values())) > 1
         yield {
@@ -64,7 +63,7 @@ def _conditions(fidelity: str) -> Iterator[Row]:
     for preset in PAPER_PRESETS:
         config = Condition(preset, preset).config(fidelity)
         like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
-        for path, setting, value in leaves(config):
+        for path, setting, value in file_leaves(config):
             kind = ".".join(path.split(".")[:2])
             before = base.get(path.replace(kind, like.get(kind, kind), 1), value)  # names are not settings
             if before == value:

@@ -29,7 +29,7 @@ def make_world(
     independent where there is none. Where it is steady all windows have almost equally many births, so the table
     is small."""
     config = load_config("baseline", "released" if table is not None else "corrected")
-    config = dataclasses.replace(config, genome=dataclasses.replace(config.genome, weight_limit=limit))
+    config = config.with_("genome.weight_limit", limit)
     weight = rng.normal(0, 0.1, 40).astype(np.float32).tolist()
     generation, birth, parents = [0] * 40, [0] * 40, [-1] * 40
     living, rows = list(range(40)), []

@@ -45,11 +45,12 @@ ROW = {
     ],
 )
 def test_each_rule(changes: dict, regime: str) -> None:
-    assert interval_regime(pl.DataFrame([ROW | changes]), BASELINE).regime == regime
+    assert interval_regime(pl.DataFrame([ROW | changes]), BASELINE, "agent").regime == regime
 
 
 def test_the_rates() -> None:
-    found = interval_regime(pl.DataFrame([ROW | {"births_failed_space": 5, "energy_forgiven": 30.0}]), BASELINE)
+    rows = pl.DataFrame([ROW | {"births_failed_space": 5, "energy_forgiven": 30.0}])
+    found = interval_regime(rows, BASELINE, "agent")
     assert (found.hunger, found.refusal, found.crowding) == (0.1, 0.2, 0.75)
     assert found.uptake == pytest.approx(100 / 204.8)
     assert found.turnover == pytest.approx(20 / (150 * 1024 * 1.963e-4), rel=1e-3)
@@ -58,13 +59,13 @@ def test_the_rates() -> None:
 def test_poison_is_no_supply() -> None:
     config = load_config("poison")
     row = ROW | {"eaten_poison": 1000}
-    assert interval_regime(pl.DataFrame([row]), config).uptake == pytest.approx(100 / 204.8)
+    assert interval_regime(pl.DataFrame([row]), config, "agent").uptake == pytest.approx(100 / 204.8)
 
 
 def test_what_is_not_defined_names_nothing() -> None:
     nothing = {"births": 0, "deaths": 0, "energy_basic": 0.0, "energy_action": 0.0}
     config = load_config("baseline", overrides=["food.normal.growth_rate=0.0"])
-    found = interval_regime(pl.DataFrame([ROW | nothing]), config)
+    found = interval_regime(pl.DataFrame([ROW | nothing]), config, "agent")
     assert found.regime == BETWEEN
     assert np.isnan([found.hunger, found.refusal, found.uptake]).all()
 

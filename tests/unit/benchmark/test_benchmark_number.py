@@ -53,7 +53,7 @@ def test_acting_is_bound_by_operations_where_reads_are_fast():
 
 
 def test_half_the_epochs_and_longer_windows_change_the_floor_as_they_should():
-    changed = load_config("baseline", overrides=("learning.update_epochs=5", "learning.rollout_steps=2048"))
+    changed = load_config("baseline", overrides=("learning.update_epochs=5", "world.rollout_steps=2048"))
     whole = step_floor(load_config("baseline"), 1, 100, 100, 100).learning_seconds
     assert step_floor(changed, 1, 100, 100, 100).learning_seconds == pytest.approx(whole / 2)
 
@@ -64,19 +64,20 @@ def test_a_scaled_world_has_the_same_density_of_everything(preset):
     base, scaled = plan.config(), growth.scaled_config(plan, 2, 5, 99)
     area, scaled_area = (config.arena.width * config.arena.height for config in (base, scaled))
     assert scaled_area == 10 * area
-    assert scaled.population.capacity / scaled_area == pytest.approx(base.population.capacity / area)
+    own, scaled_own = base.species["agent"], scaled.species["agent"]
+    assert scaled_own.population.capacity / scaled_area == pytest.approx(own.population.capacity / area)
     for kind, food in base.food.items():
         for name in ("capacity", "growth_rate", "candidates"):
             assert getattr(scaled.food[kind], name) == pytest.approx(10 * getattr(food, name))
         assert scaled.food[kind].energy == food.energy
-    assert scaled.learning.rollout_steps == 100  # no window ends within the 99 steps
-    assert scaled.energy == base.energy
+    assert scaled.world.rollout_steps == 100  # no window ends within the 99 steps
+    assert scaled_own.energy == own.energy
 
 
 @pytest.mark.parametrize(("across", "up"), growth.TILES)
 def test_all_sizes_of_growth_are_valid_configs(across, up):
     plan = make_plan(threads="1")
-    assert growth.scaled_config(plan, across, up, 10).population.capacity == 200 * across * up
+    assert growth.scaled_config(plan, across, up, 10).species["agent"].population.capacity == 200 * across * up
 
 
 @pytest.mark.parametrize("preset", ["centered", "relocation"])

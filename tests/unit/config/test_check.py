@@ -5,7 +5,6 @@ from hedon.assay.landscape import AssayError, spread_founders
 from hedon.assay.option import parse_spread
 from hedon.config import ConfigError, load_config
 from hedon.config.gene import limit_of
-from hedon.config.layout import of_species
 
 NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
 
@@ -27,11 +26,11 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
         (["body.radius=300"], "body.radius = 300.0: a body does not fit into the arena"),
         (
             ["learning.minibatch_size=100"],
-            "learning.minibatch_size = 100: must divide learning.rollout_steps = 1024",
+            "learning.minibatch_size = 100: must divide world.rollout_steps = 1024",
         ),
         (
             ["learning.minibatch_size=2048"],
-            "learning.minibatch_size = 2048: must divide learning.rollout_steps = 1024",
+            "learning.minibatch_size = 2048: must divide world.rollout_steps = 1024",
         ),
         (
             ["food.normal.capacity=10"],
@@ -113,8 +112,8 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
             "arena.corner_radius = 0.001: must be 0 or below 180 [u], with no wall shorter than 0.01 [u]",
         ),
         (
-            ["body.food_radius=1e-50"],
-            "body.food_radius = 1e-50: is 0 in the engine's 32-bit numbers, but must be a number > 0 and <= 1000 [u]",
+            ["world.food_radius=1e-50"],
+            "world.food_radius = 1e-50: is 0 in the engine's 32-bit numbers, but must be a number > 0 and <= 1000 [u]",
         ),
         (
             ["learning.adam_beta2=0.999999999"],
@@ -174,7 +173,7 @@ def test_each_species_has_limits_of_its_own():
     assert config.species["b"].genome.weight_limit == 10
     assert limit_of(config, "a.w_action") == 50
     assert limit_of(config, "b.w_action") == limit_of(config, "w_action") == 10
-    spread = parse_spread("-40:40", None, of_species(config, "a"))
+    spread = parse_spread("-40:40", None, config.species["a"].genome)
     assert np.abs(spread_founders(config, spread, "a").values).max() > 39
     with pytest.raises(AssayError, match=r"within -10:10"):
-        parse_spread("-40:40", None, of_species(config, "b"))
+        parse_spread("-40:40", None, config.species["b"].genome)

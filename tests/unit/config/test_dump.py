@@ -1,5 +1,4 @@
 import dataclasses
-import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,10 +10,11 @@ from hypothesis import strategies as st
 from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_toml, load_config
 from hedon.config import field as doc
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import EARLIER, flatten, section_paths
+from hedon.config.dump import flatten, section_paths
 from hedon.config.evolution import GeneConfig, MutationConfig, SeeConfig, SmellConfig
 from hedon.config.load import parse_config
 from hedon.config.schedule import ScheduleConfig
+from hedon.config.species import SpeciesConfig
 
 
 def reload(config: Config, folder: Path) -> Config:
@@ -59,6 +59,8 @@ def test_dump_of_a_section() -> None:
     assert list(tomllib.loads(dump_toml(config, "food"))["food"]) == ["normal", "poison"]
     for path in section_paths(config):
         assert dump_toml(config, path).startswith("[")
+    assert dump_toml(config, "energy") == dump_toml(config, "species.agent.energy")
+    assert dump_toml(load_config("predator"), "energy").count("basic_cost") == 2
     for path in ("", "fod", "energy.initial"):
         with pytest.raises(KeyError):
             dump_toml(config, path)
@@ -78,7 +80,9 @@ def number(setting: doc.Setting) -> st.SearchStrategy[Any]:
 
 NUMBERS = [
     (f"{place}.{setting.name}", setting)
-    for place, section in [*((n, s.type) for n, s in doc.sections(Config).items() if not s.repeated)]
+    for place, section in [
+        *((n, s.type) for n, s in {**doc.sections(Config), **doc.sections(SpeciesConfig)}.items() if not s.repeated)
+    ]
     for setting in doc.settings(section).values()
     if setting.type in (int, float)
 ]
@@ -98,34 +102,6 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
     changed = value != setting.default
     assert diff(load_config("baseline"), config) == ([(path, setting.default, value)] if changed else [])
     assert (digest(config) != digest(load_config("baseline"))) is changed
-
-
-def test_a_file_of_an_earlier_version_means_what_was_done_then(tmp_path: Path) -> None:
-    text = dump_toml(load_config("baseline", overrides=["genome.neutral_count=1"]))
-    genes = r"\n\n\[(genome\.action|genome\.neutral|food\.normal\.gene)\]\ninitial_mean.*\ninitial_sd.*"
-    text, count = re.subn(genes, "", text)
-    assert count == 3
-    old = "neutral_count = 1\ninitial_mean_food = 0.0\ninitial_mean_action = {action}\ninitial_sd = 0.1"
-    section, lines = "", []
-    for line in text.splitlines():
-        section = line[1:-1] + "." if line.startswith("[") else section
-        path = re.sub(r"^food\.normal\.", "food.*.", section + line.partition(" ")[0])
-        lines += [] if path in EARLIER else [line]
-    assert len(lines) == len(text.splitlines()) - len(EARLIER)
-    lines = [old if line.startswith("neutral_count") else line for line in lines]
-    path = tmp_path / "config.toml"
-    path.write_text("\n".join(lines).replace("{action}", "2.0"))
-    moved = load_config(path)
-    assert moved.genome.action == GeneConfig(2.0, 0.1)
-    assert moved.genome.neutral == moved.food["normal"].gene == GeneConfig(0.0, 0.1)
-    path.write_text("\n".join(lines).replace("{action}", "0.0"))
-    then = load_config(path)
-    assert then.physics.solver == "sequential"
-    assert then.learning.acting_weights == parse_config(path.read_text(), "text").learning.acting_weights == "float32"
-    assert load_config("baseline").learning.acting_weights == "bfloat16"
-    # As the manifest of a baseline of version 0.1.0 has it.
-    assert digest(then) == "e251e82e84bd584bab134676fc8f2070cac36d22643794bb8970d082e52c6ae2"
-    assert digest(then) != digest(load_config("baseline"))
 
 
 def test_digest_knows_what_matters() -> None:
@@ -150,16 +126,16 @@ RICH = (
     'sensor.smells=["normal"]',
     "reward.smell.normal={}",
     "species.prey.reward.see.normal={}",
-    "reward.relief_coef=1",
+    "reward.drive_reduction_coef=1",
     "food.normal.nutrient=1",
+    "genome.action={initial_mean=1.0, initial_sd=0.2}",
 )
 """What gives a config one entry in each of its tables."""
 
 
 def rich() -> Config:
-    """Two species, and a config whose own sections differ from both."""
-    both = load_config("predator", overrides=RICH)
-    return dataclasses.replace(both, genome=dataclasses.replace(both.genome, action=GeneConfig(1.0, 0.2)))
+    """Two species with an entry in each table."""
+    return load_config("predator", overrides=RICH)
 
 
 def put(section: Any, path: list[str], value: Any) -> Any:
@@ -211,13 +187,13 @@ tables = {
 
 
 @settings(max_examples=60, deadline=None)
-@given(own=st.fixed_dictionaries({name: st.fixed_dictionaries(tables) for name in ("", "prey", "predator")}))
+@given(own=st.fixed_dictionaries({name: st.fixed_dictionaries(tables) for name in ("prey", "predator")}))
 def test_a_species_lacks_the_tables_that_it_lacked_when_it_was_written(own: dict[str, Any]) -> None:
     config = load_config("predator", overrides=['sensor.smells=["normal"]'])
     for name, sections in own.items():
         for section, values in sections.items():
             for table, value in values.items():
-                config = put(config, [*(["species", name] if name else []), section, table], value)
+                config = put(config, ["species", name, section, table], value)
     again = parse_config(dump_toml(config), "text")
     assert again == config
     assert digest(again) == digest(config)

@@ -32,10 +32,10 @@ def test_every_field_is_a_setting_or_a_section() -> None:
 @pytest.mark.parametrize(
     ("path", "text"),
     [
-        (("energy", "initial"), "a number from 0 to 1000000 [energy]"),
-        (("body", "radius"), "a number > 0 and <= 1000 [u]"),
-        (("sensor", "scaling"), 'one of "raw", "unit"'),
-        (("sensor", "ray_count"), "an integer from 1 to 32"),
+        (("species", "x", "energy", "initial"), "a number from 0 to 1000000 [energy]"),
+        (("species", "x", "body", "radius"), "a number > 0 and <= 1000 [u]"),
+        (("species", "x", "sensor", "scaling"), 'one of "raw", "unit"'),
+        (("species", "x", "sensor", "ray_count"), "an integer from 1 to 32"),
         (
             ("food", "x", "placement", "centers"),
             "a list of [number, number] with at most 16 items, with numbers from 0 to 100000 [u]",
@@ -51,7 +51,7 @@ def test_allowed_in_words(path: tuple[str, ...], text: str) -> None:
 
 def test_find_leads_into_settings_and_to_sections() -> None:
     assert find(Config, ("arena", "inner_walls", 0, 3)) is settings(sections(Config)["arena"].type)["inner_walls"]
-    assert find(Config, ("energy",)) is sections(Config)["energy"].type
+    assert find(Config, ("physics",)) is sections(Config)["physics"].type
     assert find(Config, ("food", "any", "placement")) is find(Config, ("food", "other", "placement"))
     assert find(Config, ("enrgy",)) is None
     assert find(Config, (0,)) is None

@@ -63,19 +63,19 @@ def test_places_of_food() -> None:
 @pytest.mark.parametrize("preset", PAPER_PRESETS)
 def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_senses(preset: str) -> None:
     released, corrected = load_config(preset, "released"), load_config(preset)
-    assert released.genome.mutation_noise == "frozen"
-    assert released.learning.critic_target == "batch_mean"
+    assert released.world.mutation_noise == "frozen"
+    assert released.species["agent"].learning.critic_target == "batch_mean"
     assert released.physics.solver == "jacobi"
     assert all(food.growth_rate == 1.0 for food in released.food.values())
+    own, right = released.species["agent"], corrected.species["agent"]
+    learning = dataclasses.replace(own.learning, critic_target="per_state")
+    species = dataclasses.replace(own, sensor=right.sensor, population=right.population, learning=learning)
     undone = dataclasses.replace(
         released,
         fidelity="corrected",
-        genome=corrected.genome,
         physics=corrected.physics,
-        sensor=corrected.sensor,
-        population=corrected.population,
-        birth=corrected.birth,
-        learning=dataclasses.replace(released.learning, critic_target="per_state"),
+        world=corrected.world,
+        species={"agent": species},
         food={k: dataclasses.replace(food, growth_rate=0.2, candidates=10) for k, food in released.food.items()},
     )
     assert undone == corrected
@@ -85,18 +85,19 @@ def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_sen
 def test_text_is_what_the_paper_prints(preset: str) -> None:
     text, corrected = load_config(preset, "text"), load_config(preset)
     assert all(food.growth_rate == 0.02 for food in text.food.values())
-    undone = dataclasses.replace(
-        text,
-        fidelity="corrected",
-        energy=dataclasses.replace(text.energy, initial=text.energy.initial + 20),
-        birth=dataclasses.replace(text.birth, distance_sd=100.0, distance_unit="u"),
-        reward=dataclasses.replace(text.reward, action_norm="max_force"),
-        learning=dataclasses.replace(text.learning, entropy_coef=0.001),
-        food={k: dataclasses.replace(food, growth_rate=0.2) for k, food in text.food.items()},
-    )
-    assert text.energy.initial == 20
-    assert (text.birth.distance_sd, text.birth.distance_unit) == (0.08, "arena_width")
-    assert (text.reward.action_norm, text.learning.entropy_coef) == ("none", 0.0)
+    own, undone = text.species["agent"], dataclasses.replace(text, fidelity="corrected")
+    for path, value in (
+        ("energy.initial", own.energy.initial + 20),
+        ("birth.distance_unit", "u"),
+        ("birth.distance_sd", 100.0),
+        ("reward.action_norm", "max_force"),
+        ("learning.entropy_coef", 0.001),
+        ("food.*.growth_rate", 0.2),
+    ):
+        undone = undone.with_(path, value)
+    assert own.energy.initial == 20
+    assert (own.birth.distance_sd, own.birth.distance_unit) == (0.08, "arena_width")
+    assert (own.reward.action_norm, own.learning.entropy_coef) == ("none", 0.0)
     assert undone == corrected
 
 
@@ -104,16 +105,16 @@ def test_later_layers_win(write: Write) -> None:
     path = write('preset = "poor"\nfidelity = "text"\n[energy]\ninitial = 30\ncapacity = 300\n')
     config = load_config(path, overrides=["energy.capacity=200", "energy.capacity=250"])
     assert (config.name, config.preset, config.fidelity) == ("my", "poor", "text")
-    assert (config.energy.initial, config.energy.capacity) == (30.0, 250.0)
-    assert isinstance(config.energy.initial, float)
-    assert config.learning.entropy_coef == 0.0
+    assert (config.species["agent"].energy.initial, config.species["agent"].energy.capacity) == (30.0, 250.0)
+    assert isinstance(config.species["agent"].energy.initial, float)
+    assert config.species["agent"].learning.entropy_coef == 0.0
     assert list(config.food) == ["normal", "poor"]
 
 
 def test_fidelity_of_the_call_wins_over_the_files(write: Write) -> None:
     config = load_config(write('fidelity = "text"\n'), fidelity="released")
     assert config.fidelity == "released"
-    assert config.energy.initial == 40.0
+    assert config.species["agent"].energy.initial == 40.0
     assert config.preset == "baseline"
 
 
@@ -187,8 +188,7 @@ def test_complete_file_without_a_setting_is_refused(write: Write) -> None:
     lines = [line for line in text.splitlines() if not line.startswith(("digestion_steps", "width"))]
     message = problems(write("\n".join(lines)))
     assert "arena.width: is missing in a file that says it is complete; a number > 0" in message
-    # Versions before it did what the default does.
-    assert "digestion_steps" not in message
+    assert "diet.digestion_steps: is missing" in message
 
 
 def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> None:
@@ -202,22 +202,28 @@ def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> N
     species = load_config("predator", overrides=["motor.max_force=30"]).species
     assert [each.motor.max_force for each in species.values()] == [30, 30]
     own = "[species.prey.energy]\nbasic_cost = 2.0\n[species.predator.energy]\nbasic_cost = 3.0\n"
-    assert load_config(write('preset = "predator"\n[energy]\nbasic_cost = 1.0\n' + own)).energy.basic_cost == 1.0
+    said = load_config(write('preset = "predator"\n[energy]\nbasic_cost = 1.0\n' + own)).species
+    assert [each.energy.basic_cost for each in said.values()] == [2.0, 3.0]
 
 
-def test_a_rule_of_the_world_reaches_the_species_of_a_complete_file(write: Write) -> None:
-    config = load_config(write(dump_toml(load_config("predator"))), overrides=["birth.order=after_deaths"])
-    assert {each.birth.order for each in (config, *config.species.values())} == {"after_deaths"}
+def test_settings_for_all_reach_the_only_species_of_a_complete_file(write: Write) -> None:
+    for own in ("agent", "bee"):
+        made = load_config("poison", overrides=[f"species.{own}.energy.initial=3"])
+        assert list(made.species) == [own]
+        dumped = write(dump_toml(made))
+        assert load_config(dumped).species == made.species
+        config = load_config(dumped, overrides=["energy.capacity=500", f"species.{own}.energy.initial=5"])
+        assert (config.species[own].energy.capacity, config.species[own].energy.initial) == (500, 5)
 
 
 def test_agents_of_the_sequel_see_and_turn_as_in_its_program() -> None:
     for preset in SEQUEL_PRESETS:
         config = load_config(preset)
-        assert {each.sensor.ray_spread for each in config.agents.values()} == {60.0}
-        assert {(each.hazard.alpha_age, each.hazard.beta_age) for name, each in config.agents.items()} == {
-            (2e-7, 4e-6) if name == "predator" else (4e-7, 2e-6) for name in config.agents
+        assert {each.sensor.ray_spread for each in config.species.values()} == {60.0}
+        assert {(each.hazard.alpha_age, each.hazard.beta_age) for name, each in config.species.items()} == {
+            (2e-7, 4e-6) if name == "predator" else (4e-7, 2e-6) for name in config.species
         }
-        for each in config.agents.values():
+        for each in config.species.values():
             lever = each.body.radius * math.sin(math.radians(each.motor.angle))
             assert lever == pytest.approx(10 * math.sin(math.radians(45)), abs=1e-6)
 

@@ -10,7 +10,8 @@ import pytest
 from hedon.config import engine_config, load_config
 from hedon.config.config import Config
 from hedon.config.field import Setting, leaves
-from hedon.config.native import PYTHON_ONLY, distance_sd
+from hedon.config.life import distance_sd
+from hedon.config.native import PYTHON_ONLY
 
 ENGINE = Path(__file__).parents[3] / "engine"
 CONFIG = load_config(
@@ -22,18 +23,19 @@ CONFIG = load_config(
         "reward.family=by_age",
         "food.poison.nutrient=1.0",
         "food.normal.toxin=1.0",
-        "reward.relief_coef=1.0",
+        "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
         "genome.mutation.w_action.scale=0.1",
     ],
 )
+OWN = "species.agent."
 LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
 OTHER: dict[str, Any] = {
-    "body.collides": ("normal",),
-    "sensor.sees": ("normal", "poison"),
-    "sensor.smells": ("normal", "poison"),
-    "reward.see.poison.reads": "normal",
-    "diet.eats": (("normal", 0.5),),
+    OWN + "body.collides": ("normal",),
+    OWN + "sensor.sees": ("normal", "poison"),
+    OWN + "sensor.smells": ("normal", "poison"),
+    OWN + "reward.see.poison.reads": "normal",
+    OWN + "diet.eats": (("normal", 0.5),),
     "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),
     "food.normal.placement.centers": ((1.0, 1.0),),
     "food.poison.placement.centers": ((1.0, 1.0),),
@@ -94,14 +96,15 @@ def test_names_are_those_of_the_engines_structs() -> None:
 @pytest.mark.parametrize("path", LEAVES)
 def test_every_setting_arrives_or_is_listed(path: str) -> None:
     other = engine_config(changed(CONFIG, path, other_value(path, LEAVES[path])))
-    plain = re.sub(r"^(food|reward\.see|genome\.learning|genome\.mutation)\.\w+\.", r"\1.", path)
+    shown = path.removeprefix(OWN)
+    plain = re.sub(r"^(food|reward\.see|genome\.learning|genome\.mutation)\.\w+\.", r"\1.", shown)
     # These act only where a species eats another one.
     quiet = {"genome.prey.initial_mean", "genome.prey.initial_sd"}
     assert (other != engine_config(CONFIG)) == (plain not in {*PYTHON_ONLY, *quiet} - {"birth.distance_unit"}), path
 
 
 def test_python_only_settings_exist() -> None:
-    plain = {re.sub(r"^food\.\w+\.", "food.", path) for path in LEAVES}
+    plain = {re.sub(r"^food\.\w+\.", "food.", path.removeprefix(OWN)) for path in LEAVES}
     assert set(PYTHON_ONLY) <= plain
 
 
@@ -109,12 +112,12 @@ def test_genes_stand_in_the_order_of_the_layout() -> None:
     config = load_config("poison", overrides=["food.poison.gene.initial_mean=3", "genome.action.initial_mean=-2"])
     genome = engine_config(config)["species"][0]["genome"]
     assert [gene["initial_mean"] for gene in genome["genes"]][:4] == [0, 3, -2, 0]
-    assert len(genome["genes"]) == 3 + config.genome.neutral_count
+    assert len(genome["genes"]) == 3 + config.species["agent"].genome.neutral_count
 
 
 def test_distance_is_in_arena_units() -> None:
-    def sd(config: Config) -> tuple[float, float]:
-        return distance_sd(config, config.agents["agent"])
+    def sd(config: Config) -> float:
+        return distance_sd(config.arena, config.species["agent"].birth)
 
-    assert sd(load_config("baseline")) == (100.0, 100.0)
-    assert sd(load_config("small", "text")) == pytest.approx((28.8, 28.8))
+    assert sd(load_config("baseline")) == 100.0
+    assert sd(load_config("small", "text")) == pytest.approx(28.8)

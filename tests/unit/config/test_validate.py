@@ -3,14 +3,23 @@ from typing import Any
 
 import pytest
 
-from hedon.config import Config, ConfigError, validated
+from hedon.config import Config, ConfigError, diff, load_config, validated
 from hedon.config.energy import EnergyConfig
+from hedon.config.evolution import MutationConfig
+from hedon.config.layer import settle_species
+from hedon.config.species import SpeciesConfig
 from hedon.config.validate import from_tables
+
+
+def made(tables: dict[str, Any]) -> Config:
+    """The config of a file's tables."""
+    assert not list(settle_species(tables, []))
+    return from_tables(tables, "here")
 
 
 def lines(tables: dict[str, Any]) -> list[str]:
     with pytest.raises(ConfigError) as caught:
-        from_tables(tables, "here")
+        made(tables)
     assert str(caught.value).startswith("here: ")
     return [str(problem) for problem in caught.value.problems]
 
@@ -72,12 +81,43 @@ def test_all_errors_come_at_once() -> None:
 
 
 def test_integers_stand_for_numbers() -> None:
-    config = from_tables({"energy": {"initial": 20}})
-    assert config.energy.initial == 20.0
-    assert isinstance(config.energy.initial, float)
+    config = made({"energy": {"initial": 20}})
+    assert config.species["agent"].energy.initial == 20.0
+    assert isinstance(config.species["agent"].energy.initial, float)
 
 
 def test_configs_put_together_in_python_are_checked() -> None:
     assert validated(Config()) == Config()
     with pytest.raises(ConfigError, match=r"energy\.initial = -3"):
-        validated(dataclasses.replace(Config(), energy=EnergyConfig(initial=-3)))
+        validated(dataclasses.replace(Config(), species={"agent": SpeciesConfig(energy=EnergyConfig(initial=-3))}))
+    with pytest.raises(ConfigError, match="species: there must be from 1 to 4 species, not 0"):
+        validated(dataclasses.replace(Config(), species={}))
+
+
+def test_one_setting_is_changed_by_its_path() -> None:
+    two = load_config("predator")
+    one = two.with_("species.prey.birth.kappa", 0.5)
+    assert diff(two, one) == [("species.prey.birth.kappa", 1e-3, 0.5)]
+    assert [own.birth.kappa for own in two.with_("birth.kappa", 0.5).species.values()] == [0.5, 0.5]
+    assert [food.energy for food in load_config("poison").with_("food.*.energy", 2.0).food.values()] == [2.0, 2.0]
+    scaled = two.with_("species.prey.genome.mutation.w_action.scale", 0.1).species["prey"].genome
+    assert scaled.mutation["w_action"] == MutationConfig("student_t", 0.1, 2.0, 1.0, 10.0)
+    assert two.with_("genome.mutation", {}) == two
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("energy.initial", -1, "energy.initial = -1: must be a number from 0 to 1000000 [energy]"),
+        ("energy.inital", 1.0, "energy.inital: unknown name; did you mean initial?"),
+        ("enery.initial", 1.0, "enery: unknown name; did you mean energy?"),
+        ("energy.initial.x", 1.0, "energy.initial.x: there is no such setting"),
+        ("food.norml.energy", 1.0, "food.norml.energy: there is no such setting"),
+        ("species.prey.energy.initial", 1.0, "species.prey.energy.initial: there is no such setting"),
+        ("energy.", 1.0, "'energy.': must be the path of a setting, as in energy.initial"),
+    ],
+)
+def test_a_change_that_cannot_be_is_refused(path: str, value: Any, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config("baseline").with_(path, value)
+    assert str(caught.value) == f"baseline: {said}"

@@ -6,7 +6,7 @@ from matplotlib.path import Path as Polygon
 
 from hedon.config import Config, load_config
 from hedon.config.arena import outline
-from hedon.config.layout import of_species
+from hedon.config.body import MotorConfig
 from hedon.config.schedule import ScheduleConfig
 from hedon.demography.forecast import forecast, fresh_force, setting_warnings
 from hedon.demography.life import expected_lifetime, hazard
@@ -65,7 +65,7 @@ def test_poison_is_no_supply() -> None:
 def test_the_force_of_a_fresh_policy() -> None:
     rng = np.random.default_rng(1)
     force = -20 + 100 / (1 + np.exp(-rng.normal(size=(400_000, 2))))
-    assert fresh_force(setting()) == pytest.approx(np.linalg.norm(force, axis=1).mean(), rel=2e-3)
+    assert fresh_force(MotorConfig()) == pytest.approx(np.linalg.norm(force, axis=1).mean(), rel=2e-3)
 
 
 def test_one_parent_in_the_open_has_a_closed_form() -> None:
@@ -73,10 +73,11 @@ def test_one_parent_in_the_open_has_a_closed_form() -> None:
     open_air = ("arena.width=1e5", "arena.height=1e5", "food.normal.initial_count=0", "birth.attempts=1")
     config = setting(*open_air, "birth.distance_sd=20.0", "population.initial_count=1")
     rng = np.random.default_rng(2)
-    once = placement_success(config, [1], rng, scenes=4000)[0]
+    once = placement_success(config, "agent", [1], rng, scenes=4000)[0]
     assert once == pytest.approx(math.exp(-0.5), abs=0.025)  # three standard errors
     thrice = setting(*open_air[:3], "birth.attempts=3", "birth.distance_sd=20.0", "population.initial_count=1")
-    assert placement_success(thrice, [1], rng, 4000)[0] == pytest.approx(1 - (1 - math.exp(-0.5)) ** 3, abs=0.015)
+    found = placement_success(thrice, "agent", [1], rng, 4000)[0]
+    assert found == pytest.approx(1 - (1 - math.exp(-0.5)) ** 3, abs=0.015)
 
 
 def rim(count: int) -> np.ndarray:
@@ -90,7 +91,7 @@ def test_free_places_are_those_of_the_engines_rules() -> None:
     rng = np.random.default_rng(3)
     places = rng.uniform(-20, 500, (3000, 2))
     nothing = np.empty((0, 2))
-    free = is_free(config, places, nothing, nothing)
+    free = is_free(config, 10.0, places, nothing, nothing)
     polygon = Polygon(outline(config.arena))
     for (x, y), found in zip(places.tolist(), free.tolist(), strict=True):
         clear = math.hypot(x - 200, y - min(max(y, 100), 200)) >= 10
@@ -100,8 +101,8 @@ def test_free_places_are_those_of_the_engines_rules() -> None:
         elif clear:
             assert not polygon.contains_points([x, y] + 10.02 * rim(721)).all()
     at = np.array([[240.0, 180.0], [259.9, 180.0], [260.1, 180.0], [240.0, 193.9], [240.0, 194.1]])
-    assert is_free(config, at, at[:1], nothing).tolist() == [False, False, True, False, False]
-    assert is_free(config, at, nothing, at[:1]).tolist() == [False, True, True, False, True]
+    assert is_free(config, 10.0, at, at[:1], nothing).tolist() == [False, False, True, False, False]
+    assert is_free(config, 10.0, at, nothing, at[:1]).tolist() == [False, True, True, False, True]
 
 
 def test_a_hazard_that_follows_time_is_taken_at_its_mean_and_its_range() -> None:
@@ -111,17 +112,18 @@ def test_a_hazard_that_follows_time_is_taken_at_its_mean_and_its_range() -> None
     mean = 0.3 * 0.5 + 0.7 * 2.0
     found = forecast(config)
     for level in found.levels:
-        scaled = scaled_hazard(plain.hazard, mean)
+        scaled = scaled_hazard(plain.species["agent"].hazard, mean)
         assert level.lifetime == pytest.approx(float(expected_lifetime(scaled, level.energy)), rel=1e-12)
     text = next(each for each in found.warnings if each.startswith("The chance of death follows a schedule"))
     assert "from 0.5 to 2 times what is set" in text
     assert f"the mean over a period, {mean:g}" in text
     for factor in (0.5, 2.0):
-        assert f"{float(expected_lifetime(scaled_hazard(plain.hazard, factor), 400.0)):,.0f} steps" in text
+        hazard = scaled_hazard(plain.species["agent"].hazard, factor)
+        assert f"{float(expected_lifetime(hazard, 400.0)):,.0f} steps" in text
 
 
 def test_scaled_chances_are_those_of_the_hazard_times_the_factor() -> None:
-    config = load_config("baseline").hazard
+    config = load_config("baseline").species["agent"].hazard
     for age, energy in ((0.0, 0.0), (50_000.0, 5.0), (900_000.0, 100.0)):
         expected = 3.0 * float(hazard(config, age, energy))
         assert float(hazard(scaled_hazard(config, 3.0), age, energy)) == pytest.approx(expected)
@@ -149,13 +151,12 @@ def test_growth_that_follows_time_is_told_with_its_range() -> None:
 
 def test_what_is_said_fits_what_a_species_eats() -> None:
     config = load_config("predator")
-    said = {name: " ".join(setting_warnings(of_species(config, name))) for name in config.species}
+    said = {name: " ".join(setting_warnings(config, name)) for name in config.species}
     assert "It eats no food, but prey" in said["predator"]
     assert "pays for" not in said["predator"]
     assert "It is eaten by predator" in said["prey"]
-    assert math.isnan(forecast(of_species(config, "predator")).fed)
+    assert math.isnan(forecast(config, "predator").fed)
 
 
 def test_a_fresh_force_is_that_of_the_motors() -> None:
-    stronger = load_config("baseline", overrides=["motor.force_scale=1.5"])
-    assert fresh_force(stronger) == pytest.approx(1.5 * fresh_force(load_config("baseline")))
+    assert fresh_force(MotorConfig(force_scale=1.5)) == pytest.approx(1.5 * fresh_force(MotorConfig()))

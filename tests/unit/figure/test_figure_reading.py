@@ -56,13 +56,13 @@ def test_nobody_s_death_is_told_without_axes() -> None:
 def test_no_energy_of_the_living_makes_demography_unreadable(energy: float) -> None:
     names = ("energy_q25", "energy_median", "energy_q75")
     rows = pl.DataFrame({"step": [1024]} | {name: [f * energy] for name, f in zip(names, (0.6, 1, 1.3), strict=True)})
-    figure = draw_demography(BASELINE, [rows])
+    figure = draw_demography(BASELINE.species["agent"], [rows])
     assert overprinted(figure) == []
     assert "half of the living" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_the_law_of_birth_says_what_its_line_means() -> None:
-    figure = draw_birth(BASELINE)
+    figure = draw_birth(BASELINE.species["agent"])
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["R0 = 1: a lineage keeps its size"]
 
 

@@ -126,7 +126,7 @@ def test_a_bad_source_is_refused(text: str, message: str) -> None:
 
 def test_a_changed_table_is_refused(tmp_path: Path) -> None:
     founders = pair()
-    config = load_config("poison", overrides=[f'genome.founders="{founders.digest}"'])
+    config = load_config("poison", overrides=[f'world.founders="{founders.digest}"'])
     (tmp_path / "founders.csv").write_bytes(founders.content)
     found = load_founders(tmp_path, config)
     assert found is not None

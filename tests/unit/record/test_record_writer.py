@@ -280,7 +280,7 @@ def test_a_million_steps_take_less_than_30_megabytes(tmp_path: Path) -> None:
 def test_every_gene_says_what_it_is() -> None:
     genes = [
         "reward.family=by_age",
-        "reward.relief_coef=1.0",
+        "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
         "reward.see.wall.coef=0.1",
     ]

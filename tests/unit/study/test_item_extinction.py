@@ -42,10 +42,8 @@ def died(worlds: Sequence[WorldRecord], *steps: int) -> list[WorldRecord]:
 
 
 def test_the_arms_are_the_papers_settings() -> None:
-    costs = [
-        (condition.config("corrected").energy.basic_cost, condition.config("corrected").energy.action_cost)
-        for condition in CONDITIONS
-    ]
+    energies = [condition.config("corrected").species["agent"].energy for condition in CONDITIONS]
+    costs = [(energy.basic_cost, energy.action_cost) for energy in energies]
     assert dict(zip(costs, CONDITIONS.values(), strict=True)) == EXTINCTION
     assert [condition.label for condition in ITEM.conditions] == [
         DEAR,

@@ -1,11 +1,12 @@
-import tomllib
-
 import pytest
-from setting_page import page_rows, values
+from setting_page import page_rows
 
 from hedon.analysis.result import ResultTable
 from hedon.config import FIDELITIES, Config, diff, load_config
+from hedon.config.dump import flatten
 from hedon.config.field import sections
+from hedon.config.problem import format_value
+from hedon.config.species import PER_SPECIES
 from hedon.report.table import cells
 from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.parameter import CONCERNS, PARAMETERS
@@ -22,7 +23,9 @@ def settings(fidelity: str) -> list[dict]:
 
 
 def test_every_section_belongs_to_one_concern() -> None:
-    assert sorted(name for _, names in CONCERNS.values() for name in names) == sorted({*sections(Config)} - {"species"})
+    assert sorted(name for _, names in CONCERNS.values() for name in names) == sorted(
+        {*sections(Config), *PER_SPECIES} - {"species"}
+    )
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
@@ -30,10 +33,10 @@ def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_
     config = load_config("baseline", fidelity)
     rows = {row["setting"]: row for row in settings(fidelity)}
     assert len(rows) == len(settings(fidelity))
-    assert sorted(rows) == sorted(values(config).keys() - {"name", "preset", "fidelity"})
-    page, have = page_rows({"food.<kind>": "food.normal"}), values(config)
+    assert sorted(rows) == sorted(flatten(config))
+    page, have = page_rows({"food.<kind>": "food.normal"}), flatten(config)
     for path, row in rows.items():
-        assert tomllib.loads(f"it = {row['value']}")["it"] == have[path], path
+        assert row["value"] == format_value(have[path]), path
         assert (row["meaning"], row["unit"], row["origin"]) == (page[path].meaning, page[path].unit, page[path].source)
 
 

@@ -60,7 +60,7 @@ def test_touch_sectors_are_numbered_counter_clockwise_from_the_heading() -> None
 
 
 def test_the_first_ray_points_to_the_right() -> None:
-    directions = ray_directions(CONFIG)
+    directions = ray_directions(CONFIG.species["agent"])
     assert directions[0] == pytest.approx([np.sin(np.pi / 3), 0.5])
     assert directions[-1] == pytest.approx([-np.sin(np.pi / 3), 0.5])
 

@@ -9,7 +9,7 @@ import pytest
 
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
-from hedon.config.layout import hunted, hunters, layouts, of_species
+from hedon.config.layout import hunted, hunters, layouts
 from hedon.study.verdict import Verdict, judge, verdicts
 from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL_CLAIMS, SEQUEL_ORDERS, fear
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
@@ -22,8 +22,8 @@ _GENERATIONS, _WIDTH = 20, 20
 def made(preset: str, seed: int, pushed: str = "", push: float = 0.0) -> WorldRecord:
     """A world of a few families whose weights mutate by the preset's law; one of them is pushed in each generation."""
     config = load_config(preset)
-    own = hunted(config) if config.species else "agent"
-    mine = of_species(config, own)
+    own = hunted(config) if len(config.species) > 1 else next(iter(config.species))
+    genome = config.species[own].genome
     genes = layouts(config)[own].gene_names
     rng = np.random.default_rng([len(preset), seed])
     size = _WIDTH * _GENERATIONS
@@ -34,7 +34,7 @@ def made(preset: str, seed: int, pushed: str = "", push: float = 0.0) -> WorldRe
     for start in range(_WIDTH, size, _WIDTH):
         chosen = start - _WIDTH + rng.integers(0, _WIDTH, _WIDTH)
         parents[start : start + _WIDTH] = chosen
-        noise = mine.genome.mutation_scale * rng.standard_t(mine.genome.mutation_df, (_WIDTH, len(genes)))
+        noise = genome.mutation_scale * rng.standard_t(genome.mutation_df, (_WIDTH, len(genes)))
         weights[start : start + _WIDTH] = np.clip(weights[chosen] + noise + drift, -10, 10)
     agents = pl.DataFrame(
         {
@@ -50,7 +50,8 @@ def made(preset: str, seed: int, pushed: str = "", push: float = 0.0) -> WorldRe
     neutral = tuple(gene for gene in genes if gene.startswith("neutral"))
     rewards = tuple(gene for gene in genes if gene not in neutral)
     names = (tuple(config.food), rewards, neutral)
-    return WorldRecord(f"{preset}: {own}", "run", seed, mine, *names, agents, pl.DataFrame(), STEPS, None)
+    name = f"{preset}: {own}"
+    return WorldRecord(name, "run", seed, config, *names, agents, pl.DataFrame(), STEPS, None, species=own)
 
 
 def group(preset: str, count: int, pushed: str = "", push: float = 0.0) -> list[WorldRecord]:

@@ -70,7 +70,7 @@ def test_arms_share_runs_with_other_items() -> None:
     assert [path for path, _, _ in changes] == [
         "physics.solver",
         "food.normal.growth_rate",
-        "genome.mutation_noise",
+        "world.mutation_noise",
         "learning.critic_target",
     ]
     released_has = {
@@ -86,7 +86,7 @@ def test_arms_share_runs_with_other_items() -> None:
     ]
     with_bonus, without = (condition.config("text") for condition in entropy.CONDITIONS)
     assert digest(with_bonus) == corrected_digest
-    assert (with_bonus.learning.entropy_coef, without.learning.entropy_coef) == (0.001, 0.0)
+    assert [arm.species["agent"].learning.entropy_coef for arm in (with_bonus, without)] == [0.001, 0.0]
 
 
 def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
@@ -221,7 +221,7 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
     assert rows["food_step"]["change"] == pytest.approx(0.5)
     assert (rows["lifetime"]["change"], rows["lifetime"]["low"]) == pytest.approx((1.0, 1.0))
-    precisions = [condition.config("text").learning.acting_weights for condition in acting.CONDITIONS]
+    precisions = [condition.config("text").species["agent"].learning.acting_weights for condition in acting.CONDITIONS]
     assert precisions == [acting.FULL, acting.HALF]
 
 

@@ -218,8 +218,7 @@ def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) 
     changed = dataclasses.replace(worlds[0].config.food["normal"], growth_rate=0.3)
     config = dataclasses.replace(worlds[0].config, food={"normal": changed})
     assert verdicts([dataclasses.replace(world, config=config) for world in worlds], EVERY) == []
-    costly = dataclasses.replace(worlds[0].config.energy, basic_cost=0.002)
-    config = dataclasses.replace(worlds[0].config, energy=costly)
+    config = worlds[0].config.with_("energy.basic_cost", 0.002)
     dying = [dataclasses.replace(world, config=config, extinct_step=5120) for world in worlds]
     extinction = verdicts(dying, EVERY)
     assert [(v.claim, v.reported, v.verdict) for v in extinction] == [("extinction", "90 %", "holds")]
@@ -228,9 +227,9 @@ def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) 
 def test_the_lifespan_is_that_of_the_hazard() -> None:
     """Gompertz's law alone: exp(−α/β·(exp(β·t) − 1)) = 0.05 at t = ln(1 − β/α·ln 0.05)/β."""
     (rule,) = [c for c in CLAIMS if c.name == "lifespan"]
-    hazard = load_config("baseline").hazard
+    hazard = load_config("baseline").species["agent"].hazard
     expected = math.log(1 - hazard.beta_age / hazard.alpha_age * math.log(0.05)) / hazard.beta_age
-    world = SimpleNamespace(config=load_config("baseline"))
+    world = SimpleNamespace(own=load_config("baseline").species["agent"])
     assert rule.measure(world) == pytest.approx(expected, rel=1e-6)  # pyright: ignore[reportArgumentType]
     assert 1.0e6 < expected < 1.1e6
 

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from hedon.analysis.descent.genealogy import depth, genealogy, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
 from hedon.analysis.world.record import WorldRecord, shares_noise
-from hedon.config.gene import gene_of
 
 WALKS = 500
 """Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
@@ -54,7 +53,7 @@ def world_course(
         among those of several species.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.genome.founders or shares_noise(world):
+    if tree.gaps or not tree.size or world.config.world.founders or shares_noise(world):
         return None
     # A small excess, or rounding could cost the last time.
     times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)
@@ -64,7 +63,7 @@ def world_course(
     if len(living) < 2:
         return None
     generation = depth(tree)
-    laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}
+    laws = {name: mutation_law(world.config, world.gene(name)) for name in world.weight_names}
     null = {law: neutral_courses(tree, living, law, rng, walks) for law in dict.fromkeys(laws.values())}
     means = {}
     for name in world.weight_names:

@@ -20,7 +20,6 @@ from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.world.record import WorldRecord, generator, shares_noise
-from hedon.config.gene import gene_of
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
@@ -101,12 +100,12 @@ def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS
         parents; and where noise is fixed by the number of a birth among those of several species.
     """
     tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.genome.founders or world.config.birth.mating == "pairs":
+    if tree.gaps or not tree.size or world.config.world.founders or world.own.birth.mating == "pairs":
         return []
     if shares_noise(world):
         return []
     last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
-    laws = {name: mutation_law(world.config, gene_of(world.config, name)) for name in world.weight_names}
+    laws = {name: mutation_law(world.config, world.gene(name)) for name in world.weight_names}
     null = {law: neutral_means(tree, last, law, rng, walks) for law in dict.fromkeys(laws.values())}
     results = []
     for name, law in laws.items():

@@ -17,7 +17,6 @@ from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
-from hedon.config.gene import gene_of
 from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
 
 OUTCOMES = ("food", "lifespan", "children")
@@ -80,9 +79,7 @@ def births_of(world: WorldRecord) -> Births:
     agents = world.agents
     tree = genealogy(agents)
     lived, _ = durations(agents, world.last_step)
-    law = mutation_law(
-        world.config, gene_of(world.config, world.weight_names[0])
-    )  # all genes mutate at the same births
+    law = mutation_law(world.config, world.gene(world.weight_names[0]))  # all genes mutate at the same births
     mutated = is_mutated(tree, law, world.last_step)
     child = np.flatnonzero(mutated & (tree.birth <= KNOWN * world.last_step))
     genome = agents.select(world.weight_names).to_numpy().astype(np.float64)

@@ -63,7 +63,7 @@ def regime(conditions: Conditions) -> list[ResultTable]:
         labels(world) | asdict(found)
         for worlds in conditions.values()
         for world in worlds
-        for found in regimes(world.population, world.config)
+        for found in regimes(world.population, world.config, species=world.species)
     ]
     over_time = make_table("regime_time", "Regimes over time, by world", rows, shown=False)
     shares = over_time.rows

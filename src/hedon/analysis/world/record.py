@@ -10,8 +10,9 @@ import polars as pl
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config import Config, load_config
-from hedon.config.layout import of_species
-from hedon.config.species import ONLY
+from hedon.config.gene import gene_of
+from hedon.config.layout import Gene
+from hedon.config.species import ONLY, SpeciesConfig
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 
@@ -39,7 +40,7 @@ class WorldRecord:
         extinct_step: at which nobody was left [step]; None while somebody lives.
         apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
         prey: the species that it eats, its own among them if it does.
-        whole: the config of the run, with all species; None for that of a single one.
+        species: whose record it is; `agent` where a file names none.
     """
 
     condition: str
@@ -55,17 +56,16 @@ class WorldRecord:
     extinct_step: int | None
     apart_step: int | None = None
     prey: tuple[str, ...] = ()
-    whole: Config | None = None
+    species: str = ONLY
 
     @property
-    def run_config(self) -> Config:
-        """The config of the run, as it is in its folder."""
-        return self.config if self.whole is None else self.whole
+    def own(self) -> SpeciesConfig:
+        """The settings of its species."""
+        return self.config.species[self.species]
 
-    @property
-    def species(self) -> str:
-        """The name of the species whose record it is; `agent` where there is only one, without a name."""
-        return next(iter(self.config.species), ONLY)
+    def gene(self, column: str) -> Gene:
+        """The gene of a column."""
+        return gene_of(self.config, f"{self.species}.{column}")
 
     @property
     def weight_names(self) -> tuple[str, ...]:
@@ -157,7 +157,7 @@ def generator(world: WorldRecord) -> np.random.Generator:
 
 def shares_noise(world: WorldRecord) -> bool:
     """Whether its mutations depend on the births of other species, which its record does not have: frozen noise."""
-    return world.whole is not None and world.config.genome.mutation_noise == "frozen"
+    return len(world.config.species) > 1 and world.config.world.mutation_noise == "frozen"
 
 
 def _by(end: int, step: int | None) -> int | None:
@@ -169,7 +169,7 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
     own = kinds(run.columns, config)
     if not run.columns.several:
-        return _records(run, condition, config, agents, population, *own.values())
+        return _records(run, condition, config, next(iter(config.species)), agents, population, *own.values())
     grazed = [pl.col(f"eaten_{kind}").sum().over("world", "step").alias(all_eaten(kind)) for kind in run.food_kinds]
     agents_of, rows_of = by_species(agents, run.columns), by_species(population.with_columns(grazed), run.columns)
     worlds = []
@@ -177,8 +177,7 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
         absent = [gene for gene in run.weight_names if gene not in kind.genes]
         dropped = [*absent, *(f"{gene}_{what}" for gene in absent for what in ("mean", "sd"))]
         mine, rows = (table[name].drop(dropped, strict=False) for table in (agents_of, rows_of))
-        found = _records(run, f"{condition}: {name}", of_species(config, name), mine, rows, kind)
-        worlds += [replace(world, whole=config) for world in found]
+        worlds += _records(run, f"{condition}: {name}", config, name, mine, rows, kind)
     return [replace(world, apart_step=_apart(world, worlds)) for world in worlds]
 
 
@@ -189,7 +188,7 @@ def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
 
 
 def _records(
-    run: Run, condition: str, config: Config, agents: pl.DataFrame, population: pl.DataFrame, kind: Kind
+    run: Run, condition: str, config: Config, species: str, agents: pl.DataFrame, population: pl.DataFrame, kind: Kind
 ) -> list[WorldRecord]:
     worlds = []
     for index, seed in enumerate(run.manifest.seeds):
@@ -211,6 +210,7 @@ def _records(
                 last,
                 gone_step(run, index, mine, rows),
                 prey=kind.prey,
+                species=species,
             )
         )
     return worlds

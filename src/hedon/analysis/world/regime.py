@@ -40,7 +40,7 @@ from hedon.analysis.world.population import whole_window
 from hedon.analysis.world.record import all_eaten
 from hedon.analysis.world.species import require_one_species
 from hedon.config import Config
-from hedon.config.layout import diet
+from hedon.config.layout import choose_species, diet
 from hedon.demography.life import hazard
 from hedon.demography.schedule import factor_at
 
@@ -82,7 +82,9 @@ class Regime:
     crowding: float
 
 
-def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS) -> list[Regime]:
+def regimes(
+    population: pl.DataFrame, config: Config, intervals: int = INTERVALS, species: str | None = None
+) -> list[Regime]:
     """The regimes of a world over time.
 
     Args:
@@ -91,6 +93,7 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
         intervals: into how many the rows are divided, at most; they have equal lengths, but for the rows' own. A last
             one shorter than a window belongs to the one before, unless the world dies out in it: it is too short for
             rates.
+        species: whose rows they are; by default the first.
     """
     require_one_species(population)
     if population.is_empty():
@@ -99,15 +102,17 @@ def regimes(population: pl.DataFrame, config: Config, intervals: int = INTERVALS
     last = population[edges[-2] :]
     if len(edges) > 2 and last["steps"].sum() < whole_window(population) and last["alive"][-1]:
         del edges[-2]
-    return [interval_regime(population[a:b], config) for a, b in pairwise(edges)]
+    own = choose_species(species, config)
+    return [interval_regime(population[a:b], config, own) for a, b in pairwise(edges)]
 
 
-def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
+def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> Regime:
     """The regime over some rows of the table `population` of one species of a world that follow one another.
 
     Args:
         rows: of the table `population`, in order.
-        config: whose first species is the one of the rows.
+        config: of the world.
+        species: whose rows they are.
 
     Raises:
         ArgumentError: The rows are of several species.
@@ -117,7 +122,8 @@ def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
     steps, lived = int(rows["steps"].sum()), sums["agent_steps"]
     refused = sums["births_failed_full"] + sums["births_failed_space"]
     ends, lengths = rows["step"].to_numpy(), rows["steps"].to_numpy()
-    factors = diet(config, next(iter(config.agents.values())))
+    own = config.species[species]
+    factors = diet(config, own)
     energies = {kind: factors.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
     feeding = {kind: config.food[kind] for kind, energy in energies.items() if energy > 0}
     grown = sum(
@@ -125,14 +131,14 @@ def interval_regime(rows: pl.DataFrame, config: Config) -> Regime:
         for kind, food in feeding.items()
     )
     eaten = sum(energies[kind] * _eaten(rows, kind) for kind in feeding)
-    scale = float(factor_at(config.hazard.schedule, "scale", ends) @ lengths) / steps
-    starving = scale * float(hazard(config.hazard, 0.0, 0.0))
+    scale = float(factor_at(own.hazard.schedule, "scale", ends) @ lengths) / steps
+    starving = scale * float(hazard(own.hazard, 0.0, 0.0))
     damage = float(rows["energy_damage"].sum()) if "energy_damage" in rows.columns else 0.0
     hunger = _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"] + damage)
     refusal = _ratio(refused, refused + sums["births"])
     uptake = _ratio(eaten, grown)
     turnover = _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving)
-    crowding = lived / steps / config.population.capacity
+    crowding = lived / steps / own.population.capacity
     alive = int(rows["alive"][-1])
     name = _name(alive, hunger, refusal, uptake, turnover, crowding)
     return Regime(int(rows["step"][-1]), steps, name, hunger, refusal, uptake, turnover, crowding)

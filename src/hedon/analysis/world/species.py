@@ -65,7 +65,7 @@ def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
         raise ArgumentError("config: is needed where there are several species")
     found = {}
     for name, layout in layouts(config).items():
-        eaten, own = diet(config, config.agents[name]), set(layout.gene_names)
+        eaten, own = diet(config, config.species[name]), set(layout.gene_names)
         found[name] = Kind(
             foods=tuple(kind for kind in columns.food_kinds if kind in eaten),
             prey=tuple(each for each in columns.prey if each in eaten),

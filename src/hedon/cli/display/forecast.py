@@ -11,7 +11,7 @@ from hedon.config import Config
 from hedon.demography.forecast import Forecast
 
 
-def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
+def _forecast_tables(config: Config, species: str, found: Forecast) -> dict[str, ResultTable]:
     """The tables of a forecast, by name."""
     levels = [
         {
@@ -25,8 +25,9 @@ def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
     ]
     fed = "no limit" if math.isinf(found.fed) else f"{found.fed:,.0f} agents"
     food = "it eats no food" if math.isnan(found.fed) else f"{found.supply:g} grow per step: enough for {fed}"
+    cost = config.species[species].energy.basic_cost
     note = (
-        f"A fresh policy pays {found.need:.2e} per step ({config.energy.basic_cost:g} for living, the rest for a mean "
+        f"A fresh policy pays {found.need:.2e} per step ({cost:g} for living, the rest for a mean "
         f"force of {found.force:.1f}); {food}. R0 counts the children tried; "
         "refusals are births without a place. Room allows as many agents as leave R0 at 1."
     )
@@ -38,12 +39,13 @@ def _forecast_tables(config: Config, found: Forecast) -> dict[str, ResultTable]:
     }
 
 
-def forecast_group(config: Config, found: Forecast) -> Group:
+def forecast_group(config: Config, species: str, found: Forecast) -> Group:
     """What `hedon forecast` prints.
 
     Args:
         config: With the settings of the population.
+        species: Whose.
         found: What they predict.
     """
     warnings = [Text.assemble(("! ", "bold"), text) for text in found.warnings]
-    return Group(analysis_group(_forecast_tables(config, found)), *warnings)
+    return Group(analysis_group(_forecast_tables(config, species, found)), *warnings)

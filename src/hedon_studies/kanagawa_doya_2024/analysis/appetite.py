@@ -52,7 +52,7 @@ def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = 
     Returns:
         A bin for each pair of neighboring edges, of the dead that lived for `WINDOWS` windows of learning or longer.
     """
-    least = WINDOWS * world.config.learning.rollout_steps
+    least = WINDOWS * world.config.world.rollout_steps
     lives = dead_agents(world.agents).filter(pl.col("lifetime") >= least)
     weight, foods = lives[f"w_{kind}"].to_numpy().astype(np.float64), lives[f"eaten_{kind}"].to_numpy()
     steps = lives["lifetime"].to_numpy()

@@ -19,7 +19,6 @@ import polars as pl
 from numpy.typing import NDArray
 
 from hedon.analysis import WorldRecord, last_agents
-from hedon.config import gene_of
 from hedon.statistic import LEVEL
 from hedon_studies.kanagawa_doya_2024.analysis.noise import Mutations, NoiseTable, mutations, noise_table
 from hedon_studies.kanagawa_doya_2024.analysis.prediction import Prediction, prediction
@@ -93,7 +92,7 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
     table = noise_table(found)
     newest = last_agents(world.agents)
     generations = float(newest["generation"].to_numpy().mean())
-    gene = gene_of(world.config, weight)
+    gene = world.gene(weight)
     start, limit = gene.law.initial_mean, gene.mutation.limit
     lines = rng.normal(start, gene.law.initial_sd, _LINES)
     pool = _pool(found, table)

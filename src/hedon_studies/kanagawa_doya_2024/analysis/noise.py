@@ -1,6 +1,6 @@
 """The table of tabulated mutation noise, read off the records of a world.
 
-With `genome.mutation_noise = "frozen"` a birth's mutation of a gene depends on the seed, the gene and the number of the
+With `world.mutation_noise = "frozen"` a birth's mutation of a gene depends on the seed, the gene and the number of the
 birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
 the limit of weights. Weights are float32, so equal mutations agree to the rounding of a weight: 1e-6 at 10.
 
@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis import WorldRecord, birth_number, genealogy, is_mutated, mutation_law
-from hedon.config import gene_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -81,7 +80,7 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
     whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
     agents = world.agents.head(int(whole))
     tree = genealogy(agents)
-    law = mutation_law(world.config, gene_of(world.config, weight))
+    law = mutation_law(world.config, world.gene(weight))
     child = np.flatnonzero(is_mutated(tree, law, world.last_step))
     weights = agents[weight].to_numpy().astype(np.float64)
     clipped = np.abs(weights[child]) >= law.limit * (1.0 - _NEAR)
