@@ -15,8 +15,8 @@ from project_files import ROOT
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 SOURCE = ROOT / "src"
-LATER = {"_engine", "config"}
-FILES = [path for path in sorted(SOURCE.rglob("*.py")) if LATER.isdisjoint(path.relative_to(SOURCE).parts)]
+
+FILES = [path for path in sorted(SOURCE.rglob("*.py")) if "_engine" not in path.parts]
 ARRAY = re.compile(r"\b(NDArray|ndarray|ArrayLike)\b")
 OPTION = re.compile(r"\btyper\.(Option|Argument)\b")
 """An argument of a command, which its help documents."""

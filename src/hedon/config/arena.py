@@ -81,7 +81,13 @@ def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
 
 
 def is_inside(arena: ArenaConfig, x: float, y: float) -> bool:
-    """Whether a point [u] lies within the outer polygon (a point on a wall counts as inside)."""
+    """Whether a point [u] lies within the outer polygon (a point on a wall counts as inside).
+
+    Args:
+        arena: its settings.
+        x: place along its width [u].
+        y: place along its height [u].
+    """
     points = outline(arena)
     return all(
         (bx - ax) * (y - ay) - (by - ay) * (x - ax) <= 1e-6 * arena.width * arena.height

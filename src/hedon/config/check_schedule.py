@@ -10,7 +10,13 @@ from hedon.config.schedule import ScheduleConfig
 def schedule_problems(
     schedules: Mapping[str, ScheduleConfig], path: str, most: Mapping[str, float]
 ) -> Iterator[Problem]:
-    """Yields what is wrong with the schedules of a section; `most` has what may have one, with its largest factor."""
+    """Yields what is wrong with the schedules of a section.
+
+    Args:
+        schedules: by the name of the setting.
+        path: of the section.
+        most: the settings that may have a schedule, with the largest factor of each.
+    """
     for name, schedule in schedules.items():
         if name not in most:
             rule = "this cannot follow a schedule here: there are " + ", ".join(most)

@@ -85,6 +85,10 @@ def digest(config: Config) -> str:
 def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
     """The settings in which two configs differ.
 
+    Args:
+        a: the first config.
+        b: the second config.
+
     Returns:
         (path, value in a, value in b) in order, with None for a setting that is absent. If the kinds of food or
         their order differ, also the path "food" with their names.

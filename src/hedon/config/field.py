@@ -155,7 +155,12 @@ def sections(section: type) -> Mapping[str, Section]:
 
 
 def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
-    """Follows a path below a section: gives the setting that it leads to or into, a section, or None."""
+    """Follows a path below a section: gives the setting that it leads to or into, a section, or None.
+
+    Args:
+        root: the type of a section.
+        path: names below it, and names or indices of what repeats.
+    """
     here, parts = root, list(path)
     while parts:
         name = parts.pop(0)
@@ -172,7 +177,13 @@ def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
 
 
 def places(section: type, name: str, path: str = "") -> Iterator[str]:
-    """The paths of all settings of this name in a section and its inner sections, in order."""
+    """The paths of all settings of this name in a section and its inner sections, in order.
+
+    Args:
+        section: its type.
+        name: of the setting.
+        path: of the section, with a dot at its end; empty for the config itself.
+    """
     for inner_name, inner in sections(section).items():
         # A file has the sections of species at the top too.
         below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
@@ -182,7 +193,12 @@ def places(section: type, name: str, path: str = "") -> Iterator[str]:
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
-    """Every setting in a section and its inner sections by its path, in order, with its value."""
+    """Every setting in a section and its inner sections by its path, in order, with its value.
+
+    Args:
+        section: a config, or a part of one.
+        path: of the section, with a dot at its end; empty for the config itself.
+    """
     for name, setting in settings(type(section)).items():
         yield f"{path}{name}", setting, getattr(section, name)
     for name, inner in sections(type(section)).items():

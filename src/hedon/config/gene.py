@@ -5,7 +5,12 @@ from hedon.config.layout import Gene, layouts
 
 
 def gene_of(config: Config, column: str) -> Gene:
-    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species."""
+    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species.
+
+    Args:
+        config: with the species.
+        column: of a genome.
+    """
     species, _, name = column.rpartition(".")
     made = layouts(config)
     wanted = [made[species]] if species else made.values()
@@ -13,7 +18,12 @@ def gene_of(config: Config, column: str) -> Gene:
 
 
 def limit_of(config: Config, column: str) -> float:
-    """What a gene is clipped to, on both sides; without a species in the column, in all that have it."""
+    """What a gene is clipped to, on both sides; without a species in the column, in all that have it.
+
+    Args:
+        config: with the species.
+        column: of a genome.
+    """
     species, _, name = column.rpartition(".")
     made = layouts(config)
     wanted = [made[species]] if species else made.values()

@@ -131,7 +131,12 @@ def gene_columns(config: Config) -> tuple[str, ...]:
 
 
 def observation_columns(config: Config, name: str) -> tuple[str, ...]:
-    """Names of the entries of what a species observes, in order: model page, section 5."""
+    """Names of the entries of what a species observes, in order: model page, section 5.
+
+    Args:
+        config: with the species.
+        name: of the species.
+    """
     species, layout = config.species[name], layout_of(config, config.species[name])
     heading = ("heading",) if species.sensor.scaling == "raw" else ("heading_sine", "heading_cosine")
     return (
@@ -143,13 +148,23 @@ def observation_columns(config: Config, name: str) -> tuple[str, ...]:
 
 
 def inner_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
-    """Which of `INNER_STATES` a species has: energy, and what its food brings."""
+    """Which of `INNER_STATES` a species has: energy, and what its food brings.
+
+    Args:
+        config: with the foods.
+        species: one of the config's.
+    """
     kinds = [config.food[name] for name in diet(config, species) if name in config.food]
     return tuple(name for name in INNER_STATES if name == "energy" or any(getattr(kind, name) > 0 for kind in kinds))
 
 
 def observed_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
-    """Which of its inner states a species observes: energy, and the others unless the config says no."""
+    """Which of its inner states a species observes: energy, and the others unless the config says no.
+
+    Args:
+        config: with the foods.
+        species: one of the config's.
+    """
     every = inner_states(config, species)
     return tuple(name for name in every if name == "energy" or getattr(species, name).observed)
 
@@ -168,6 +183,11 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     `drive_reduction`. What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
     Where there are other inner states than energy, they stand before it, each as it was at the start of the step and as
     it is.
+
+    Args:
+        config: with the species.
+        name: of the species.
+        use: of the rule: "reward", "hazard" or "birth".
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
     inner = inner_states(config, config.species[name])[1:]
@@ -179,6 +199,10 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
 
 def choose_species(name: str | None, config: Config) -> str:
     """The species of this name, or by default the first.
+
+    Args:
+        name: as a user gives it, or None.
+        config: with the species.
 
     Raises:
         ArgumentError: There is no such species.
@@ -192,7 +216,12 @@ def choose_species(name: str | None, config: Config) -> str:
 
 
 def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
-    """What a species eats: factors by name."""
+    """What a species eats: factors by name.
+
+    Args:
+        config: with the foods.
+        species: one of the config's.
+    """
     return {
         each: factor
         for name, factor in species.diet.eats
@@ -211,18 +240,33 @@ def hunted(config: Config) -> str:
 
 
 def hunters(config: Config, name: str) -> tuple[str, ...]:
-    """The other species that eat a species, in order."""
+    """The other species that eat a species, in order.
+
+    Args:
+        config: with the species.
+        name: of the species that is eaten.
+    """
     return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
 
 
 def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for, in order; walls and obstacles are always among them."""
+    """The types that a list of names stands for, in order; walls and obstacles are always among them.
+
+    Args:
+        config: with the types.
+        names: of types, or `EVERYTHING`.
+    """
     every = types(config)
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
 def smelled(config: Config, names: Sequence[str]) -> tuple[str, ...]:
-    """The sources of smell that a list of names stands for, in order: species and kinds of food."""
+    """The sources of smell that a list of names stands for, in order: species and kinds of food.
+
+    Args:
+        config: with the types.
+        names: of sources, or `EVERYTHING`.
+    """
     return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)
 
 
@@ -277,7 +321,12 @@ def _most(family: str, role: str, name: str) -> float:
 
 
 def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
-    """The layouts of one species. It must see and smell all that it is rewarded for."""
+    """The layouts of one species. It must see and smell all that it is rewarded for.
+
+    Args:
+        config: with what the species shares with others.
+        species: one of the config's.
+    """
     made, genome, reward = _Layout(species), species.genome, species.reward
     eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
     inner = inner_states(config, species)

@@ -136,5 +136,10 @@ class BirthConfig:
 
 
 def distance_sd(arena: ArenaConfig, birth: BirthConfig) -> float:
-    """Standard deviation of a child's place around its parent, along x and along y [u]."""
+    """Standard deviation of a child's place around its parent, along x and along y [u].
+
+    Args:
+        arena: for its width [u].
+        birth: with the distance and its unit.
+    """
     return birth.distance_sd * (arena.width if birth.distance_unit == "arena_width" else 1.0)

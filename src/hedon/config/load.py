@@ -80,7 +80,11 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 
 
 def parse_config(text: str, origin: str) -> Config:
-    """The config of a complete TOML text, as `dump_toml` writes it; `origin` is its name in errors.
+    """The config of a complete TOML text, as `dump_toml` writes it.
+
+    Args:
+        text: TOML.
+        origin: what errors call it.
 
     Raises:
         ConfigError: Something in it is wrong or missing.
@@ -89,7 +93,16 @@ def parse_config(text: str, origin: str) -> Config:
 
 
 def with_setting(config: Config, path: str, value: Any) -> Config:
-    """The same config with another value of one setting, as `Config.with_`."""
+    """The same config with another value of one setting, as `Config.with_`.
+
+    Args:
+        config: that has the setting.
+        path: as in a file; without a species it stands for all of them.
+        value: the new one.
+
+    Raises:
+        ConfigError: There is no such setting, or the value is not allowed.
+    """
     tables, names = asdict(config), parse_path(path)
     if not names:
         raise ConfigError(config.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])

@@ -51,7 +51,12 @@ def engine_config(config: Config) -> dict[str, Any]:
 
 
 def engine_learning(rollout_steps: int, learning: LearningConfig) -> dict[str, Any]:
-    """The settings of learning as the engine takes them."""
+    """The settings of learning as the engine takes them.
+
+    Args:
+        rollout_steps: length of a window [step].
+        learning: of a species.
+    """
     policy, *others = asdict(learning).items()
     return dict([policy, ("rollout_steps", rollout_steps), *others])
 

@@ -61,7 +61,12 @@ class ConfigError(HedonError):
 
 
 def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
-    """The same problems, each once under the path of a file's default where all species have it."""
+    """The same problems, each once under the path of a file's default where all species have it.
+
+    Args:
+        problems: of a config, by path.
+        species: all names.
+    """
     found: list[Problem] = list(problems)
     short: dict[Problem, set[Problem]] = {}
     for problem in found:
@@ -94,7 +99,12 @@ def single(value: float) -> float:
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
-    """The valid name closest to the given one, or None if none is close."""
+    """The valid name closest to the given one, or None if none is close.
+
+    Args:
+        name: as a user gave it.
+        names: the valid ones.
+    """
     if len(name) > LINE:  # no valid name is so long, and a comparison would take long
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=0.6)

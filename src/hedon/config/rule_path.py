@@ -23,6 +23,10 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
     One with a digest stays as it is: a run that has it keeps its text, wherever the file is by now. So does what is no
     place of a rule, which is refused later.
+
+    Args:
+        place: a value of the setting `rule`.
+        folder: that the path starts from.
     """
     match = re.fullmatch(RULE_PATTERN, place) if isinstance(place, str) else None
     if match is None or match[3] or "\0" in place:
@@ -31,7 +35,12 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
 
 def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a config, or of a species, with the absolute paths of the files of rules."""
+    """The tables of a config, or of a species, with the absolute paths of the files of rules.
+
+    Args:
+        tables: of the config or the species.
+        folder: that paths start from.
+    """
     found = dict(tables)
     for use in RULE_USES:
         section = found.get(use)

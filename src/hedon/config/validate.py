@@ -90,6 +90,10 @@ def _without(tables: Mapping[str, Any], locations: Sequence[Sequence[str | int]]
 def validated(config: Config, origin: str = "config") -> Config:
     """The same config, after all checks; for a config that was made in Python.
 
+    Args:
+        config: put together in any way.
+        origin: what errors call it.
+
     Raises:
         ConfigError: As `from_tables`.
         ArgumentError: It is not a `Config`.
