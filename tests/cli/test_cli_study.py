@@ -103,6 +103,21 @@ def test_a_quick_trial_is_one_short_world_of_each_setting(tmp_path: Path) -> Non
     assert hedon.open_run(tmp_path / "runs" / "poor-corrected-s1").manifest.steps_done == (2048,)
 
 
+def test_parts_on_several_machines_make_all_worlds_and_the_script_calls_them(tmp_path: Path) -> None:
+    words = ("weights-baseline", "--seeds", "1-2", "--steps", "64")
+    for part in ("1/2", "2/2"):
+        answer = call(tmp_path, "run", *words, "--part", part)
+        assert answer.returncode == 0, answer.stderr
+    assert not (tmp_path / "studies").exists(), "a report is made of all parts"
+    assert "0 runs to make" in call(tmp_path, "run", *words).stdout
+    answer = call(tmp_path, "script", *words, "--slurm", "--jobs", "9", "--runs", "shared runs")
+    assert answer.returncode == 0, answer.stderr
+    script = (tmp_path / f"{NAME}.sh").read_text(encoding="utf-8")
+    assert "#SBATCH --array=1-2\n" in script, "no more tasks than worlds"
+    assert "study run weights-baseline --seeds 1-2 --steps 64 --fidelity corrected --threads 1" in script
+    assert f"--runs '{tmp_path}/shared runs' --part \"$SLURM_ARRAY_TASK_ID/2\"" in script
+
+
 def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
     answer = command("reproduce", "list", cwd=tmp_path)
     assert answer.returncode == 2
@@ -118,6 +133,9 @@ def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
         (("run", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("report", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("run", "weights-poor", "--seeds", "5-1"), "--seeds: '5-1' is not a range of seeds"),
+        (("script", "fear"), "say for which system: --slurm is the only one"),
+        (("script", "hazard", "--slurm"), "these items need no worlds"),
+        (("run", "fear", "--part", "3/2"), "--part = '3/2': must be I/N"),
         (("run", "weights-poor", "--quick", "--steps", "9"), "--quick: has seeds and steps of its own"),
     ],
 )

@@ -24,6 +24,9 @@ DEFAULT_STEPS = 204_800
 MAX_DIGITS = 40
 """Most digits of a seed, leading zeros included."""
 
+Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th part of the work, from the I-th on.")]
+Slurm = Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")]
+Hours = Annotated[int, typer.Option(help="Hours that a task may take.", min=1, max=10_000)]
 Ray = Annotated[
     str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Ray, Threads, parse_seeds
+from hedon.cli.run import Hours, Part, Ray, Slurm, Threads, parse_seeds
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS
 
@@ -102,6 +102,7 @@ def run(
     quick: Quick = False,
     threads: Threads = 0,
     ray: Ray = None,
+    part: Part = None,
     runs: Runs = Path("runs"),
     out: Out = None,
 ) -> None:
@@ -110,6 +111,7 @@ def run(
     Existing runs are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds
     that die out count and are never replaced. Ctrl-C ends all runs after their current windows, a second one
     immediately; the same command continues. At the scale of a paper this takes days: ask `hedon study plan` first.
+    With --part, it makes some of the worlds and no report: several machines share the folder of the runs.
 
     \b
     Examples:
@@ -118,7 +120,53 @@ def run(
       hedon study run fear --quick
     """
     studies, request = _request(names, seeds, steps, fidelity, quick=quick)
-    _make(studies, request, runs, out or _folder(studies), threads, ray, make_console())
+    _make(studies, request, runs, out or _folder(studies), threads, ray, part, make_console())
+
+
+@app.command()
+def script(
+    names: Names,
+    slurm: Slurm = False,
+    seeds: Seeds = None,
+    steps: Steps = None,
+    fidelity: FidelityName = "corrected",
+    tasks: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
+    threads: Annotated[int, typer.Option(help="Processors of each task.", min=1, max=1024)] = 1,
+    hours: Hours = 24,
+    runs: Runs = Path("runs"),
+) -> None:
+    """Write a script that makes the runs of studies on a cluster: NAME.sh. Afterwards, `hedon study report` reads them.
+
+    The folder of the runs must be one that all nodes share. A task that runs out of time saves where it is; submit the
+    script again to go on.
+
+    \b
+    Example:
+      hedon study script fear --slurm --runs /shared/runs --jobs 100
+    """
+    from hedon.jobs.slurm import slurm_script
+    from hedon.record.atomic import write_atomically
+    from hedon.study.request import needs
+
+    if not slurm:
+        raise RunsError("say for which system: --slurm is the only one")
+    studies, request = _request(names, seeds, steps, fidelity)
+    worlds = sum(len(need.steps) for need in needs(request))
+    if not worlds:
+        raise RunsError("these items need no worlds: `hedon study run` makes them")
+    asked = {
+        "--seeds": seeds,
+        "--steps": steps,
+        "--fidelity": fidelity,
+        "--threads": threads,
+        "--runs": runs.absolute(),
+    }
+    options = [str(word) for pair in asked.items() if pair[1] is not None for word in pair]
+    name = studies[0].name if len(studies) == 1 else "studies"
+    path = Path(f"{name}.sh")
+    text = slurm_script(name, ["study", "run", *names, *options], min(tasks, worlds), threads, hours).encode()
+    write_atomically(path, lambda content: content.write(text))
+    make_console().print(f"wrote {path}. Next: sbatch {path}", soft_wrap=True)
 
 
 @app.command()
@@ -174,15 +222,18 @@ def _make(
     out: Path,
     threads: int,
     ray: str | None,
+    part: str | None,
     console: "Console",
 ) -> None:
     from hedon.cli.display.job import JobDisplay
     from hedon.jobs.make import make_jobs
+    from hedon.jobs.part import parse_part
     from hedon.study.gather import find_runs
     from hedon.study.plan import plan_jobs
-    from hedon.study.request import needs
+    from hedon.study.request import needs, part_of
 
-    wanted = needs(request)
+    runs = runs if ray is None else runs.absolute()  # other nodes have another current folder
+    wanted = part_of(needs(request), parse_part(part))
     found, _ = find_runs(runs, wanted)
     jobs = plan_jobs(wanted, found, runs)
     demanded = sum(len(need.steps) for need in wanted)
@@ -195,10 +246,11 @@ def _make(
         verb = "continue" if job.begun else "begin"
         worlds = count(len(job.plan.seeds), "world")
         console.print(f"  {verb} {job.folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
-    _require_folders(out, *([runs] if jobs else []))
+    _require_folders(*([out] if part is None else []), *([runs] if jobs else []))
     with JobDisplay(console, jobs) as display:
         outcomes = make_jobs(jobs, display, threads, ray)
-    _report(studies, request, runs, out, console)
+    if part is None:
+        _report(studies, request, runs, out, console)
     _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
 
 

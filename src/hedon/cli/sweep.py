@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Checkpoint, Ray
+from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ Out = Annotated[
     typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
 ]
 Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
-Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th batch, from the I-th on.")]
 
 
 @app.command()
@@ -179,11 +178,11 @@ def report(
 @app.command()
 def script(
     file: File,
-    slurm: Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")] = False,
+    slurm: Slurm = False,
     out: Out = None,
     jobs: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
     workers: Annotated[int, typer.Option(help="Processes of each task, one processor each.", min=1)] = 1,
-    hours: Annotated[int, typer.Option(help="Hours that a task may take.", min=1, max=10_000)] = 24,
+    hours: Hours = 24,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
 ) -> None:
     """Write a sweep, and a script that runs it on a cluster: FOLDER.sh.

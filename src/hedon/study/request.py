@@ -1,8 +1,8 @@
 """What a reproduction should make: which items, at which scale, and hence which worlds."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 from hedon.config import PRESETS, Config, diff, digest, load_config
 from hedon.config.problem import format_value
@@ -66,6 +66,21 @@ def needs(request: Request) -> list[RunRequirement]:
         for seed in scale.seeds:
             need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
     return list(found.values())
+
+
+def part_of(requirements: Sequence[RunRequirement], part: tuple[int, int]) -> list[RunRequirement]:
+    """The share of some worlds that one of several machines makes.
+
+    Args:
+        requirements: of all worlds.
+        part: number, from 1 on, and count of parts into which worlds are dealt out in turn.
+    """
+    number, count = part
+    worlds = [(need, seed) for need in requirements for seed in need.steps][number - 1 :: count]
+    shares = [
+        replace(need, steps={seed: need.steps[seed] for of, seed in worlds if of is need}) for need in requirements
+    ]
+    return [share for share in shares if share.steps]
 
 
 def setting_name(config: Config) -> str:

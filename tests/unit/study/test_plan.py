@@ -17,7 +17,7 @@ from hedon.study.catalogue import StudyError, choose
 from hedon.study.gather import find_runs, gather
 from hedon.study.item import Condition, Item, Scale
 from hedon.study.plan import folder_name, plan_jobs
-from hedon.study.request import Request, needs, setting_name
+from hedon.study.request import Request, needs, part_of, setting_name
 
 BASE = Condition("base", overrides=SMALL)
 FAST = Condition("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))
@@ -40,6 +40,16 @@ def test_items_share_the_worlds_of_equal_settings_and_the_most_demanding_decides
     base, fast = needs(Request(items, "corrected"))
     assert base.steps == {1: 256, 2: 512, 3: 512}
     assert fast.steps == {1: 256, 2: 256}
+
+
+def test_parts_hold_every_world_once() -> None:
+    request = Request((an_item("a", BASE, seeds=(1, 2, 3)), an_item("b", FAST, seeds=(1, 5))), "corrected")
+    parts = [part_of(needs(request), (number, 3)) for number in (1, 2, 3)]
+    worlds = [sorted((need.digest, *world) for need in part for world in need.steps.items()) for part in parts]
+    assert sorted(map(len, worlds)) == [1, 2, 2]
+    whole = [(need.digest, *world) for need in needs(request) for world in need.steps.items()]
+    assert sorted(world for part in worlds for world in part) == sorted(whole)
+    assert part_of(needs(request), (7, 7)) == []
 
 
 def test_a_request_overrules_the_scale_of_all_but_pictures() -> None:
