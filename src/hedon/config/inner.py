@@ -34,7 +34,7 @@ class NutrientConfig:
     hazard_share: Annotated[
         float,
         Doc(
-            "the hazard's part by energy, with this store in place of energy, counts so much",
+            "weight of the hazard's part by energy, with this store in place of energy",
             "",
             CODE,
             Range(ge=0, le=1e4),

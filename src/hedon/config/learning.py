@@ -14,7 +14,7 @@ class LearningConfig:
         Literal["ppo", "random", "still", "external", "frozen"],
         Doc(
             "how agents choose actions: a network that learns; standard normals before the sigmoid, as a new network "
-            "gives; none, so that no motor runs; what the caller says (`hedon.env`); or a network that never learns",
+            "gives; none, so that no motor runs; what the caller sets (`hedon.env`); or a network that never learns",
             "",
             OURS,
         ),

@@ -38,7 +38,7 @@ class HazardConfig:
     rule: Annotated[
         str,
         Doc(
-            "a Python function that says the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
+            "a Python function that gives the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
             "file. Empty for the formula above (guide/rule.md)",
             "",
             OURS,
@@ -71,7 +71,7 @@ class BirthConfig:
     rule: Annotated[
         str,
         Doc(
-            "a Python function that says the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
+            "a Python function that gives the probability instead, as FILE.py:NAME; a run adds @ and the digest of the "
             "file. Empty for the formula above (guide/rule.md)",
             "",
             OURS,
