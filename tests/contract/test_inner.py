@@ -116,7 +116,7 @@ def test_what_is_observed(scaling, factors):
     assert "nutrient" in observation_columns(blind, "agent")
 
 
-def test_relief_counts_all_states():
+def test_drive_reduction_counts_all_states():
     """Homeostasis over energy, nutrient and toxin: the need before less the need after, with set points as genes."""
     settings = ("reward.drive_reduction_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
     points = {"set_point": 0.3, "set_point_nutrient": 0.5, "set_point_toxin": 0.1}

@@ -1,4 +1,4 @@
-"""How weights follow from genes, and relief: what is paid for a step, against closed forms."""
+"""How weights follow from genes, and drive reduction: what is paid for a step, against closed forms."""
 
 import math
 
@@ -65,7 +65,7 @@ def test_weights_that_change_with_age():
 
 
 @pytest.mark.parametrize(("set_point", "sign"), [(0.9, -1), (0.05, 1)])
-def test_relief_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, sign):
+def test_drive_reduction_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, sign):
     cost, capacity = 2.0, load_config("baseline").species["agent"].energy.capacity
     found = paid(
         *STILL,
@@ -78,7 +78,7 @@ def test_relief_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, s
     assert found == pytest.approx(sign * 3 * cost / capacity, rel=1e-5)
 
 
-def test_what_a_birth_takes_is_no_relief():
+def test_what_a_birth_takes_is_no_drive_reduction():
     capacity = load_config("baseline").species["agent"].energy.capacity
     simulation = make_simulation(
         *QUICK,

@@ -50,10 +50,8 @@ def reward(rules: Rules, turn: Turn, step: int) -> float:
 
 def coef(species: Species, name: str) -> float:
     settings = species.reward
-    if name == "action":
-        return settings.action_coef
-    if name == "drive_reduction":
-        return settings.relief_coef
+    if name in ("action", "drive_reduction"):
+        return getattr(settings, f"{name}_coef")
     for sense in ("see", "smell"):
         if name.startswith(f"{sense}_"):
             return getattr(settings, sense)[name.removeprefix(f"{sense}_")].coef
