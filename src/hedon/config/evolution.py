@@ -141,7 +141,7 @@ class SmellConfig:
 
 @dataclass(frozen=True, slots=True)
 class RewardConfig:
-    """Reward in a step: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·sensed + drive reduction.
+    """Reward: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·sensed + drive reduction.
 
     How a weight follows from its genes is the family. With x = (energy or age - threshold) / threshold_width and
     σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `fed` w·σ(x) and `hungry`
@@ -167,8 +167,8 @@ class RewardConfig:
     drive_reduction_coef: Annotated[
         float,
         Doc(
-            "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer to set "
-            "points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
+            "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer to "
+            "set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
             "",
             OURS,
             Range(ge=-1e3, le=1e3),
