@@ -167,8 +167,8 @@ class RewardConfig:
     drive_reduction_coef: Annotated[
         float,
         Doc(
-            "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer to "
-            "set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
+            "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer "
+            "to set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
             "",
             OURS,
             Range(ge=-1e3, le=1e3),
