@@ -3,13 +3,13 @@
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import SCHEMA, digest
+from hedon.config.dump import SCHEMA, diff, digest
 from hedon.config.field import leaves
 from hedon.config.layer import EVERY, Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
 from hedon.config.override import parse_override, parse_path
@@ -131,6 +131,23 @@ def is_modified(config: Config) -> bool:
     if config.preset not in PRESETS or config.fidelity not in FIDELITIES:
         return True
     return digest(config) != digest(load_config(config.preset, config.fidelity))
+
+
+def changed_settings(config: Config) -> list[tuple[str, Any, Any]]:
+    """The settings in which a config differs from its preset and fidelity; none where the preset is not known.
+
+    Where its species are other ones than the preset's only one, each is compared with that one.
+
+    Returns:
+        (path, value in the preset, value in the config) in order, as `diff` gives them.
+    """
+    if config.preset not in PRESETS:
+        return []
+    preset = load_config(config.preset, config.fidelity)
+    if len(preset.species) == 1 and not preset.species.keys() & config.species.keys():
+        (only,) = preset.species.values()
+        preset = replace(preset, species=dict.fromkeys(config.species, only))
+    return diff(preset, config)
 
 
 @cache

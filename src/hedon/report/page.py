@@ -10,9 +10,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
-from hedon.config import dump_toml, load_config
-from hedon.config.dump import diff
-from hedon.config.load import PRESETS
+from hedon.config import dump_toml
+from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
 from hedon.demography.forecast import setting_warnings
 from hedon.record.reader import Run
@@ -129,9 +128,6 @@ def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any
         worlds: All of one config.
     """
     config = worlds[0].config
-    changes: list[tuple[str, Any, Any]] = []
-    if config.preset in PRESETS:
-        changes = diff(load_config(config.preset, config.fidelity), config)
     return {
         "name": name,
         "worlds": len(worlds),
@@ -140,7 +136,7 @@ def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any
         "agents": f"{sum(world.agents.height for world in worlds):,}",
         "extinct": [(world.seed, f"{world.extinct_step:,}") for world in worlds if world.extinct_step is not None],
         "preset": f"{config.preset} ({config.fidelity})",
-        "changes": [(path, _text(old), _text(new)) for path, old, new in changes],
+        "changes": [(path, _text(old), _text(new)) for path, old, new in changed_settings(config)],
         "toml": dump_toml(config),
     }
 

@@ -4,7 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from hedon.config import PRESETS, Config, diff, digest, load_config
+from hedon.config import Config, digest
+from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
 from hedon.record.reader import Run
 from hedon.study.item import Item, Scale
@@ -85,8 +86,7 @@ def part_of(requirements: Sequence[RunRequirement], part: tuple[int, int]) -> li
 
 def setting_name(config: Config) -> str:
     """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
-    changes = diff(load_config(config.preset, config.fidelity), config) if config.preset in PRESETS else []
-    words = [f"{path} {format_value(new)}" for path, _, new in changes]
+    words = [f"{path} {format_value(new)}" for path, _, new in changed_settings(config)]
     return ", ".join([f"{config.preset} ({config.fidelity})", *words])
 
 
