@@ -12,7 +12,7 @@ from hedon.check.genealogy import check_agents
 from hedon.check.population import check_population
 from hedon.check.table import check_digests, check_numbering, read_parts
 from hedon.config.config import Config
-from hedon.config.dump import digest
+from hedon.config.dump import SCHEMA, digest
 from hedon.config.load import load_config, parse_config
 from hedon.config.problem import ConfigError
 from hedon.record.checkpoint import Checkpoint, load_checkpoint
@@ -138,13 +138,18 @@ def _check_config(folder: _Folder) -> None:
     if manifest is None:
         folder.config = config
         return
-    if manifest.config_digest is not None and digest(config) != manifest.config_digest:
+    if _is_other(config, manifest):
         folder.findings.append(Finding(CONFIG, "was changed: its digest differs from the one in the manifest"))
     elif not _same_columns(columns_of(config), manifest.columns):
         what = "the species, the kinds of food or the genes differ from those in the config"
         folder.findings.append(Finding(MANIFEST, what))
     else:
         folder.config = config
+
+
+def _is_other(config: Config, manifest: Manifest) -> bool:
+    """Whether a config is not that of a manifest. Digests of earlier versions were of other names of settings."""
+    return manifest.schema == SCHEMA and manifest.config_digest not in (None, digest(config))
 
 
 def _same_columns(columns: Columns, others: Columns) -> bool:
@@ -165,7 +170,7 @@ def _check_checkpoints(folder: _Folder) -> None:
             text = str(error).removeprefix(f"damaged checkpoint {path}: ")
             folder.findings.append(Finding(name, f"cannot be used: {text}"))
             continue
-        if manifest is not None and manifest.config_digest not in (None, digest(config)):
+        if manifest is not None and _is_other(config, manifest):
             folder.findings.append(Finding(name, "its config is not the one in the manifest"))
         elif manifest is not None and checkpoint.head.seeds != manifest.seeds:
             folder.findings.append(Finding(name, "its seeds are not those in the manifest"))

@@ -1,5 +1,6 @@
 """Commands about configs: list the presets, show a config, compare two, check one."""
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -110,6 +111,31 @@ def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None
     config = load_config(source, fidelity, overrides or ())
     typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
     typer.echo(f"digest {digest(config)}")
+
+
+@app.command()
+def migrate(
+    file: Annotated[Path, typer.Argument(help="A config file (.toml).", show_default=False)],
+    stdout: Annotated[bool, typer.Option("--stdout", help="Print it, and leave the file as it is.")] = False,
+) -> None:
+    """Rewrite a config file of an earlier version with the names of this one.
+
+    Comments stay, unless the file is complete. Folders of runs need it not: they are read as they are.
+
+    \b
+    Examples:
+      hedon config migrate my.toml
+      hedon config migrate my.toml --stdout
+    """
+    from hedon.config.load import migrated_file
+
+    text = migrated_file(file)
+    if stdout:
+        typer.echo(text, nl=False)
+        return
+    file.write_text(text, encoding="utf-8")
+    config = load_config(file)
+    typer.echo(f"wrote {file} (preset {config.preset}, fidelity {config.fidelity})")
 
 
 def _food_lines(config: Config) -> list[str]:

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import SCHEMA, diff, digest
+from hedon.config.dump import SCHEMA, default_path, diff, digest, dump_toml
 from hedon.config.field import leaves
 from hedon.config.layer import EVERY, Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
+from hedon.config.migrate import MOVED, is_earlier, migrate_text, migrated, renamed
 from hedon.config.override import parse_override, parse_path
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
@@ -64,7 +65,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     texts = _texts(overrides)
     path = _path_of(source)
     origin = str(path or source)
-    own = {"preset": source} if path is None else with_absolute_rules(read_toml(path), path.parent)
+    own = {"preset": source} if path is None else with_absolute_rules(_current(read_toml(path), origin), path.parent)
     over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
     tables = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
@@ -89,7 +90,18 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Something in it is wrong or missing.
     """
-    return _from_layers([], [parse_toml(text, origin) | {"complete": True}], origin)
+    return _from_layers([], [_current(parse_toml(text, origin) | {"complete": True}, origin)], origin)
+
+
+def _current(tables: Table, origin: str) -> Table:
+    """The tables of a file, where it is a complete one of an earlier version as this version would write it."""
+    if not is_earlier(tables):
+        return tables
+    old = migrated(tables)
+    problems = [*settle_food(old), *settle_species(old, [])]
+    if problems:
+        raise ConfigError(origin, problems)
+    return {"complete": True, "schema": SCHEMA} | asdict(from_tables(old, origin))
 
 
 def with_setting(config: Config, path: str, value: Any) -> Config:
@@ -106,6 +118,9 @@ def with_setting(config: Config, path: str, value: Any) -> Config:
     tables, names = asdict(config), parse_path(path)
     if not names:
         raise ConfigError(config.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
+    now = MOVED.get(default_path(".".join(names)))
+    if now is not None:
+        raise ConfigError(config.name, [Problem(path, f"is called {now} now")])
     roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
     kinds = list(tables["food"]) if names[:2] == ["food", EVERY] else []
     for root in [["food", kind] for kind in kinds] or roots:
@@ -124,6 +139,16 @@ def _put(tables: Table, names: list[str], value: Any) -> bool:
         tables = below
     tables[names[-1]] = value
     return True
+
+
+def migrated_file(path: Path) -> str:
+    """The text of a config file with the names of this version; a complete one is written anew.
+
+    Raises:
+        ConfigError: It is no config file, or a complete one with something wrong in it.
+    """
+    tables = read_toml(path)
+    return dump_toml(load_config(path)) if is_earlier(tables) else migrate_text(path.read_text(encoding="utf-8-sig"))
 
 
 def is_modified(config: Config) -> bool:
@@ -210,6 +235,9 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
 
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
+    problems = [problem for layer in above for problem in renamed(layer)]
+    if problems:
+        raise ConfigError(origin, problems)
     complete = above[0].get("complete") is True
     above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
     merged = stack([*below, *above])

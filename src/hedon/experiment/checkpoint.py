@@ -5,9 +5,10 @@ from importlib.metadata import version
 
 from hedon import _engine
 from hedon.config.config import Config
-from hedon.config.dump import diff
+from hedon.config.dump import SCHEMA, diff
 from hedon.config.load import parse_config
 from hedon.config.problem import format_value
+from hedon.config.toml import parse_toml
 from hedon.experiment.device import EMULATED, device_problem, is_device
 from hedon.experiment.recorder import Start
 from hedon.experiment.sample import PopulationSampler
@@ -40,7 +41,10 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
             f"{name} was made by hedon {head.hedon_version}, and this is {here}, which may compute different results: "
             f"install hedon {head.hedon_version} to continue"
         )
-    settings = diff(parse_config(head.config, f"config in {name}"), config)
+    config_name = f"config in {name}"
+    if parse_toml(head.config, config_name).get("schema") != SCHEMA:
+        raise RecordError(f"{name} was made by a version of hedon before 1.0, which alone can continue it")
+    settings = diff(parse_config(head.config, config_name), config)
     if settings:
         lines = [f"{path} was {_text(old)}, now {_text(new)}" for path, old, new in settings]
         more = f", and {len(lines) - SHOWN} more" if len(lines) > SHOWN else ""

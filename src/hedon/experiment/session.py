@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, replace
 
-from hedon.config.dump import digest
+from hedon.config.dump import SCHEMA, digest
 from hedon.config.load import is_modified
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.simulation import Simulation
@@ -31,6 +31,7 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
         name=config.name,
         modified=is_modified(config),
         config_digest=digest(config),
+        schema=SCHEMA,
         backend=simulation.engine.backend,
         threads=simulation.engine.threads,
         steps_done=tuple(world.step for world in simulation.worlds),

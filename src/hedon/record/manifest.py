@@ -104,6 +104,7 @@ class Manifest:
         name: name of the config: by default the preset, or the file without its ending.
         modified: whether any setting differs from the preset with the fidelity; None in old manifests.
         config_digest: digest of the resolved config.
+        schema: version of the schema that this digest is of; None before 1.0.
         backend: what computed: an instruction set, or a device.
         threads: threads that the engine used.
         hedon_version, python, platform, cpu_count, git_revision, git_modified, command_line: the
@@ -139,6 +140,7 @@ class Manifest:
     name: str | None = None
     modified: bool | None = None
     config_digest: str | None = None
+    schema: str | None = None
     backend: str | None = None
     threads: int | None = None
     hedon_version: str | None = None

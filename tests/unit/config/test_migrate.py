@@ -1,0 +1,121 @@
+"""Configs of 0.4: complete ones are read, short ones are refused with the new names and rewritten."""
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from command import hedon
+from project_files import ROOT
+
+from hedon.check.run import check_run
+from hedon.config import ConfigError, diff, digest, dump_toml, load_config
+from hedon.config.evolution import GeneConfig
+from hedon.config.field import find, settings
+from hedon.config.load import migrated_file, parse_config
+from hedon.config.migrate import MOVED
+from hedon.config.species import SpeciesConfig
+from hedon.config.world import WorldConfig
+from hedon.experiment.resume import resume
+from hedon.record.error import RecordError
+from hedon.record.reader import open_run
+from hedon.report.summary import summarize
+
+EARLIER = ROOT / "tests" / "data" / "earlier"
+"""Run folders that hedon 0.4 wrote, of one and of two species, and the file of the latter."""
+
+Write = Callable[[str], Path]
+
+
+def test_the_config_of_an_earlier_run_means_what_its_file_means(tmp_path: Path) -> None:
+    file = tmp_path / "two.toml"
+    file.write_text(migrated_file(EARLIER / "two.toml"))
+    made, read = load_config(file), load_config(EARLIER / "two" / "config.toml")
+    assert (diff(made, read), digest(made)) == ([], digest(read))
+    assert (read.world.food_radius, read.world.eaten_food, read.world.rollout_steps) == (5.0, "seen", 128)
+    assert read == parse_config((EARLIER / "two" / "config.toml").read_text(), "here")
+    one = load_config(EARLIER / "one" / "config.toml")
+    changed = {path for path, _, _ in diff(load_config("poison", "released"), one)}
+    assert {"world.rollout_steps", "birth.delay", "learning.policy"} <= changed
+    assert not any(path.startswith("world.") for path in changed - {"world.rollout_steps"}), "as released"
+
+
+def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
+    before = (EARLIER / "two.toml").read_text()
+    after = migrated_file(EARLIER / "two.toml")
+    kept = [line for line in before.splitlines() if line in after.splitlines()]
+    assert [line for line in after.splitlines() if line in kept] == kept
+    assert after.endswith('[world]\nfood_radius = 5.0\neaten_food = "seen"\nrollout_steps = 128\n')
+    assert "nutrient = 1.0 # a second store" in after
+    file = tmp_path / "again.toml"
+    file.write_text(after)
+    assert migrated_file(file) == after
+
+
+def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
+    short, whole = tmp_path / "short.toml", tmp_path / "whole.toml"
+    short.write_text("body.food_radius = 5.0  # large\nspecies.agent.birth.parents = 'old_slots'\n")
+    shutil.copy(EARLIER / "one" / "config.toml", whole)
+    shown = hedon("config", "migrate", str(short), "--stdout")
+    assert (shown.returncode, short.read_text()[:16]) == (0, "body.food_radius")
+    for file in (short, whole):
+        answer = hedon("config", "migrate", str(file))
+        assert (answer.returncode, answer.stderr) == (0, "")
+    assert "food_radius = 5.0  # large" in short.read_text() == shown.stdout
+    assert (load_config(short).world.food_radius, load_config(short).world.parents) == (5.0, "old_slots")
+    assert whole.read_text() == dump_toml(load_config(EARLIER / "one" / "config.toml"))
+
+
+@pytest.mark.parametrize("old", MOVED)
+def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: str) -> None:
+    new = MOVED[old]
+    assert find(SpeciesConfig, old.split(".")) is None
+    assert (
+        new.split(".")[1] in settings(WorldConfig) if new.startswith("world.") else find(SpeciesConfig, new.split("."))
+    )
+    said = f"{old}: is called {new} now"
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        load_config("baseline", overrides=[f"{old}=1"])
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        load_config(write(f"{old} = 1\n"))
+    with pytest.raises(ConfigError, match=rf"species\.prey\.{re.escape(old)}: is called .*{re.escape(new)} now"):
+        load_config(write(f"species.prey.{old} = 1\n"))
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        load_config("baseline").with_(old, 1)
+
+
+def test_founders_of_the_first_versions_are_read(tmp_path: Path) -> None:
+    text = (EARLIER / "one" / "config.toml").read_text()
+    genes = r"\n\n\[(genome\.action|genome\.neutral|food\.\w+\.gene)\]\ninitial_mean.*\ninitial_sd.*"
+    text, count = re.subn(genes, "", text)
+    assert count == 4
+    old = "neutral_count = 2\ninitial_mean_food = 0.5\ninitial_mean_action = 2.0\ninitial_sd = 0.1"
+    text = re.sub(r"\nacting_weights.*", "", text.replace("neutral_count = 2", old))
+    file = tmp_path / "config.toml"
+    file.write_text(text)
+    config = load_config(file)
+    own = config.species["agent"]
+    assert (own.genome.action, own.genome.neutral) == (GeneConfig(2.0, 0.1), GeneConfig(0.0, 0.1))
+    assert {food.gene for food in config.food.values()} == {GeneConfig(0.5, 0.1)}
+    assert own.learning.acting_weights == "float32", "what these versions did"
+
+
+def test_another_schema_is_refused(write: Write) -> None:
+    text = dump_toml(load_config("baseline"))
+    for other in ('"2"', "1"):
+        with pytest.raises(ConfigError, match=f'schema = {other}: must be "1"'):
+            load_config(write(text.replace('schema = "1"', f"schema = {other}")))
+
+
+@pytest.mark.parametrize("name", ["one", "two"])
+def test_an_earlier_run_is_read_and_checked_but_not_continued(tmp_path: Path, name: str) -> None:
+    folder = tmp_path / name
+    shutil.copytree(EARLIER / name, folder)
+    assert check_run(folder).findings == ()
+    run = open_run(folder)
+    assert run.manifest.config_digest == digest(load_config(folder / "config.toml"))
+    assert summarize(run)["steps"] == 256
+    if name == "one":
+        with pytest.raises(RecordError, match="was made by a version of hedon before 1.0"):
+            resume(folder, 512)
