@@ -20,6 +20,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.field import leaves, sections, settings
 from hedon.config.load import PRESETS
+from hedon.config.species import SpeciesConfig
 from hedon.error import EngineError
 from hedon.experiment.native import engine_input
 
@@ -57,7 +58,8 @@ REPORTED = [
 
 @pytest.mark.parametrize(("path", "value"), REPORTED)
 def test_what_no_world_can_be_is_refused_by_name(path, value):
-    config = changed(hedon.load_config("baseline"), path, value)
+    shared = path.startswith(("food.", "world."))
+    config = changed(hedon.load_config("baseline"), path if shared else f"species.agent.{path}", value)
     place = "food.normal" if path.startswith("food") else path
     with pytest.raises(hedon.ConfigError, match=place.replace(".", r"\.")):
         hedon.Simulation(config, [1])
@@ -67,6 +69,8 @@ def test_what_no_world_can_be_is_refused_by_name(path, value):
 def test_the_engine_itself_refuses_them_too(path, value):
     native = engine_input(hedon.load_config("baseline"))
     table: Any = native.settings
+    # The engine has the length of a window with the learning of each species.
+    path = path.replace("world.", "learning.")
     within = path.replace("food.normal", "food.0") if path.startswith("food") else f"species.0.{path}"
     *names, last = within.split(".")
     for name in names:
@@ -119,12 +123,12 @@ def test_the_engine_takes_whatever_the_settings_allow():
 def test_every_integer_has_a_limit_in_the_engine():
     native = engine_input(hedon.load_config("baseline")).settings
     assert make_engine().world_count == 1
-    for section in sections(Config):
-        for name, setting in settings(sections(Config)[section].type).items():
+    for section, kind in {**sections(Config), **sections(SpeciesConfig)}.items():
+        for name, setting in settings(kind.type).items():
             if setting.type is not int or section in ("arena", "food", "species"):
                 continue
-            if section == "genome":
-                continue  # counted in Python: the engine gets the genes themselves
+            if section in ("genome", "world"):
+                continue  # the engine gets genes themselves; of the world's, only the length of a window: see above
             if section in native:
                 table = {**native, section: {**native[section], name: -(2**31)}}
             else:
@@ -164,12 +168,13 @@ TRIAL = """
         config = random_config(seed)
         try:
             memory = sum(hedon.experiment.memory.memory_needed(config, 1, 1).values())
-            if memory > 2e9 or config.physics.substeps * config.population.initial_count > 5000:
+            species = config.species.values()
+            if memory > 2e9 or config.physics.substeps * sum(each.population.initial_count for each in species) > 5000:
                 continue
             simulation = hedon.Simulation(config, [1], 1)
             simulation.run(3)
             lived += 1
-            if config.world.rollout_steps * config.learning.update_epochs <= 1000:
+            if config.world.rollout_steps * max(each.learning.update_epochs for each in species) <= 1000:
                 simulation.run(30)
         except hedon.HedonError as error:
             assert str(error).strip()
