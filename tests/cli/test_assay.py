@@ -10,6 +10,7 @@ import pytest
 from command import hedon
 
 from hedon.check.run import check_run
+from hedon.record.reader import open_run
 
 COSTLY = (
     "world.rollout_steps=64",
@@ -107,6 +108,59 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
     assert found["share"]["value"] > 0.2
 
 
+def test_fitness_against_frequency_is_told_at_each_share(folder: Path) -> None:
+    command = ("frequency", "action=-8", "action=8", *SHORT, "--out", "frequency")
+    answer = call(folder, *command, "--shares", "0.5,0.2")
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "frequency" / "frequency.json").read_text(encoding="utf-8"))
+    assert f"{found['verdict']}:" in answer.stdout
+    rows = found["tables"]["frequency_share"]["rows"]
+    assert [row["share at the start"] for row in rows] == [0.2, 0.5]
+    assert all(row["share at the end"] > row["share at the start"] for row in rows)
+    runs = {run["folder"]: folder / "frequency" / run["folder"] for run in found["runs"]}
+    assert list(runs) == ["share-0.2", "share-0.5"]
+    assert not [finding for path in runs.values() for finding in check_run(path).findings]
+    before = {path: (path / "manifest.json").stat().st_mtime_ns for path in runs.values()}
+    answer = call(folder, *command, "--shares", "0.2,0.5,0.8")
+    assert answer.returncode == 0, answer.stderr
+    assert {path: (path / "manifest.json").stat().st_mtime_ns for path in runs.values()} == before
+    again = json.loads((folder / "frequency" / "frequency.json").read_text(encoding="utf-8"))
+    assert again["tables"]["frequency_share"]["rows"][:2] == rows, "a share more leaves the others as they are"
+
+
+def test_groups_of_one_of_several_species_compete(folder: Path) -> None:
+    options = ("--in", "predator", "--species", "predator", "--seeds", "1-3", "--steps", "512")
+    answer = call(folder, "frequency", "action=5", "action=-5", *options, "--shares", "0.2,0.5", "--out", "species")
+    assert answer.returncode == 0, answer.stderr
+    assert not check_run(folder / "species" / "share-0.2").findings
+    table = (folder / "species" / "share-0.2" / "founders.csv").read_text(encoding="utf-8")
+    assert table.splitlines()[0] == "group,share,predator.w_action"
+    answer = call(folder, "compete", "action=5", "action=-5", *options, "--out", "species-compete")
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads((folder / "species-compete" / "compete.json").read_text(encoding="utf-8"))
+    agents = open_run(folder / "species-compete" / "run").agents()
+    living = agents.filter((agents["species"] == "predator") & agents["death_step"].is_null())
+    for row in found["tables"]["contest_world"]["rows"]:
+        mine = living.filter(living["seed"] == row["seed"])["w_action"].to_list()
+        assert (row["action=5"], row["action=-5"]) == (mine.count(5.0), mine.count(-5.0))
+
+
+def test_groups_with_two_parents_are_told_apart_by_their_genes(folder: Path) -> None:
+    pairs = ("birth.mating=pairs", "birth.kappa=0.02", "birth.mating_range=200", "hazard.kappa=0.1")
+    options = [part for setting in pairs for part in ("--set", setting)]
+    answer = call(
+        folder, "compete", "action=1", "action=-1", *options, "--seeds", "1", "--steps", "1024", "--out", "pairs"
+    )
+    assert answer.returncode == 0, answer.stderr
+    agents = open_run(folder / "pairs" / "run").agents()
+    mates = agents["mate_id"].drop_nulls()
+    assert len(mates)
+    living = agents.filter(agents["death_step"].is_null())["w_action"].to_list()
+    found = json.loads((folder / "pairs" / "compete.json").read_text(encoding="utf-8"))
+    row = found["tables"]["contest_world"]["rows"][0]
+    assert (row["action=1"], row["action=-1"]) == (living.count(1.0), living.count(-1.0))
+
+
 def test_a_start_begins_at_its_point(folder: Path) -> None:
     lively = ("--set", "world.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
     options = (*lively, "--set", "hazard.kappa=0.1", "--steps", "1024", "--seeds", "1-3", "--out", "start")
@@ -137,6 +191,11 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
         (("landscape", "baseline", "--sd", "-1"), "Invalid value for '--sd'"),
         (("landscape", "baseline", "--ends", "nowhere"), "--ends nowhere: cannot be read"),
         (("landscape", "baseline", "--out", "whole"), "holds a run with other settings, founders or seeds"),
+        (("frequency", "food=1", "food=2", "--shares", "0.5"), "must be two or more different shares between 0 and 1"),
+        (("frequency", "food=1", "food=2", "--set", "population.initial_count=9"), "0.05 leaves a group without any"),
+        (("frequency", "food=1", "food=2", "--species", "prey"), "there is no such species"),
+        (("compete", "food=1", "action=2", "--set", "birth.mating=pairs"), "two points that name the same genes"),
+        (("compete", "predator.action=1", "action=2", "--in", "predator"), "has no gene of the species prey"),
         (("compete", "food=1", "fod=2"), "there is no gene 'fod'"),
         (("compete", "food=1", "nowhere"), "there is no such file or folder"),
         (("knockout", "whole/run", "acton"), "did you mean action?"),

@@ -6,17 +6,17 @@ generation, and drift adds noise of mean 0. The estimate is the maximum-likeliho
 the ratio of the two groups changes by s per generation.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
 from scipy.integrate import trapezoid
 
-from hedon.analysis.descent.genealogy import depth, founder, genealogy, living_at
+from hedon.analysis.descent.genealogy import Genealogy, depth, founder, genealogy, living_at
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.assay.landscape import AssayError
-from hedon.assay.resample import PERMUTATIONS, Floats, chance, world_draws, world_interval
+from hedon.assay.resample import PERMUTATIONS, Floats, Ints, chance, world_draws, world_interval
 from hedon.assay.surface import Estimate
 from hedon.config.config import Config
 from hedon.record.founder import Founders
@@ -26,6 +26,8 @@ from hedon.record.reader import Run
 TIMES = 101
 """Moments at which the living are counted."""
 _SEED = 20260802
+Point = Mapping[str, float]
+"""The genes of a group, by column."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +37,11 @@ class Lines:
     Attributes:
         seed: of the world.
         step: moments [step], up to the last at which somebody lived, (times,).
-        count: living of the first and the second group, (times, 2).
+        count: living of the first and the second group, (times, 2); an agent with genes of both counts in parts.
         generation: mean generation of the living, (times,).
         first: whether each founder belongs to the first group, (founders,).
-        descendants: living descendants of each founder at the last moment, (founders,).
+        descendants: living descendants of each founder at the last moment, (founders,); with two parents, each has half
+            of a child.
         ended: whether the world died out.
     """
 
@@ -99,61 +102,104 @@ class Contest:
         return step, ratio[0], world_interval(ratio[1:], worlds)
 
 
-def world_lines(agents: pl.DataFrame, seed: int, first: Sequence[bool], steps: int) -> Lines:
+def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> Lines:
     """Counts two groups in one world.
 
     Args:
-        agents: its rows of the table `agents`, by agent_id.
+        agents: its rows of the table `agents`, by agent_id; of one species.
         seed: of the world.
-        first: whether each founder, by agent_id, belongs to the first group.
+        member: how far each agent belongs to the first group, from 0 to 1, (agents,).
         steps: of the run [step].
     """
     tree = genealogy(agents)
-    generation, line = depth(tree), founder(tree)
+    generation = depth(tree)
     founders = np.flatnonzero(tree.parent < 0)
-    member = np.zeros(tree.size, bool)
-    member[founders] = np.asarray(first)[agents["agent_id"].to_numpy()[founders]]
-    of_first = member[line]
     counts, generations, moments = [], [], []
-    descendants = np.zeros(len(founders))
+    living = founders
     for step in np.linspace(0, steps, TIMES).round().astype(np.int64):
-        living = living_at(tree, int(step))
-        if not len(living):
+        now = living_at(tree, int(step))
+        if not len(now):
             break
-        mine = int(of_first[living].sum())
+        living = now
+        mine = float(member[living].sum())
         counts.append((mine, len(living) - mine))
         generations.append(generation[living].mean())
         moments.append(step)
-        descendants = np.bincount(line[living], minlength=tree.size)[founders].astype(np.float64)
     return Lines(
         seed=seed,
         step=np.array(moments),
         count=np.array(counts, np.float64),
         generation=np.array(generations),
         first=member[founders],
-        descendants=descendants,
+        descendants=_contributions(tree, agents, living)[founders],
         ended=len(moments) < TIMES,
     )
 
 
-def measure_contest(run: Run, groups: tuple[str, str]) -> Contest:
+def by_descent(agents: pl.DataFrame, first: Sequence[bool], first_id: int = 0) -> Floats:
+    """How far each agent belongs to the group of its founder: 0 or 1, (agents,).
+
+    Args:
+        agents: of one species of a world, by agent_id; each has one parent.
+        first: whether each founder of the species belongs to the first group, by agent_id.
+        first_id: the least agent_id of these founders.
+    """
+    line = founder(genealogy(agents))
+    return np.asarray(first, np.float64)[agents["agent_id"].to_numpy()[line] - first_id]
+
+
+def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]) -> Floats:
+    """How far each agent has the genes of the first of two points, from 0 to 1, (agents,).
+
+    Where a child has genes of two parents, groups are told apart by the genes in which they differ; nothing mutates.
+
+    Args:
+        agents: of a world.
+        a: the genes of the first group, by column.
+        b: those of the second, with the same columns.
+
+    Raises:
+        AssayError: The points do not differ, or not in the same genes.
+    """
+    genes = [gene for gene, value in a.items() if b.get(gene) != value]
+    if not genes or a.keys() != b.keys():
+        raise AssayError("two groups of a world with birth.mating = pairs must be points with other values of one gene")
+    values = agents.select(genes).to_numpy().astype(np.float32)
+    return np.mean(values == np.array([a[gene] for gene in genes], np.float32), axis=1, dtype=np.float64)
+
+
+def run_lines(run: Run, groups: tuple[str, str], species: str) -> tuple[list[Lines], Config]:
+    """The numbers of two groups in each world of a run, and the config of their species.
+
+    Args:
+        run: of an assay; its table of founders has the two groups.
+        groups: names of the first and the second.
+        species: whose groups they are.
+
+    Raises:
+        AssayError: The run has no table of founders, or its groups cannot be told apart.
+    """
+    worlds = [world for world in read_worlds([run]) if world.species == species]
+    founders = load_founders(run.path, worlds[0].config)
+    if founders is None:
+        raise AssayError(f"{run.path}: has no table of founders, so it is not a contest")
+    steps = max(run.manifest.steps_done)
+    return [_lines(world, founders, groups, steps) for world in worlds], worlds[0].config
+
+
+def measure_contest(run: Run, groups: tuple[str, str], species: str) -> Contest:
     """Reads a finished run of two groups.
 
     Args:
         run: of the assay; its table of founders has the two groups.
         groups: names of the first and the second.
+        species: whose groups they are.
 
     Raises:
-        AssayError: The run has no table of founders.
+        AssayError: The run has no table of founders, or its groups cannot be told apart.
     """
-    worlds = read_worlds([run])
-    config = worlds[0].config
-    founders = load_founders(run.path, config)
-    if founders is None:
-        raise AssayError(f"{run.path}: has no table of founders, so it is not a contest")
-    steps = max(run.manifest.steps_done)
-    lines = [world_lines(world.agents, world.seed, _members(founders, world, groups[0]), steps) for world in worlds]
-    return estimate(groups, lines, config, steps)
+    lines, config = run_lines(run, groups, species)
+    return estimate(groups, lines, config, max(run.manifest.steps_done))
 
 
 def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, steps: int) -> Contest:
@@ -190,8 +236,61 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, st
     )
 
 
-def _members(founders: Founders, world: WorldRecord, group: str) -> list[bool]:
-    return [name == group for name in founders.groups(world.seed, world.own.population.initial_count)]
+def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tuple[Point, Point]:
+    """The genes of two groups that have one row each.
+
+    Args:
+        founders: the table.
+        groups: names of the first and the second.
+        species: whose genes.
+
+    Raises:
+        AssayError: A group has several rows, or lacks a gene of the other.
+    """
+    own = founders.of_species(species)
+    rows = [[i for i, group in enumerate(own.group) if group == name] for name in groups]
+    if any(len(mine) != 1 for mine in rows) or np.isnan(own.values).any():
+        raise AssayError(
+            "with birth.mating = pairs a child has genes of two parents: give two points that name the same genes, "
+            "such as see_agent=0 and see_agent=5"
+        )
+    first, second = (dict(zip(own.genes, map(float, own.values[mine[0]]), strict=True)) for mine in rows)
+    return first, second
+
+
+def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], steps: int) -> Lines:
+    if world.own.birth.mating == "pairs":
+        points = points_of(founders, groups, world.species)
+        return world_lines(world.agents, world.seed, by_gene(world.agents, *points), steps)
+    before = 0  # founders have ids in the order of their species
+    for name, species in world.config.species.items():
+        if name == world.species:
+            break
+        before += species.population.initial_count
+    first = [name == groups[0] for name in founders.groups(world.seed, world.own.population.initial_count)]
+    return world_lines(world.agents, world.seed, by_descent(world.agents, first, before), steps)
+
+
+def _contributions(tree: Genealogy, agents: pl.DataFrame, living: Ints) -> Floats:
+    """How many of the living descend from each agent, itself included; with two parents each has half of a child."""
+    share = [0.0] * tree.size
+    for i in living.tolist():
+        share[i] = 1.0
+    pairs = list(zip(tree.parent.tolist(), _mates(agents).tolist(), strict=True))
+    for i in range(tree.size - 1, -1, -1):  # children come after their parents
+        known = [each for each in pairs[i] if each >= 0]
+        for each in known:
+            share[each] += share[i] / len(known)
+    return np.array(share)
+
+
+def _mates(agents: pl.DataFrame) -> Ints:
+    """Position of the second parent of each agent, −1 where there is none, (n,)."""
+    if "mate_id" not in agents.columns:
+        return np.full(agents.height, -1, np.int64)
+    ids, wanted = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()
+    at = np.minimum(np.searchsorted(ids, wanted), len(ids) - 1)
+    return np.where((wanted >= 0) & (ids[at] == wanted), at, -1).astype(np.int64)
 
 
 def _exchange(lines: Sequence[Lines], rng: np.random.Generator) -> float:

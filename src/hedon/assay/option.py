@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from hedon.assay.contest import points_of
 from hedon.assay.landscape import NEUTRAL, AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
@@ -94,43 +95,99 @@ def assay_plan(
     return RunPlan(plan.config, seeds, steps, folder, threads, 0, checkpoint, founders, rules=plan.rules)
 
 
-def competitors(sources: Sequence[str], shares: Sequence[float], config: Config) -> tuple[Founders, tuple[str, str]]:
+def competitors(
+    sources: Sequence[str], shares: Sequence[float], config: Config, species: str
+) -> tuple[Founders, tuple[str, str]]:
     """Founders from two sources, and the names of their groups.
 
     Args:
         sources: two, each as `hedon run --founders` takes it.
         shares: of both among the founders.
         config: of the world that they compete in.
+        species: which competes with itself; others are drawn from the config's laws.
 
     Raises:
+        AssayError: A source has no gene of the species, or its groups could not be told apart.
         FounderError: A source cannot be used.
         RecordError: A run cannot be read.
     """
-    tables = [read_source(source, config) for source in sources]
+    tables = [_source(source, config, species) for source in sources]
     first, second = (source_label(source) for source in sources)
     names = (first, second if second != first else f"{second} (2)")
-    return join(tables, names, shares), names
+    return _joined(tables, names, shares, config, species), names
 
 
-def knocked_out(source: str, gene: str, config: Config) -> tuple[Founders, tuple[str, str]]:
+def _joined(
+    tables: Sequence[Founders], names: tuple[str, str], shares: Sequence[float], config: Config, species: str
+) -> Founders:
+    founders = join(tables, names, shares)
+    if config.species[species].birth.mating == "pairs":
+        points_of(founders, names, species)  # raises where genes could not tell the groups apart
+    return founders
+
+
+def _source(source: str, config: Config, species: str) -> Founders:
+    """The genes of one species; where there are several, each names it."""
+    if len(config.species) == 1:
+        return read_source(source, config)
+    if "=" in source and not source.endswith(".csv"):
+        parts = (part.strip() for part in source.split(","))
+        source = ",".join(part if "." in part.partition("=")[0] else f"{species}.{part}" for part in parts)
+    found = read_source(source, config)
+    mine = found.only_for(species)
+    if not mine.genes:
+        raise AssayError(f"{brief(source)}: has no gene of the species {species}, but {', '.join(found.genes)}")
+    mine.require(config, source)
+    return mine
+
+
+def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
+    """The shares of a group among the founders, in ascending order, from a text such as "0.05,0.5,0.95".
+
+    Args:
+        text: shares with commas between them.
+        config: of the world.
+        species: whose founders.
+
+    Raises:
+        AssayError: There are not two different shares, or one leaves a group without founders.
+    """
+    count = config.species[species].population.initial_count
+    try:
+        shares = sorted({float(part) for part in text.split(",")})
+    except ValueError:
+        shares = []
+    if len(shares) < 2 or not all(0 < share < 1 for share in shares):
+        raise AssayError(f"--shares {brief(text)}: must be two or more different shares between 0 and 1, as in 0.1,0.9")
+    for share in shares:
+        if round(min(share, 1.0 - share) * count, 6) < 1:
+            raise AssayError(
+                f"--shares {brief(text)}: with {count} founders {share:g} leaves a group without any: take shares from "
+                f"{1 / count:g} to {1 - 1 / count:g}, or raise population.initial_count"
+            )
+    return tuple(shares)
+
+
+def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[Founders, tuple[str, str]]:
     """The living of a run with one gene set to 0, against themselves, and the names of both groups.
 
     Args:
         source: the living of a run, RUN or RUN@STEP.
         gene: its column, its kind of food, or `action`.
         config: of the world that they compete in.
+        species: whose gene it is.
 
     Raises:
-        AssayError: The run has no such gene.
+        AssayError: The run has no such gene, or the groups could not be told apart.
         FounderError: Nobody lived then.
         RecordError: It is not a run, or cannot be read.
     """
-    column = column_of(config, gene)
-    wild = read_source(source, config)
+    column = column_of(config, gene if len(config.species) == 1 else f"{species}.{gene}")
+    wild = _source(source, config, species)
     if column is None or column not in wild.genes:
         raise AssayError(f"knockout {brief(source)}: {unknown_gene(config, gene)}")
-    names = (f"{column.removeprefix('w_')} = 0", source_label(source))
-    return join([wild.changed(column, 0.0), wild], names, [1.0, 1.0]), names
+    names = (f"{column.rpartition('.')[2].removeprefix('w_')} = 0", source_label(source))
+    return _joined([wild.changed(column, 0.0), wild], names, (1.0, 1.0), config, species), names
 
 
 def condition_of(given: str | None, sources: Sequence[str]) -> str:

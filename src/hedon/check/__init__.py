@@ -1,1 +1,5 @@
 """Checks whether a run's folder is complete and consistent, and what can still be used. Needs no engine."""
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -32,6 +32,9 @@ Fidelity = Annotated[str | None, typer.Option(help="corrected (default), release
 Overrides = Annotated[
     list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
 ]
+Species = Annotated[
+    str | None, typer.Option(help="Whose genes, where there are several species; by default the first.")
+]
 Out = Annotated[Path | None, typer.Option(help="Folder of the assay; by default one under assays/ for these settings.")]
 STEPS = 204_800
 
@@ -48,9 +51,7 @@ def landscape(
     genes: Annotated[
         str | None, typer.Option(metavar="GENE,GENE", help="The two genes of the surface; by default food,action.")
     ] = None,
-    species: Annotated[
-        str | None, typer.Option(help="Whose genes, where there are several species; by default the first.")
-    ] = None,
+    species: Species = None,
     ends: Annotated[
         list[Path] | None,
         typer.Option(metavar="RUN|FILE", help="Show where these runs, summary.json or study.json ended."),

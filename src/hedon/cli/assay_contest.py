@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hedon.cli.assay import STEPS, Fidelity, Out, Overrides, Seeds, Steps, finish, make
+from hedon.cli.assay import STEPS, Fidelity, Out, Overrides, Seeds, Species, Steps, finish, make
 from hedon.cli.console import make_console
 from hedon.cli.run import Checkpoint, Threads, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hedon.config.config import Config
     from hedon.record.founder import Founders
 
-_SOURCES = "a table (.csv), RUN@STEP, RUN for its end, or a point such as food=5,action=0"
+SOURCES = "a table (.csv), RUN@STEP, RUN for its end, or a point such as food=5,action=0"
 Condition = Annotated[
     str | None,
     typer.Option("--in", metavar="PRESET|FILE", help="The world; by default that of the first run named, or baseline."),
@@ -22,9 +22,10 @@ Condition = Annotated[
 
 
 def compete(
-    a: Annotated[str, typer.Argument(metavar="A", help=f"Genomes: {_SOURCES}.")],
+    a: Annotated[str, typer.Argument(metavar="A", help=f"Genomes: {SOURCES}.")],
     b: Annotated[str, typer.Argument(metavar="B", help="Genomes likewise.")],
     condition: Condition = None,
+    species: Species = None,
     seeds: Seeds = "1-10",
     steps: Steps = STEPS,
     fidelity: Fidelity = None,
@@ -44,19 +45,21 @@ def compete(
       hedon assay compete food=5,action=5 food=0.5,action=0
       hedon assay compete runs/a@1000000 runs/b@1000000 --in baseline --seeds 1-20
       hedon assay compete food=1 food=0 --set population.initial_count=100
+      hedon assay compete see_predator=-5 see_predator=0 --in predator --species prey
     """
     from hedon.assay.option import competitors, condition_of
 
-    config = _config(condition_of(condition, (a, b)), fidelity, overrides)
-    founders, groups = competitors((a, b), (0.5, 0.5), config)
-    _contest("compete", config, founders, groups, seeds, steps, out, threads, checkpoint)
+    config, own = without_mutation_of(condition_of(condition, (a, b)), fidelity, overrides, species)
+    founders, groups = competitors((a, b), (0.5, 0.5), config, own)
+    _contest("compete", config, own, founders, groups, seeds, steps, out, threads, checkpoint)
 
 
 def invade(
-    resident: Annotated[str, typer.Argument(metavar="RESIDENT", help=f"Genomes: {_SOURCES}.")],
+    resident: Annotated[str, typer.Argument(metavar="RESIDENT", help=f"Genomes: {SOURCES}.")],
     mutant: Annotated[str, typer.Argument(metavar="MUTANT", help="Genomes likewise.")],
     share: Annotated[float, typer.Option(help="Of the mutant among the founders.", min=0.001, max=0.999)] = 0.1,
     condition: Condition = None,
+    species: Species = None,
     seeds: Seeds = "1-10",
     steps: Steps = STEPS,
     fidelity: Fidelity = None,
@@ -75,15 +78,16 @@ def invade(
     """
     from hedon.assay.option import competitors, condition_of
 
-    config = _config(condition_of(condition, (resident, mutant)), fidelity, overrides)
-    founders, groups = competitors((mutant, resident), (share, 1.0 - share), config)
-    _contest("invade", config, founders, groups, seeds, steps, out, threads, checkpoint)
+    config, own = without_mutation_of(condition_of(condition, (resident, mutant)), fidelity, overrides, species)
+    founders, groups = competitors((mutant, resident), (share, 1.0 - share), config, own)
+    _contest("invade", config, own, founders, groups, seeds, steps, out, threads, checkpoint)
 
 
 def knockout(
     run: Annotated[str, typer.Argument(metavar="RUN[@STEP]", help="A run; its living, at the end or at a step.")],
     gene: Annotated[str, typer.Argument(metavar="GENE", help="The gene to set to 0, such as food or action.")],
     condition: Condition = None,
+    species: Species = None,
     seeds: Seeds = "1-10",
     steps: Steps = STEPS,
     fidelity: Fidelity = None,
@@ -102,9 +106,9 @@ def knockout(
     """
     from hedon.assay.option import condition_of, knocked_out
 
-    config = _config(condition_of(condition, (run,)), fidelity, overrides)
-    founders, groups = knocked_out(run, gene, config)
-    _contest("knockout", config, founders, groups, seeds, steps, out, threads, checkpoint)
+    config, own = without_mutation_of(condition_of(condition, (run,)), fidelity, overrides, species)
+    founders, groups = knocked_out(run, gene, config, own)
+    _contest("knockout", config, own, founders, groups, seeds, steps, out, threads, checkpoint)
 
 
 def add_to(app: typer.Typer) -> None:
@@ -113,16 +117,33 @@ def add_to(app: typer.Typer) -> None:
         app.command()(command)
 
 
-def _config(source: str, fidelity: str | None, overrides: list[str] | None) -> "Config":
+def without_mutation_of(
+    source: str, fidelity: str | None, overrides: list[str] | None, species: str | None
+) -> "tuple[Config, str]":
+    """The condition without mutation, and the species that competes with itself.
+
+    Args:
+        source: A preset's name or a config file.
+        fidelity: As for a run.
+        overrides: As for `--set`.
+        species: As the user gave it.
+
+    Raises:
+        ConfigError: The condition cannot be used.
+        ArgumentError: There is no such species.
+    """
     from hedon.assay.landscape import without_mutation
+    from hedon.config.layout import choose_species
     from hedon.config.load import load_config
 
-    return without_mutation(load_config(source, fidelity, overrides or ()))
+    config = without_mutation(load_config(source, fidelity, overrides or ()))
+    return config, choose_species(species, config)
 
 
 def _contest(
     kind: str,
     config: "Config",
+    species: str,
     founders: "Founders",
     groups: tuple[str, str],
     seeds: str,
@@ -141,7 +162,7 @@ def _contest(
     runs = make([plan], console)
     if runs is None:
         return
-    contest = measure_contest(runs[0], groups)
+    contest = measure_contest(runs[0], groups, species)
     tables = contest_tables(contest)
     intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(runs)}"
     figure = draw_contest(contest)

@@ -99,12 +99,12 @@ def migrate_text(text: str) -> str:
 
     document = tomlkit.parse(text)
     species = document.get("species")
-    owners = [document, *(species.values() if isinstance(species, Mapping) else ())]
+    owners: list[Any] = [document, *(species.values() if isinstance(species, Mapping) else ())]
     for old, new in MOVED.items():
         (section, name), (target, now) = old.split("."), new.split(".")
         for owner in owners:
-            table: Any = owner.get(section) if isinstance(owner, Mapping) else None
-            if not isinstance(table, Mapping) or name not in table:
+            table = owner.get(section) if isinstance(owner, Mapping) else None
+            if not hasattr(table, "items") or name not in table:
                 continue
             root: Any = document if target == "world" else owner
             value = table[name]

@@ -117,6 +117,15 @@ class Founders:
         genes = tuple(self.genes[i].removeprefix(f"{name}.") for i in mine)
         return replace(self, genes=genes, values=self.values[:, mine])
 
+    def only_for(self, name: str) -> "Founders":
+        """The genes for one species, each of which names it, as in `prey.w_action`.
+
+        Args:
+            name: of the species.
+        """
+        mine = self.of_species(name)
+        return replace(mine, genes=tuple(f"{name}.{gene}" for gene in mine.genes))
+
     def changed(self, gene: str, value: float) -> "Founders":
         """The same table with one gene, which it must have, at one value.
 

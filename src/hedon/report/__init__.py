@@ -1,1 +1,5 @@
-"""Pages, tables and files about runs: of a report, and of a replication of the paper."""
+"""Pages, tables and files about runs: of a report, and of studies."""
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,89 @@
+"""The tables, the JSON summary and the figure of fitness against frequency."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hedon.analysis.result import ResultTable, make_table
+from hedon.assay.frequency import VERDICTS, Frequency
+from hedon.assay.report import estimate_row
+from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
+
+
+def frequency_tables(found: Frequency) -> list[ResultTable]:
+    """Slope and crossing, and the selection coefficient at each share."""
+    first, second = found.groups
+    rows = [
+        estimate_row({"quantity": "slope of the selection coefficient over the share"}, found.slope),
+        estimate_row({"quantity": f"share of {first} at which neither grows"}, found.crossing),
+    ]
+    note = (
+        f"{found.verdict}: {VERDICTS[found.verdict]}. A slope below 0 favors the rarer group. Without a value of the "
+        "crossing, the line does not cross 0 between the shares that worlds began with; its bounds are where the "
+        "line's interval has 0. Intervals: bootstrap over seeds."
+    )
+    shares = [
+        {
+            "share at the start": each.start,
+            "mean share": each.share,
+            "s": each.selection.value,
+            "low": each.selection.low,
+            "high": each.selection.high,
+            "share at the end": each.end.value,
+            "worlds": each.worlds,
+            "died out": each.extinct,
+            f"{first} alone": each.fixed,
+            f"{second} alone": each.lost,
+            "generations": each.generations,
+        }
+        for each in found.shares
+    ]
+    result = f"{first} against {second}, by the share of {first}"
+    title = f"Selection coefficient of {first} per generation, by its share among the founders"
+    return [
+        make_table("frequency", result, [_finite(row) for row in rows], note),
+        make_table("frequency_share", title, [_finite(row) for row in shares]),
+    ]
+
+
+def frequency_json(found: Frequency) -> dict[str, Any]:
+    """What the summary holds besides the tables."""
+    return {
+        "groups": list(found.groups),
+        "verdict": found.verdict,
+        "slope": vars(found.slope),
+        "crossing": vars(found.crossing),
+    }
+
+
+def draw_frequency(found: Frequency) -> Figure:
+    """The selection coefficient at each share with its interval, the line through all of them, and where it is 0."""
+    share, line, low, high = found.line
+    with styled():
+        figure = new_figure(5.6, 3.6)
+        axes = figure.subplots()
+        axes.axhline(0.0, color=MUTED, linewidth=0.8)
+        axes.fill_between(share, low, high, color=PALE, alpha=0.6, where=np.isfinite(low) & np.isfinite(high))
+        axes.plot(share, line, color=INK, linewidth=1.4)
+        for each in found.shares:
+            bounds = (each.selection.low, each.selection.high)
+            axes.plot((each.share, each.share), bounds, color=BLUE, linewidth=1.4)
+            axes.plot(each.share, each.selection.value, "o", color=BLUE, markersize=5)
+        if np.isfinite(found.crossing.value):
+            axes.axvline(found.crossing.value, color=MUTED, linewidth=0.8, linestyle="--")
+        axes.set_xlim(0, 1)
+        axes.set_xlabel(f"mean share of {found.groups[0]}")
+        axes.set_ylabel("selection coefficient per generation")
+        slope, crossing = found.slope, found.crossing
+        crosses = f"crosses 0 at {crossing.value:.2g}" if np.isfinite(crossing.value) else "does not cross 0"
+        head(
+            axes,
+            f"Fitness of {found.groups[0]} against its frequency",
+            f"slope {slope.value:.3g}, {slope.low:.3g} to {slope.high:.3g}; {crosses}: {found.verdict}",
+        )
+    return figure
+
+
+def _finite(row: dict[str, Any]) -> dict[str, Any]:
+    return {name: None if isinstance(value, float) and not np.isfinite(value) else value for name, value in row.items()}

@@ -1,0 +1,1 @@
+from .run import check_run as check_run

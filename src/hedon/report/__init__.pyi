@@ -1,0 +1,2 @@
+from .analysis import analyze as analyze
+from .run import write_report as write_report
