@@ -165,7 +165,7 @@ def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]
     if not genes or a.keys() != b.keys():
         raise AssayError("two groups of a world with birth.mating = pairs must be points with other values of one gene")
     values = agents.select(genes).to_numpy().astype(np.float32)
-    return np.mean(values == np.array([a[gene] for gene in genes], np.float32), axis=1, dtype=np.float64)
+    return np.asarray(np.mean(values == np.array([a[gene] for gene in genes], np.float32), axis=1, dtype=np.float64))
 
 
 def run_lines(run: Run, groups: tuple[str, str], species: str) -> tuple[list[Lines], Config]:
