@@ -11,6 +11,8 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.config import Config, digest, load_config
 from hedon.config.layout import choose_species
 from hedon.figure.named import NamedFigure
+from hedon.record.founder import Founders
+from hedon.record.founder_source import read_founders
 from hedon.record.snapshot import Snapshot
 
 
@@ -24,6 +26,8 @@ class Condition:
         overrides: what it changes, as for `--set`.
         fidelity: its own; None for the one that is asked for.
         species: whose records are meant, where the setting has several; by default the first.
+        founders: genomes to begin with, as for `hedon run --founders`: "food=5:0.1,food=0:0.9"; by default those of the
+            setting's laws.
     """
 
     label: str
@@ -31,10 +35,16 @@ class Condition:
     overrides: tuple[str, ...] = ()
     fidelity: str | None = None
     species: str = ""
+    founders: str = ""
 
     def config(self, fidelity: str) -> Config:
         """The settings, where some fidelity is asked for."""
-        return _config(self.preset, self.fidelity or fidelity, self.overrides)
+        config, table = _begin(self, self.fidelity or fidelity)
+        return config if table is None else config.with_("world.founders", table.digest)
+
+    def table(self, fidelity: str) -> Founders | None:
+        """The genomes to begin with, where some fidelity is asked for; None where they are drawn from the laws."""
+        return _begin(self, self.fidelity or fidelity)[1]
 
     def is_of(self, world: WorldRecord) -> bool:
         """Whether a world has these settings and nothing else is changed, and is of the species that is meant."""
@@ -43,8 +53,9 @@ class Condition:
 
 
 @cache
-def _config(preset: str, fidelity: str, overrides: tuple[str, ...]) -> Config:
-    return load_config(preset, fidelity, overrides)
+def _begin(condition: Condition, fidelity: str) -> tuple[Config, Founders | None]:
+    config = load_config(condition.preset, fidelity, condition.overrides)
+    return config, read_founders(condition.founders, config) if condition.founders else None
 
 
 @cache

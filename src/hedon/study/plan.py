@@ -42,11 +42,13 @@ def plan_jobs(wanted: Iterable[RunRequirement], runs: Sequence[Run], folder: Pat
         for run in mine:
             if (steps := too_short.get(run.path)) is not None:
                 left = sum(max(0, steps - int(min(done, steps))) for done in reach[run.path].values())
-                jobs.append(RunJob(RunPlan(need.config, run.manifest.seeds, steps, run.path), left))
+                again = RunPlan(need.config, run.manifest.seeds, steps, run.path, founders=need.founders)
+                jobs.append(RunJob(again, left))
         for steps, seeds in missing.items():
             name = f"{folder_name(need.config)}-{seed_span(seeds)}"
             free = free_folder(folder / name, [job.folder for job in jobs])
-            jobs.append(RunJob(RunPlan(need.config, seeds, steps, free, frames=need.frames), steps * len(seeds)))
+            plan = RunPlan(need.config, seeds, steps, free, frames=need.frames, founders=need.founders)
+            jobs.append(RunJob(plan, steps * len(seeds)))
     return sorted(jobs, key=lambda job: -job.world_steps)
 
 

@@ -1,12 +1,13 @@
 """What a reproduction should make: which items, at which scale, and hence which worlds."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from hedon.config import Config, digest
 from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
+from hedon.record.founder import Founders
 from hedon.record.reader import Run
 from hedon.study.item import Item, Scale
 
@@ -43,12 +44,14 @@ class RunRequirement:
         digest: of the config: settings of equal digest share their worlds.
         steps: of each seed [step].
         frames: steps between two records of all positions; 0 where no item needs them.
+        founders: genomes that its worlds begin with; None where they are drawn from the setting's laws.
     """
 
     config: Config
     digest: str
     steps: dict[int, int] = field(default_factory=dict)
     frames: int = 0
+    founders: Founders | None = None
 
     def has_frames(self, run: Run) -> bool:
         """Whether a run recorded the positions that are needed."""
@@ -59,9 +62,10 @@ class RunRequirement:
 def needs(request: Request) -> list[RunRequirement]:
     """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
     found: dict[str, RunRequirement] = {}
-    for item, config in _settings(request):
+    for item, condition in ((each, condition) for each in request.items for condition in each.conditions):
+        config = condition.config(request.fidelity)
         key = digest(config)
-        need = found.setdefault(key, RunRequirement(config, key))
+        need = found.setdefault(key, RunRequirement(config, key, founders=condition.table(request.fidelity)))
         scale = request.scale(item)
         need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
         for seed in scale.seeds:
@@ -88,9 +92,3 @@ def setting_name(config: Config) -> str:
     """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
     words = [f"{path} {format_value(new)}" for path, _, new in changed_settings(config)]
     return ", ".join([f"{config.preset} ({config.fidelity})", *words])
-
-
-def _settings(request: Request) -> Iterator[tuple[Item, Config]]:
-    for item in request.items:
-        for condition in item.conditions:
-            yield item, condition.config(request.fidelity)
