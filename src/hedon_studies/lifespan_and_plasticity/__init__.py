@@ -1,0 +1,1 @@
+"""Lifespan and plasticity: do short lives and changing worlds make agents learn faster?"""

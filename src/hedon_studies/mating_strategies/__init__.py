@@ -1,0 +1,1 @@
+"""Mating strategies: do agents that only forage and agents that seek mates live together?"""
