@@ -97,7 +97,7 @@ def _of_living(world: World, index: int, living: dict[str, NDArray[Any]]) -> Ite
     groups = sorted({_group(column) for column in inputs})
     for group in groups:
         yield f"senses.{group}", short(*(seen[column] for column in sorted(inputs) if _group(column) == group))
-    if world.config.species[name].learning.policy in ("ppo", "frozen"):
+    if world.config.species[name].learning.policy in ("ppo", "fixed"):
         yield from _networks(world, inputs, living["species"], index)
 
 

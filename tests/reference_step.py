@@ -68,9 +68,9 @@ class Judge:
         deeds = read_deeds(simulation, before, slots, foods, seen)
         for i, (agent, deed) in enumerate(zip(before.agents, deeds, strict=True)):
             policy = self.model.rules.of(agent).learning.policy
-            if policy == "still":
+            if policy == "idle":
                 continue
-            if policy not in ("ppo", "frozen"):
+            if policy not in ("ppo", "fixed"):
                 assert_close(deed.action, self.model.action(before, agent, told[i]), 1e-6)
         if before.step % 5 == 0:
             self.assert_networks_act(before, slots, observations, params)
@@ -156,7 +156,7 @@ class Judge:
             before.agents, observations, params, *rows, strict=True
         ):
             learning = self.model.rules.of(agent).learning
-            if learning.policy not in ("ppo", "frozen"):
+            if learning.policy not in ("ppo", "fixed"):
                 continue
             weights = weights[: network_size(len(observation))]
             weights = as_read(weights) if learning.acting_weights == "bfloat16" else weights
@@ -175,7 +175,7 @@ class Judge:
         old = {agent.agent_id: i for i, agent in enumerate(before.agents)}
         for slot, child in zip(world.living.tolist(), read_world(self.simulation).agents, strict=True):
             species = self.model.rules.of(child)
-            if child.agent_id in old or species.learning.policy not in ("ppo", "frozen"):
+            if child.agent_id in old or species.learning.policy not in ("ppo", "fixed"):
                 continue
             size = network_size(world.observations(child.species).shape[1])
             network, parent = world.view("params")[slot][:size].astype(float), old[child.parent_id]

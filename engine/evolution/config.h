@@ -8,8 +8,8 @@
 
 namespace hedon {
 
-enum class MutationNoise : int32_t { independent, frozen };
-inline constexpr const char* MUTATION_NOISE_NAMES[] = {"independent", "frozen"};
+enum class MutationNoise : int32_t { independent, tabulated };
+inline constexpr const char* MUTATION_NOISE_NAMES[] = {"independent", "tabulated"};
 
 inline constexpr int MAX_GENES = 64;
 inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together

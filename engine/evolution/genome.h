@@ -48,7 +48,7 @@ HEDON_FN float mutation_noise(const GeneConfig& gene, const Random4& bits) {
 /// noise.
 HEDON_FN void inherit(const GenomeConfig& config, uint64_t seed, uint32_t child_id, BirthNumber number,
                       const float* parent, float* child) {
-  const bool frozen = config.mutation_noise == MutationNoise::frozen;
+  const bool frozen = config.mutation_noise == MutationNoise::tabulated;
   const RandomStream random = frozen ? RandomStream{seed, Purpose::frozen_mutation, number.index, number.births}
                                      : RandomStream{seed, Purpose::mutation, child_id, 0};
   for (int32_t g = 0; g < config.genes.count; ++g) {

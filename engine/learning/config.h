@@ -17,11 +17,11 @@ inline constexpr const char* ACTING_WEIGHTS_NAMES[] = {"float32", "bfloat16"};
 enum class Policy : int32_t {
   ppo,       ///< by a network of their own, which learns
   random,    ///< by a standard normal, as a network does that has not learned
-  still,     ///< the motors never run
+  idle,      ///< the motors never run
   external,  ///< the caller gives it, step by step
-  frozen,    ///< by a network that never learns
+  fixed,     ///< by a network that never learns
 };
-inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "still", "external", "frozen"};
+inline constexpr const char* POLICY_NAMES[] = {"ppo", "random", "idle", "external", "fixed"};
 
 struct LearningConfig {
   Policy policy;

@@ -53,8 +53,8 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
       for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.external_action[int64_t{slot} * ACTIONS + a];
       return;
     case Policy::ppo:
-    case Policy::frozen:
-    case Policy::still:
+    case Policy::fixed:
+    case Policy::idle:
       return;
   }
 }
@@ -73,7 +73,7 @@ HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const MotorConfig& motor = species.config->motor;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
-  const bool rests = species.config->learning.policy == Policy::still;
+  const bool rests = species.config->learning.policy == Policy::idle;
   const float range = motor.max_force - motor.min_force;
   float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
   float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);

@@ -24,7 +24,7 @@ HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
 
 /// Probability of having a child in a step at energy `energy`.
 HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
-  return config.kappa / (1.0 + exp_double(config.delay - static_cast<double>(config.beta) * energy));
+  return config.kappa / (1.0 + exp_double(config.logit_offset - static_cast<double>(config.beta) * energy));
 }
 
 /// Probability that the agent in `slot` dies at the end of this step.

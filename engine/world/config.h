@@ -219,8 +219,8 @@ enum class Inheritance : int32_t { at_birth, at_window_end };
 inline constexpr const char* INHERITANCE_NAMES[] = {"at_birth", "at_window_end"};
 
 /// Who may have children: everyone, or only agents in slots that were taken when the window began.
-enum class Parents : int32_t { all, old_slots };
-inline constexpr const char* PARENTS_NAMES[] = {"all", "old_slots"};
+enum class Parents : int32_t { all, resident_slots };
+inline constexpr const char* PARENTS_NAMES[] = {"all", "resident_slots"};
 
 /// Whether each child has a heading of its own, or the children of one step share one.
 enum class ChildHeading : int32_t { own, shared };
@@ -241,7 +241,7 @@ inline constexpr const char* MATING_NAMES[] = {"none", "pairs"};
 struct BirthConfig {
   float kappa;
   float beta;
-  float delay;
+  float logit_offset;
   int32_t rule;  ///< 1 if a function of the caller computes the chance, and not the formula
   int32_t attempts;
   Vec2 distance_sd;
@@ -251,7 +251,7 @@ struct BirthConfig {
   int32_t mating_window;  ///< steps for which an agent whose draw made it a parent waits for another
   float mating_range;     ///< between their surfaces [u]
 
-  HEDON_FIELDS(BirthConfig, kappa, beta, delay, rule, attempts, distance_sd, network, network_noise, mating,
+  HEDON_FIELDS(BirthConfig, kappa, beta, logit_offset, rule, attempts, distance_sd, network, network_noise, mating,
                mating_window, mating_range)
 };
 

@@ -150,7 +150,7 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
   shape.shows_eaten_food = config.rules.eaten_food == EatenFoodRule::seen;
-  shape.resident_slots = config.rules.parents == Parents::old_slots;
+  shape.resident_slots = config.rules.parents == Parents::resident_slots;
   shape.circles = shape.capacity + shape.foods + (shape.shows_eaten_food ? shape.foods : 0);
   shape.newborns = config.rules.inheritance == Inheritance::at_window_end ? shape.death_log_rows : 0;
   shape.scene = make_ray_grid(config, shape.capacity + shape.foods);

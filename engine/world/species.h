@@ -92,7 +92,7 @@ HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, i
   species.touch = make_channels(config.sensor.collides, types);
   species.scent = make_channels(config.sensor.smells, types);
   species.learns = config.learning.policy == Policy::ppo;
-  species.has_network = species.learns || config.learning.policy == Policy::frozen;
+  species.has_network = species.learns || config.learning.policy == Policy::fixed;
   species.observes = species.has_network;
   species.observes |= has_rule(config);
   const int32_t inner = (config.nutrient.present != 0) + (config.toxin.present != 0);

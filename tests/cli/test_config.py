@@ -39,7 +39,7 @@ def test_diff() -> None:
     assert hedon("config", "diff", "small", "small").stdout == "no setting differs\n"
     found = hedon("config", "diff", "small", "small", "--fidelity-b", "released")
     changes = [line.split() for line in found.stdout.splitlines()]
-    assert ["world.mutation_noise", '"independent"', "->", '"frozen"'] in changes
+    assert ["world.mutation_noise", '"independent"', "->", '"tabulated"'] in changes
     assert "food.poor.energy" in hedon("config", "diff", "baseline", "poor").stdout
 
 

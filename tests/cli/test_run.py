@@ -53,7 +53,7 @@ def test_the_manifest_says_how_to_repeat_the_run(finished):
     assert manifest["name"] == "poison"
     assert manifest["modified"] is True
     config = hedon.load_config(folder / "config.toml")
-    assert config.world.mutation_noise == "frozen"
+    assert config.world.mutation_noise == "tabulated"
     simulation = hedon.Simulation(config, manifest["seeds"], backend=manifest["backend"])
     simulation.run(1300)
     run = hedon.open_run(folder)

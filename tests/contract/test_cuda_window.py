@@ -57,7 +57,7 @@ MECHANISMS = {
         "reward.drive_reduction_coef=1",
         "sensor.mouth_spread=180",
     ),
-    "frozen": ("learning.policy=frozen", "birth.network=initial", "birth.kappa=0.5"),
+    "fixed": ("learning.policy=fixed", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
 }
 

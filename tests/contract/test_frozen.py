@@ -1,4 +1,4 @@
-"""The policy `frozen`: agents that act by networks which never learn, new ones or those of a run."""
+"""The policy `fixed`: agents that act by networks which never learn, new ones or those of a run."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from hedon.record.folder import checkpoint_paths
 from hedon.record.network import NETWORKS, NetworkError, read_networks
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
-FROZEN = ('learning.policy="frozen"', 'birth.network="initial"')
+FROZEN = ('learning.policy="fixed"', 'birth.network="initial"')
 EXACT = (*FROZEN, "birth.network_noise=0")
 BOTH = (
     *LIVELY,
@@ -146,5 +146,5 @@ def test_networks_that_do_not_fit_are_refused_by_name(learned, tmp_path):
 
 
 def test_a_new_network_for_each_child_is_refused():
-    with pytest.raises(ConfigError, match=r'birth.network = "none": must be "initial" with learning.policy = "frozen"'):
-        load_config("baseline", overrides=['learning.policy="frozen"'])
+    with pytest.raises(ConfigError, match=r'birth.network = "none": must be "initial" with learning.policy = "fixed"'):
+        load_config("baseline", overrides=['learning.policy="fixed"'])

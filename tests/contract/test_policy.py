@@ -39,7 +39,7 @@ def test_random_actions_are_standard_normals():
 
 
 def test_the_motors_of_the_still_never_run():
-    world = lone("still")
+    world = lone("idle")
     agents = world.agents()
     for name in ("force_left", "force_right", "distance"):
         assert (agents[name] == 0).all()
@@ -53,7 +53,7 @@ def test_nobody_told_the_external_does_as_a_new_network_means():
     np.testing.assert_allclose(agents["force_right"], 30 * half, rtol=1e-6)
 
 
-@pytest.mark.parametrize("policy", ["random", "still", "external"])
+@pytest.mark.parametrize("policy", ["random", "idle", "external"])
 def test_who_does_not_learn_has_no_network(policy):
     simulation = make_simulation(*LIVELY, f'learning.policy="{policy}"')
     simulation.run(200)
@@ -92,7 +92,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
 
 
 def test_late_inheritance_goes_without_networks():
-    settings = (*BOTH, 'world.inheritance="at_window_end"', 'world.parents="old_slots"')
+    settings = (*BOTH, 'world.inheritance="at_window_end"', 'world.parents="resident_slots"')
     once, other = (make_simulation(*settings, seeds=(3,)) for _ in range(2))
     once.run(90)
     other.engine.restore(0, once.engine.save(0))

@@ -65,7 +65,7 @@ number = st.one_of(
 )
 value = st.one_of(
     number,
-    st.sampled_from(["true", "'x'", '"floor"', '"death"', '"frozen"', "[]", "[[]]", "[1, 2]", "[[1, 2, 3, 4]]", "{}"]),
+    st.sampled_from(["true", "'x'", '"floor"', '"death"', '"fixed"', "[]", "[[]]", "[1, 2]", "[[1, 2, 3, 4]]", "{}"]),
     st.sampled_from(
         ["{a = 1}", "1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", '"""x"""', "[1, 'a']", "=", "[", "#"]
     ),

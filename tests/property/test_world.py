@@ -84,7 +84,7 @@ def test_agents_steps_add_up():
     assert simulation.worlds[0].counters["agent_steps"] == lived
 
 
-@pytest.mark.parametrize("noise", ["independent", "frozen"])
+@pytest.mark.parametrize("noise", ["independent", "tabulated"])
 def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_number_of_birth(noise):
     breeding = (
         *QUICK,
@@ -111,7 +111,7 @@ def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_number_of_birth(no
     count = min(len(table) for table in tables)
     assert count > 50
     same = np.isclose(tables[0][:count], tables[1][:count], atol=1e-4).mean()
-    assert same > 0.99 if noise == "frozen" else same < 0.05
+    assert same > 0.99 if noise == "tabulated" else same < 0.05
     if noise == "independent":
         from scipy import stats
 

@@ -42,7 +42,7 @@ def death_chance(species: Species, agent: Agent, step: int) -> float:
 
 def birth_chance(species: Species, energy: float) -> float:
     birth = species.birth
-    return birth.kappa / (1 + math.exp(birth.delay - birth.beta * energy))
+    return birth.kappa / (1 + math.exp(birth.logit_offset - birth.beta * energy))
 
 
 def harmful(rules: Rules, step: int) -> int:

@@ -17,7 +17,7 @@ def first_genome(rules: Rules, species: Species, of: int, purpose: str) -> np.nd
 
 def mutated(rules: Rules, species: Species, genome: np.ndarray, child_id: int, births: int, index: int) -> np.ndarray:
     """A child's genome. Frozen noise depends on the number of births in a window and this one's index among them."""
-    frozen = rules.mutation_noise == "frozen"
+    frozen = rules.mutation_noise == "tabulated"
     stream = ("frozen_mutation", index, births) if frozen else ("mutation", child_id, 0)
     child = []
     for i, (gene, mutation) in enumerate(zip(genome, species.mutations, strict=True)):

@@ -13,7 +13,7 @@ def sigmoid(x: float) -> float:
 
 def motor_forces(species: Species, action: tuple[float, float], toxin: float) -> tuple[float, float]:
     """What both motors apply; toxin takes a part."""
-    if species.learning.policy == "still":
+    if species.learning.policy == "idle":
         return 0.0, 0.0
     left = 1.0
     if "toxin" in species.holds:

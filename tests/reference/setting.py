@@ -123,7 +123,7 @@ class Rules:
         self.each_gains = config.world.prey_sharing == "each"
         self.births_first = config.world.birth_order == "before_deaths"
         self.inherits_late = config.world.inheritance == "at_window_end"
-        self.resident_slots_only = config.world.parents == "old_slots"
+        self.resident_slots_only = config.world.parents == "resident_slots"
         self.shared_heading = config.world.child_heading == "shared"
         self.mutation_noise = config.world.mutation_noise
         self.window = config.world.rollout_steps

@@ -161,7 +161,7 @@ HEREDITY = {
             *each("pairs", "population.capacity=20", "population.initial_count=16", "hazard.kappa=0.2"),
             *each("couples", 'birth.mating="pairs"', "population.capacity=16", "population.initial_count=12"),
             *("food.normal.nutrient=1", "nutrient.initial=2"),
-            *each("alone", "birth.delay=3", "population.capacity=14", "population.initial_count=8"),
+            *each("alone", "birth.logit_offset=3", "population.capacity=14", "population.initial_count=8"),
         ),
         {"mated": 10, "alone": 3, "waiting": 50},
     ),
@@ -242,11 +242,11 @@ POLICIES = {
         (
             *("population.capacity=12", "population.initial_count=9", "birth.kappa=0.1"),
             *each("random", 'learning.policy="random"'),
-            *each("still", 'learning.policy="still"'),
+            *each("idle", 'learning.policy="idle"'),
             *each("told", 'learning.policy="external"', "reward.action_coef=0.3"),
-            *each("frozen", 'learning.policy="frozen"', 'birth.network="initial"', "birth.network_noise=0.1"),
+            *each("fixed", 'learning.policy="fixed"', 'birth.network="initial"', "birth.network_noise=0.1"),
         ),
-        {"births": 20, "acts_frozen_bfloat16": 50, "network_initial": 5, "told": 200},
+        {"births": 20, "acts_fixed_bfloat16": 50, "network_initial": 5, "told": 200},
     ),
 }
 

@@ -42,7 +42,7 @@ FIRST_PAPER = {
     "one by one": Case(
         "some settings of released alone",
         (
-            *('world.mutation_noise="frozen"', 'world.parents="old_slots"', 'world.birth_order="after_deaths"'),
+            *('world.mutation_noise="tabulated"', 'world.parents="resident_slots"', 'world.birth_order="after_deaths"'),
             *('world.mouths="all"', 'world.eaten_food="seen"', 'learning.acting_weights="float32"'),
         ),
         {"births_failed_full": 5, "acts_ppo_float32": 100, "eaten_foods": 5},

@@ -61,7 +61,7 @@ def run(
     ] = None,
     networks: Annotated[
         str | None,
-        typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "frozen" act by: networks of a run.'),
+        typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "fixed" act by: networks of a run.'),
     ] = None,
     backend: Annotated[
         str | None,

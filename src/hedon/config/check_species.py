@@ -101,10 +101,10 @@ def _life(config: Config, species: SpeciesConfig, path: str) -> Iterator[Problem
             if getattr(birth, setting) != plain:
                 rule = f'must be "{plain}" with world.inheritance = "at_window_end"'
                 yield Problem(f"{path}birth.{setting}", rule, format_value(getattr(birth, setting)))
-    if learning.policy == "frozen" and birth.network != "initial":
-        rule = 'must be "initial" with learning.policy = "frozen": a new network would never learn'
+    if learning.policy == "fixed" and birth.network != "initial":
+        rule = 'must be "initial" with learning.policy = "fixed": a new network would never learn'
         yield Problem(f"{path}birth.network", rule, format_value(birth.network))
-    if birth.network != "none" and learning.policy not in ("ppo", "frozen"):
+    if birth.network != "none" and learning.policy not in ("ppo", "fixed"):
         rule = f'learning.policy = "{learning.policy}": there is no network to inherit'
         yield Problem(f"{path}birth.network", rule, format_value(birth.network))
     if birth.mating == "pairs" and capacity < 2:

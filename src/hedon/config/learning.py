@@ -11,7 +11,7 @@ class LearningConfig:
     """How agents choose actions, and learn: proximal policy optimization (Schulman et al. 2017) with GAE."""
 
     policy: Annotated[
-        Literal["ppo", "random", "still", "external", "frozen"],
+        Literal["ppo", "random", "idle", "external", "fixed"],
         Doc(
             "how agents choose actions: a network that learns; standard normals before the sigmoid, as a new network "
             "gives; none, so that no motor runs; what the caller sets (`hedon.env`); or a network that never learns",

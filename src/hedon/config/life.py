@@ -49,7 +49,7 @@ class HazardConfig:
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
-    """Probability of a child: kappa/(1 + exp(delay − beta·energy)); it is born at a free place near its parent."""
+    """Probability of a child: kappa/(1 + exp(logit_offset − beta·energy)); it is born at a free place by its parent."""
 
     kappa: Annotated[
         float,
@@ -64,9 +64,9 @@ class BirthConfig:
             Range(ge=0, le=100),
         ),
     ] = 0.1
-    delay: Annotated[
+    logit_offset: Annotated[
         float,
-        Doc("how much energy, times beta, half of that probability takes", "", OURS, Range(ge=-1e3, le=1e3)),
+        Doc("beta times the energy at which the probability is half of kappa", "", OURS, Range(ge=-1e3, le=1e3)),
     ] = 0.0
     rule: Annotated[
         str,

@@ -12,6 +12,7 @@ MOVED = {
     "sensor.eaten_food": "world.eaten_food",
     "sensor.mouths": "world.mouths",
     "diet.prey_sharing": "world.prey_sharing",
+    "birth.delay": "birth.logit_offset",
     "birth.order": "world.birth_order",
     "birth.inheritance": "world.inheritance",
     "birth.parents": "world.parents",
@@ -23,21 +24,33 @@ MOVED = {
     "reward.relief_coef": "reward.drive_reduction_coef",
 }
 """Settings of a file that have another path now."""
+VALUES = {
+    "learning.policy": {"still": "idle", "frozen": "fixed"},
+    "world.mutation_noise": {"frozen": "tabulated"},
+    "world.parents": {"old_slots": "resident_slots"},
+}
+"""Choices of settings that have other names now, by the paths of today."""
 _MEANT = {"learning": {"acting_weights": "float32"}}
 """What complete files of the first versions mean by settings that they lack, where the default is another value."""
+_HINT = "`hedon config migrate FILE` rewrites a file"
 _GENES = ("initial_mean_food", "initial_mean_action", "initial_sd")
 """Settings of `genome` that stood for the law of every gene before 0.4."""
 
 
 def renamed(tables: Table) -> Iterator[Problem]:
-    """Yields each setting that has another path now."""
+    """Yields each setting that has another path now, and each choice that has another name."""
     species = tables.get("species")
-    owners = {"": tables} | ({f"species.{n}.": own for n, own in species.items()} if isinstance(species, dict) else {})
+    owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(species).items()}
     for place, own in owners.items():
         for old, new in MOVED.items():
             if has(own, old.split(".")):
                 now = new if new.startswith("world.") else place + new
-                yield Problem(place + old, f"is called {now} now (`hedon config migrate FILE` rewrites a file)")
+                yield Problem(place + old, f"is called {now} now ({_HINT})")
+        for path, names in VALUES.items():
+            section, name = path.split(".")
+            value = own[section][name] if has(own, [section, name]) else None
+            if isinstance(value, str) and value in names:
+                yield Problem(place + path, f'is called "{names[value]}" now ({_HINT})', f'"{value}"')
 
 
 def is_earlier(tables: Mapping[str, Any]) -> bool:
@@ -50,31 +63,42 @@ def migrated(tables: Table) -> Table:
 
     Where such a file has species, each has all its settings, and those at the top mean nothing.
     """
-    species = tables.get("species") or {}
-    made = {name: value for name, value in tables.items() if name not in PER_SPECIES and name != "complete"}
+    species = _tables(tables.get("species"))
+    made = {name: value for name, value in tables.items() if name not in (*PER_SPECIES, "complete", "species")}
     tops = {name: tables[name] for name in PER_SPECIES if name in tables}
-    owners = list(species.values()) if species else [tops]
     world = {}
-    for own in (*owners, tops):
+    for own in (*species.values(), tops):
         for old, new in MOVED.items():
-            section, name = old.split(".")
-            if has(own, (section, name)) and new.startswith("world."):
-                world[new.removeprefix("world.")] = own[section][name]
-    made["food"] = {kind: _food(tops, food) for kind, food in tables.get("food", {}).items()}
+            if has(own, old.split(".")) and new.startswith("world."):
+                world[new.removeprefix("world.")] = _value(new, _at(own, old))
+    made["food"] = {kind: _food(tops, food) for kind, food in _tables(tables.get("food")).items()}
     every = {name: _species(own) for name, own in species.items()}
     return made | {"world": world} | ({"species": every} if species else _species(tops))
 
 
+def _tables(value: Any) -> dict[str, Table]:
+    """The tables in a table; none where there is none."""
+    return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}
+
+
+def _at(tables: Table, path: str) -> Any:
+    section, name = path.split(".")
+    return tables[section][name]
+
+
 def _species(sections: Table) -> Table:
-    gone = {tuple(old.split(".")) for old in MOVED}
     made = {
-        section: {name: value for name, value in settings.items() if (section, name) not in gone}
-        for section, settings in sections.items()
+        section: {
+            name: _value(f"{section}.{name}", value)
+            for name, value in settings.items()
+            if f"{section}.{name}" not in MOVED
+        }
+        for section, settings in _tables(sections).items()
     }
     for old, new in MOVED.items():
         section, name = new.split(".")
         if section in made and has(sections, old.split(".")):
-            made[section][name] = sections[old.split(".")[0]][old.split(".")[1]]
+            made[section][name] = _at(sections, old)
     for section, settings in _MEANT.items():
         made[section] = settings | made.get(section, {})
     genome = made.get("genome", {})
@@ -84,8 +108,13 @@ def _species(sections: Table) -> Table:
     return made
 
 
+def _value(path: str, value: Any) -> Any:
+    """A setting's value by its name of today."""
+    return VALUES[path].get(value, value) if path in VALUES and isinstance(value, str) else value
+
+
 def _food(sections: Table, food: Table) -> Table:
-    genome = sections.get("genome", {})
+    genome = _tables(sections).get("genome", {})
     return food | ({"gene": _law(genome, _GENES[0])} if genome.keys() >= {*_GENES} else {})
 
 
@@ -97,21 +126,24 @@ def migrate_text(text: str) -> str:
     """A short file of an earlier version with the names of this one; comments and order stay."""
     import tomlkit
 
-    document = tomlkit.parse(text)
+    document: Any = tomlkit.parse(text)
     species = document.get("species")
-    owners: list[Any] = [document, *(species.values() if isinstance(species, Mapping) else ())]
+    owners: list[Any] = [document, *(species.values() if isinstance(species, dict) else ())]
     for old, new in MOVED.items():
         (section, name), (target, now) = old.split("."), new.split(".")
         for owner in owners:
-            table = owner.get(section) if isinstance(owner, Mapping) else None
-            if not hasattr(table, "items") or name not in table:
+            if not has(owner, [section, name]):
                 continue
-            root: Any = document if target == "world" else owner
-            value = table[name]
-            del table[name]
+            value = owner[section].pop(name)
+            if not owner[section]:
+                owner.pop(section)
+            root = document if target == "world" else owner
             if target not in root:
                 root[target] = tomlkit.table()
             root[target][now] = value
-            if not table:
-                del owner[section]
+    for path, names in VALUES.items():
+        section, name = path.split(".")
+        for owner in owners:
+            if has(owner, [section, name]) and owner[section][name] in names:
+                owner[section][name] = names[owner[section][name]]
     return tomlkit.dumps(document)

@@ -57,11 +57,11 @@ class WorldConfig:
         ),
     ] = "at_birth"
     parents: Annotated[
-        Literal["all", "old_slots"],
+        Literal["all", "resident_slots"],
         Doc(
             "who may have children: all, or only agents in slots that were taken when the window began",
             "",
-            PAPER + '; the code has "old_slots"',
+            PAPER + '; the code has "resident_slots"',
         ),
     ] = "all"
     child_heading: Annotated[
@@ -73,12 +73,12 @@ class WorldConfig:
         ),
     ] = "own"
     mutation_noise: Annotated[
-        Literal["independent", "frozen"],
+        Literal["independent", "tabulated"],
         Doc(
             "new noise for every birth, or noise fixed by seed, gene, the number of births in a window and the birth's "
             "index among them",
             "",
-            PAPER + '; the code has "frozen"',
+            PAPER + '; the code has "tabulated"',
         ),
     ] = "independent"
     rollout_steps: Annotated[
@@ -103,7 +103,7 @@ class WorldConfig:
     networks: Annotated[
         str,
         Doc(
-            'digest of the file that the founders\' networks come from where `policy` is "frozen", `networks.npz` in '
+            'digest of the file that the founders\' networks come from where `policy` is "fixed", `networks.npz` in '
             "the run's folder; set by `--networks`. Without one they are new networks",
             "",
             OURS,

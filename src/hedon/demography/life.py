@@ -51,7 +51,7 @@ def energy_hazard(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.floa
 
 
 def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
-    """Chance of trying to have a child: kappa/(1 + exp(delay − beta·energy)) [1/step].
+    """Chance of trying to have a child: kappa/(1 + exp(logit_offset − beta·energy)) [1/step].
 
     Args:
         config: the constants of births.
@@ -60,7 +60,7 @@ def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]
     Returns:
         Chances per step, in the shape of `energy`.
     """
-    return config.kappa / (1.0 + np.exp(config.delay - config.beta * np.asarray(energy, dtype=np.float64)))
+    return config.kappa / (1.0 + np.exp(config.logit_offset - config.beta * np.asarray(energy, dtype=np.float64)))
 
 
 def cumulative_hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":

@@ -61,10 +61,10 @@ def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> N
     arrays = checkpoint.world(world)
     policies = [species.learning.policy for species in config.species.values()]
     mine = list(config.species).index(name)
-    if policies[mine] not in ("ppo", "frozen"):
+    if policies[mine] not in ("ppo", "fixed"):
         return np.zeros((0, 0), np.float32)
     species = arrays.get("species", np.zeros(len(arrays["life.agent_id"]), np.int32))
-    with_network = species[np.isin(species, [i for i, policy in enumerate(policies) if policy in ("ppo", "frozen")])]
+    with_network = species[np.isin(species, [i for i, policy in enumerate(policies) if policy in ("ppo", "fixed")])]
     rows = arrays["params"][with_network == mine]
     if policies[mine] == "ppo":
         learners = species[np.isin(species, [i for i, policy in enumerate(policies) if policy == "ppo"])]

@@ -87,7 +87,7 @@ class Networks:
         """
         fixed = fixed_species(config)
         if not fixed:
-            raise NetworkError(f'{brief(origin)}: no species has learning.policy = "frozen", so none would use them')
+            raise NetworkError(f'{brief(origin)}: no species has learning.policy = "fixed", so none would use them')
         for name in fixed:
             if name not in self.params:
                 there = ", ".join(self.params)
@@ -105,7 +105,7 @@ class Networks:
 
 def fixed_species(config: Config) -> list[str]:
     """The species that act by networks that never learn."""
-    return [name for name, species in config.species.items() if species.learning.policy == "frozen"]
+    return [name for name, species in config.species.items() if species.learning.policy == "fixed"]
 
 
 def load_networks(folder: Path, config: Config) -> Networks | None:

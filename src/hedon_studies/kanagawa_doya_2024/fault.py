@@ -11,7 +11,7 @@ from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_e
 
 FACTORS = {
     "growth": "food.normal.growth_rate=1.0",
-    "noise": "world.mutation_noise=frozen",
+    "noise": "world.mutation_noise=tabulated",
     "critic": "learning.critic_target=batch_mean",
     "solver": "physics.solver=jacobi",
 }

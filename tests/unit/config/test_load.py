@@ -63,7 +63,7 @@ def test_places_of_food() -> None:
 @pytest.mark.parametrize("preset", PAPER_PRESETS)
 def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_senses(preset: str) -> None:
     released, corrected = load_config(preset, "released"), load_config(preset)
-    assert released.world.mutation_noise == "frozen"
+    assert released.world.mutation_noise == "tabulated"
     assert released.species["agent"].learning.critic_target == "batch_mean"
     assert released.physics.solver == "jacobi"
     assert all(food.growth_rate == 1.0 for food in released.food.values())

@@ -11,10 +11,11 @@ from project_files import ROOT
 
 from hedon.check.run import check_run
 from hedon.config import ConfigError, diff, digest, dump_toml, load_config
+from hedon.config.dump import flatten
 from hedon.config.evolution import GeneConfig
 from hedon.config.field import find, settings
 from hedon.config.load import migrated_file, parse_config
-from hedon.config.migrate import MOVED
+from hedon.config.migrate import MOVED, VALUES
 from hedon.config.species import SpeciesConfig
 from hedon.config.world import WorldConfig
 from hedon.experiment.resume import resume
@@ -37,12 +38,12 @@ def test_the_config_of_an_earlier_run_means_what_its_file_means(tmp_path: Path) 
     assert read == parse_config((EARLIER / "two" / "config.toml").read_text(), "here")
     one = load_config(EARLIER / "one" / "config.toml")
     changed = {path for path, _, _ in diff(load_config("poison", "released"), one)}
-    assert {"world.rollout_steps", "birth.delay", "learning.policy"} <= changed
+    assert {"world.rollout_steps", "birth.logit_offset", "learning.policy"} <= changed
     assert not any(path.startswith("world.") for path in changed - {"world.rollout_steps"}), "as released"
 
 
 def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
-    before = (EARLIER / "two.toml").read_text()
+    before = (EARLIER / "two.toml").read_text().replace("birth.delay", "birth.logit_offset")
     after = migrated_file(EARLIER / "two.toml")
     moved = ["food_radius = 5.0", 'eaten_food = "seen"', "rollout_steps = 128"]
     assert after.endswith("\n".join(["[world]", *moved, ""]))
@@ -64,7 +65,7 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
         answer = hedon("config", "migrate", str(file))
         assert (answer.returncode, answer.stderr) == (0, "")
     assert "food_radius = 5.0  # large" in short.read_text() == shown.stdout
-    assert (load_config(short).world.food_radius, load_config(short).world.parents) == (5.0, "old_slots")
+    assert (load_config(short).world.food_radius, load_config(short).world.parents) == (5.0, "resident_slots")
     assert whole.read_text() == dump_toml(load_config(EARLIER / "one" / "config.toml"))
 
 
@@ -84,6 +85,16 @@ def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: st
         load_config(write(f"species.prey.{old} = 1\n"))
     with pytest.raises(ConfigError, match=re.escape(said)):
         load_config("baseline").with_(old, 1)
+
+
+@pytest.mark.parametrize("path", VALUES)
+def test_a_choice_with_another_name_is_refused_with_it(path: str) -> None:
+    for old, new in VALUES[path].items():
+        said = f'{path} = "{old}": is called "{new}" now'
+        with pytest.raises(ConfigError, match=re.escape(said)):
+            load_config("baseline", overrides=[f"{path}={old}"])
+        rest = ["birth.network=initial"] if new == "fixed" else []
+        assert flatten(load_config("baseline", overrides=[f"{path}={new}", *rest]))[path] == new
 
 
 def test_founders_of_the_first_versions_are_read(tmp_path: Path) -> None:

@@ -146,8 +146,8 @@ def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -
 
 def test_names_of_runs_tell_settings_apart() -> None:
     assert folder_name(Condition("x").config("corrected")) == "baseline-corrected"
-    changed = Condition("x", "small", ("energy.basic_cost=0.002", "world.mutation_noise=frozen"))
-    assert folder_name(changed.config("text")) == "small-text-world.mutation_noise-frozen-energy.basic_cost-0.002"
+    changed = Condition("x", "small", ("energy.basic_cost=0.002", "world.mutation_noise=tabulated"))
+    assert folder_name(changed.config("text")) == "small-text-world.mutation_noise-tabulated-energy.basic_cost-0.002"
     long = [folder_name(condition.config("corrected")) for condition in (BASE, FAST)]
     assert max(map(len, long)) < 100
     assert long[0] != long[1]

@@ -82,7 +82,7 @@ def mutation_law(config: Config, gene: Gene) -> MutationLaw:
         sd=gene.law.initial_sd,
         scale=gene.mutation.scale,
         limit=gene.mutation.limit,
-        tabulated=config.world.mutation_noise == "frozen",
+        tabulated=config.world.mutation_noise == "tabulated",
         window=config.world.rollout_steps,
         late=config.world.inheritance == "at_window_end",
         noise=gene.mutation.law,

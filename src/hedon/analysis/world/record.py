@@ -157,7 +157,7 @@ def generator(world: WorldRecord) -> np.random.Generator:
 
 def shares_noise(world: WorldRecord) -> bool:
     """Whether its mutations depend on the births of other species, which its record does not have: frozen noise."""
-    return len(world.config.species) > 1 and world.config.world.mutation_noise == "frozen"
+    return len(world.config.species) > 1 and world.config.world.mutation_noise == "tabulated"
 
 
 def _by(end: int, step: int | None) -> int | None:

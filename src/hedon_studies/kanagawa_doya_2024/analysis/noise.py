@@ -1,7 +1,7 @@
 """The table of tabulated mutation noise, read off the records of a world.
 
-With `world.mutation_noise = "frozen"` a birth's mutation of a gene depends on the seed, the gene and the number of the
-birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
+With `world.mutation_noise = "tabulated"` a birth's mutation of a gene depends on the seed, the gene and the number of
+the birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
 the limit of weights. Weights are float32, so equal mutations agree to the rounding of a weight: 1e-6 at 10.
 
 With independent noise the same computation gives no table, and births of equal number disagree as much as any.
