@@ -25,10 +25,10 @@ test: sync
 	$(UV) sync --quiet $(BROWSER) $(SITE) $(EXTRA) --group cuda
 	$(MAKE) --no-print-directory --jobs=3 --output-sync=line static sanitized suite
 
-suite:
+suite: tools $(UV)
 	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
-static: sync
+static: tools $(UV)
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
 	$(RUN) clang-format --dry-run -Werror $(shell find engine tests/native -name '*.h' -o -name '*.cpp' -o -name '*.cu')
@@ -36,7 +36,7 @@ static: sync
 	$(RUN) pyright
 	$(RUN) --group cuda python tests/cuda.py
 
-sanitized: sync
+sanitized: tools $(UV)
 	$(RUN) python tests/sanitize.py asan
 
 # The same questions asked hundreds of times, and those that take minutes: before a release.

@@ -53,7 +53,7 @@ def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bo
     Args:
         name: of the claim.
         x: one number per world, (worlds,).
-        y: likewise.
+        y: one number per world, (worlds,).
         extinct: how many of the worlds died out.
         above: whether the claim holds above 0.
     """
@@ -70,7 +70,7 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
 
     Args:
         name: of the claim.
-        values: one per world, or per pair of worlds.
+        values: one per world, or per pair of worlds, (values,).
         worlds: how many worlds or pairs these are.
         extinct: how many of the worlds died out.
         above: whether the claim holds above 0.
