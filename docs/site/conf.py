@@ -22,13 +22,13 @@ release = version = installed_version("hedon")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinxcontrib.mermaid"]
 root_doc = "README"
-include_patterns = ["*.md", "docs/**", "benchmarks/*.md"]
+include_patterns = ["*.md", "docs/**", "benchmarks/*.md", "src/hedon_studies/*/*.md"]
 exclude_patterns = [
     ".*",
     "build",
     "dist",
     "engine",
-    "src",
+    "src/hedon",
     "tests",
     "web",
     "runs",
@@ -63,13 +63,13 @@ ALONE = "---\norphan: true\n---\n\n"
 def add_contents(app: Any, docname: str, source: list[str]) -> None:
     """Puts lists of pages, of which Sphinx makes the navigation, below the first page and the README of each folder.
 
-    Pages that programs wrote below `docs/results` are reached by links alone.
+    Pages that programs wrote below `docs/results`, and what a study expected, are reached by links alone.
     """
     if docname == root_doc:
         source[0] += "\n" + (HERE / "contents.md").read_text(encoding="utf-8")
     elif docname.startswith("docs/") and docname.endswith("/README"):
         source[0] += FOLDER
-    elif docname.startswith("docs/results/") and docname.count("/") > 2:
+    elif (docname.startswith("docs/results/") and docname.count("/") > 2) or docname.endswith("/expected"):
         source[0] = ALONE + source[0]
 
 
