@@ -10,8 +10,8 @@ from benchmarks.plan import Plan
 from benchmarks.scene import peopled
 from hedon import _engine
 from hedon.config.config import Config
+from hedon.config.engine import engine_config
 from hedon.config.layout import layouts, observation_columns
-from hedon.config.native import engine_config
 from hedon.config.species import ONLY
 
 FORWARD_ROWS = 10_240

@@ -14,7 +14,7 @@ from benchmarks.scene import peopled, scene_of
 from hedon import _engine
 from hedon.config.arena import walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
+from hedon.config.engine import engine_config
 from hedon.config.species import ONLY
 
 PIECE_STEPS = 20

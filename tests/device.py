@@ -12,6 +12,7 @@ import ctypes
 import json
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -161,7 +162,8 @@ def world(name: str, folder: Path, changes: Mapping[str, object]) -> str:
     """The file of a world: a text of `data/device` with some settings changed, in all species."""
     lines = (TEXTS / f"{name}.txt").read_text().splitlines()
     for path, value in changes.items():
-        at = [i for i, line in enumerate(lines) if line.split("=")[0].endswith(f"].{path}")]
+        place = re.compile(rf"(species\[\d\]\.)?{re.escape(path)}=")
+        at = [i for i, line in enumerate(lines) if place.match(line)]
         if not at:
             raise KeyError(path)
         for i in at:

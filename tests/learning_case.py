@@ -22,7 +22,6 @@ def config(**changes: Any) -> dict[str, Any]:
     """The learning settings of the baseline, with changes."""
     return {
         "policy": "ppo",
-        "rollout_steps": 1024,
         "minibatch_size": 256,
         "update_epochs": 10,
         "gamma": 0.999,

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from hedon import _engine
 from hedon.config.dump import diff
+from hedon.config.engine import engine_input
 from hedon.config.load import load_config
-from hedon.experiment.native import engine_input
 from hedon.experiment.simulation import Simulation
 
 QUICK = ("world.rollout_steps=64", "learning.minibatch_size=32", "learning.update_epochs=2")

@@ -32,7 +32,7 @@
 /// Gives `Type::for_each_field(visit)`, which calls `visit(name, &Type::field)` for each field in order.
 #define HEDON_FIELDS(Type, ...)                                                           \
   template <class Visit>                                                                  \
-  static void for_each_field(Visit&& visit) {                                             \
+  static constexpr void for_each_field(Visit&& visit) {                                   \
     static_assert(sizeof(Type) == (0 HEDON_EACH(HEDON_SIZE_OF, Type, __VA_ARGS__)),       \
                   "HEDON_FIELDS of " #Type " misses a field, or the struct has padding"); \
     HEDON_EACH(HEDON_VISIT, Type, __VA_ARGS__)                                            \

@@ -9,8 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "world/config.h"
-#include "world/enum_name.h"
+#include "config/config.h"
 
 namespace hedon {
 
@@ -42,9 +41,8 @@ void fill(nanobind::handle value, T& out, const std::string& path) {
         throw nb::type_error((path + ": wrong type").c_str());
       }
     }
-  } else if constexpr (std::is_same_v<T, Vec2>) {
-    fill(value[0], out.x, path + "[0]");
-    fill(value[1], out.y, path + "[1]");
+  } else if constexpr (Pair<T>) {
+    for_each_part(out, [&](int i, auto& part) { fill(value[i], part, path + "[" + std::to_string(i) + "]"); });
   } else if constexpr (IsFixedList<T>::value) {
     const size_t count = nb::len(value);
     if (count > static_cast<size_t>(T::capacity)) throw nb::value_error((path + ": too many items").c_str());
@@ -74,8 +72,10 @@ nanobind::object unfill(const T& value) {
     return nb::str(EnumNames<T>::text[static_cast<int>(value)]);
   } else if constexpr (std::is_arithmetic_v<T>) {
     return nb::cast(value);
-  } else if constexpr (std::is_same_v<T, Vec2>) {
-    return nb::make_tuple(value.x, value.y);
+  } else if constexpr (Pair<T>) {
+    nb::list out;
+    for_each_part(value, [&](int, const auto& part) { out.append(unfill(part)); });
+    return out;
   } else if constexpr (IsFixedList<T>::value) {
     nb::list out;
     for (int32_t i = 0; i < value.count; ++i) out.append(unfill(value.items[i]));

@@ -8,13 +8,13 @@ namespace hedon {
 namespace {
 
 /// Refuses what only the host can do, and networks that a device cannot update.
-void need_fit(const DeviceProgram& program, const WorldConfig& config) {
+void need_fit(const DeviceProgram& program, const Config& config) {
   const WorldShape shape = make_shape(config, 0, 0);
   for (int32_t s = 0; s < shape.species; ++s) {
     const std::string species = "species " + std::to_string(s);
-    if (has_rule(config.species[s]))
+    if (config.layout[s].has_rule())
       throw EngineError(species + " has a rule in Python, which a device cannot call: run it without a device");
-    if (config.species[s].learning.policy == Policy::external)
+    if (config.species[s].learning.policy == LearningPolicy::external)
       throw EngineError(species +
                         " waits for actions of a program, which a device cannot ask: run it without a device");
     const int32_t inputs = shape.of[s].network.observation.size();
@@ -40,7 +40,7 @@ const DeviceProgram* open_device(const std::string& file) {
   return &program;
 }
 
-const DeviceProgram* need_device(const std::string& file, const WorldConfig& config) {
+const DeviceProgram* need_device(const std::string& file, const Config& config) {
   const DeviceProgram* const program = open_device(file);
   need_fit(*program, config);
   return program;

@@ -14,7 +14,7 @@ template <class Table>
 void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
   const WorldShape& shape = self.get().shape();
   if (species < 0 || species >= shape.species) throw nb::index_error("no species has this index");
-  if (self.get().config().species[species].learning.policy != Policy::external)
+  if (self.get().config().species[species].learning.policy != LearningPolicy::external)
     throw nb::value_error("the species must be external");
   if (table.shape(0) != static_cast<size_t>(self.get().world_count()) ||
       table.shape(1) != static_cast<size_t>(shape.of[species].capacity()))

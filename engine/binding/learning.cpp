@@ -242,11 +242,10 @@ nb::tuple learn_once(const std::string& kernel_name, ObservationSizes sizes, nb:
   check_length(params.size(), static_cast<size_t>(shape.size()), "params");
   const BatchArrays arrays(shape, observation, action, log_prob, value, reward);
   check_minibatch(config, arrays.batch.count);
-  check_length(observation.shape(0), static_cast<size_t>(config.rollout_steps), "observation");
   const Rollout rollout = {
       arrays.batch.observation, action.data(), log_prob.data(), value.data(), reward.data(), bootstrap,
       arrays.batch.count};
-  const Aligned<float> scratch(static_cast<size_t>(learn_scratch_size(shape, config)));
+  const Aligned<float> scratch(static_cast<size_t>(learn_scratch_size(shape, config, arrays.batch.count)));
   LearnerArrays learner(params, first_moment, second_moment, updates);
   return learner.result(learn(kernel.network, shape, config, rollout, {seed, Purpose::minibatch, agent_id, step},
                               scratch.get(), learner.view()));

@@ -33,7 +33,7 @@ const Kernel* need_kernel(const std::string& name) {
 }
 
 /// Refuses a simulation that does not fit into this machine's memory, before any memory is reserved.
-void need_memory(const WorldConfig& config, size_t walls, size_t worlds, int threads) {
+void need_memory(const Config& config, size_t walls, size_t worlds, int threads) {
   const MemoryNeed need =
       Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
   const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
@@ -73,9 +73,9 @@ void need(const std::string& complaint) {
 
 }  // namespace
 
-WorldConfig need_config(nb::dict config) {
+Config need_config(nb::dict config) {
   const FloatMode mode;
-  const WorldConfig known = to_config<WorldConfig>(config);
+  const Config known = to_config<Config>(config);
   need(check_config(known));
   return known;
 }
@@ -85,7 +85,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
                                    const std::vector<int32_t>& slot_order, bool flush_denormals,
                                    const std::string& device) {
   const FloatMode mode;
-  const WorldConfig known = need_config(config);
+  const Config known = need_config(config);
   const std::vector<Segment> segments = to_segments(walls);
   const int used = count_threads(threads);
   need(check_arguments(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));

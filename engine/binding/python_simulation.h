@@ -60,6 +60,6 @@ class PythonSimulation {
 };
 
 /// A world config from a nested dict. EngineError: a number is out of bounds.
-WorldConfig need_config(nanobind::dict config);
+Config need_config(nanobind::dict config);
 
 }  // namespace hedon

@@ -168,9 +168,9 @@ void set_genomes(PythonSimulation& self, int index,
   const auto each = [&](auto&& visit) {
     for (size_t i = 0; i < genomes.shape(0); ++i) {
       const int32_t slot = from.state.living[static_cast<int64_t>(i)];
-      const GenomeConfig& layout = from.species(slot).config->genome;
+      const SpeciesLayout& layout = *from.species(slot).layout;
       for (int32_t g = 0; g < layout.genes.count; ++g)
-        visit(genomes.data()[i * width + static_cast<size_t>(g)], layout.genes[g].limit, from.genome(slot)[g]);
+        visit(genomes.data()[i * width + static_cast<size_t>(g)], layout.genes[g].limit(), from.genome(slot)[g]);
     }
   };
   each([](float value, float limit, float&) {
@@ -209,7 +209,7 @@ void set_networks(PythonSimulation& self, int index, int species,
 void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address) {
   if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");
   for (int32_t u = 0; u < RULE_USES; ++u) {
-    if (use != RULE_USE_NAMES[u]) continue;
+    if (use != EnumNames<RuleUse>::text[u]) continue;
     self.get().set_rule(species, static_cast<RuleUse>(u), reinterpret_cast<Rule>(static_cast<uintptr_t>(address)));
     return;
   }
@@ -231,7 +231,7 @@ class PythonFloatMode {
 void bind_simulation(nb::module_& module) {
   using S = PythonSimulation;
   module.def(
-      "read_config", [](nb::dict config) { return unfill(to_config<WorldConfig>(config)); }, nb::arg("config"),
+      "read_config", [](nb::dict config) { return unfill(to_config<Config>(config)); }, nb::arg("config"),
       nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
       "A config as the engine has read it.");
   module.def(

@@ -78,7 +78,7 @@ HEDON_FN void update_minibatch(const Block& block, const BlockUpdate& on, const 
   float sd_inverse[ACTIONS];
   for (int a = 0; a < ACTIONS; ++a) sd_inverse[a] = exp_lanes(Lanes{-log_sd[a]}).v;
   float target_mean = 0.0f;
-  if (on.config.critic_target == CriticTarget::batch_mean) {
+  if (on.config.critic_target == LearningCriticTarget::batch_mean) {
     for (int32_t i = 0; i < size; ++i) target_mean += batch.target[order[i]];
     target_mean *= 1.0f / static_cast<float>(size);
   }
@@ -133,11 +133,6 @@ HEDON_FN void finish_update(const Block& block, const BlockUpdate& on, const Lea
   });
   pack_weights_by(block, on.shape, on.params(), network);
   block.barrier();
-}
-
-/// Floats of global memory that an update needs: advantages, targets, and for each epoch an order and two lists.
-HEDON_FN int64_t block_scratch_size(const LearningConfig& config) {
-  return static_cast<int64_t>(config.rollout_steps) * (2 + 3 * config.update_epochs);
 }
 
 /// Advantages on one thread, while others make the orders of the epochs, each from its own draws.

@@ -5,19 +5,19 @@
 
 #include "base/device.h"
 #include "base/random.h"
-#include "evolution/config.h"
+#include "config/config.h"
 
 namespace hedon {
 
 HEDON_FN float clip(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 /// A founder's genome: independent normals around the configured means.
-HEDON_FN void init_genome(const GenomeConfig& config, const RandomStream& random, float* genome) {
-  for (int32_t g = 0; g < config.genes.count; ++g) {
-    const GeneConfig& gene = config.genes[g];
+HEDON_FN void init_genome(const SpeciesLayout& layout, const RandomStream& random, float* genome) {
+  for (int32_t g = 0; g < layout.genes.count; ++g) {
+    const Gene& gene = layout.genes[g];
     const Random4 bits = random.draw(static_cast<uint32_t>(g));
     const float normal = to_normal(bits.word[0], bits.word[1]).first;
-    genome[g] = clip(gene.initial_mean + gene.initial_sd * normal, -gene.limit, gene.limit);
+    genome[g] = clip(gene.law.initial_mean + gene.law.initial_sd * normal, -gene.limit(), gene.limit());
   }
 }
 
@@ -28,12 +28,12 @@ struct BirthNumber {
 };
 
 /// The noise of a gene, of scale 1.
-HEDON_FN float mutation_noise(const GeneConfig& gene, const Random4& bits) {
-  switch (gene.mutation_law) {
+HEDON_FN float mutation_noise(const MutationConfig& mutation, const Random4& bits) {
+  switch (mutation.law) {
     case MutationLaw::cauchy:
       return to_cauchy(bits.word[0]);
     case MutationLaw::student_t:
-      return to_student_t(gene.mutation_df, bits.word[0], bits.word[1]);
+      return to_student_t(mutation.df, bits.word[0], bits.word[1]);
     case MutationLaw::normal:
       return to_normal(bits.word[0], bits.word[1]).first;
     case MutationLaw::uniform:
@@ -42,21 +42,21 @@ HEDON_FN float mutation_noise(const GeneConfig& gene, const Random4& bits) {
   return 0.0f;
 }
 
-/// A child's genome: the parent's plus noise of each gene's law and `mutation_scale`, clipped to its limit. `parent`
+/// A child's genome: the parent's plus noise of each gene's law and scale, clipped to its limit. `parent`
 /// and `child` may be the same. With frozen noise (a fault of the released code, kept for study) the noise depends on
 /// the seed, the gene and the number of the birth, so all windows with equally many births use the same small table of
 /// noise.
-HEDON_FN void inherit(const GenomeConfig& config, uint64_t seed, uint32_t child_id, BirthNumber number,
-                      const float* parent, float* child) {
-  const bool frozen = config.mutation_noise == MutationNoise::tabulated;
+HEDON_FN void inherit(const SpeciesLayout& layout, WorldMutationNoise noise_of, uint64_t seed, uint32_t child_id,
+                      BirthNumber number, const float* parent, float* child) {
+  const bool frozen = noise_of == WorldMutationNoise::tabulated;
   const RandomStream random = frozen ? RandomStream{seed, Purpose::frozen_mutation, number.index, number.births}
                                      : RandomStream{seed, Purpose::mutation, child_id, 0};
-  for (int32_t g = 0; g < config.genes.count; ++g) {
-    const GeneConfig& gene = config.genes[g];
+  for (int32_t g = 0; g < layout.genes.count; ++g) {
+    const Gene& gene = layout.genes[g];
     const Random4 bits = random.draw(static_cast<uint32_t>(g));
-    const bool mutates = to_uniform(bits.word[2]) < gene.mutation_probability;
-    const float noise = mutates ? gene.mutation_scale * mutation_noise(gene, bits) : 0.0f;
-    child[g] = clip(parent[g] + noise, -gene.limit, gene.limit);
+    const bool mutates = to_uniform(bits.word[2]) < gene.mutation.probability;
+    const float noise = mutates ? gene.mutation.scale * mutation_noise(gene.mutation, bits) : 0.0f;
+    child[g] = clip(parent[g] + noise, -gene.limit(), gene.limit());
   }
 }
 

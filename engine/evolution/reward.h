@@ -5,7 +5,7 @@
 
 #include "base/device.h"
 #include "base/math.h"
-#include "evolution/config.h"
+#include "config/config.h"
 
 namespace hedon {
 
@@ -39,12 +39,12 @@ HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) 
 
 /// Drive: the distance of inner states from their set points, in shares of their capacities. Keramati and Gutkin
 /// (2014).
-HEDON_FN double drive(const RewardConfig& config, const float* genome, const double* states, const double* capacity) {
+HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, const double* states, const double* capacity) {
   double squared = 0.0, only = 0.0;
   int32_t count = 0;
   for (int32_t s = 0; s < INNER_STATES; ++s) {
-    if (config.set_points[s] < 0) continue;
-    only = static_cast<double>(genome[config.set_points[s]]) - states[s] / capacity[s];
+    if (layout.set_points[s] < 0) continue;
+    only = static_cast<double>(genome[layout.set_points[s]]) - states[s] / capacity[s];
     squared += only * only;
     ++count;
   }
@@ -52,9 +52,9 @@ HEDON_FN double drive(const RewardConfig& config, const float* genome, const dou
 }
 
 /// The drive before this step's meals and costs less the drive after them.
-HEDON_FN float drive_reduction(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
-  return static_cast<float>(drive(config, genome, inputs.before, inputs.capacity) -
-                            drive(config, genome, inputs.now, inputs.capacity));
+HEDON_FN float drive_reduction(const SpeciesLayout& layout, const float* genome, const RewardInputs& inputs) {
+  return static_cast<float>(drive(layout, genome, inputs.before, inputs.capacity) -
+                            drive(layout, genome, inputs.now, inputs.capacity));
 }
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
@@ -65,14 +65,14 @@ HEDON_FN double by_gene(float setting, int32_t gene, const float* genome) {
 }
 
 /// By how much a value is above the threshold of a family, in units of its width.
-HEDON_FN double beyond(const RewardConfig& config, const float* genome, double value) {
-  return (value - by_gene(config.threshold, config.threshold_gene, genome)) /
-         by_gene(config.threshold_width, config.threshold_width_gene, genome);
+HEDON_FN double beyond(const RewardConfig& config, const SpeciesLayout& layout, const float* genome, double value) {
+  return (value - by_gene(config.threshold, layout.gene_of(GenomeFamily::threshold), genome)) /
+         by_gene(config.threshold_width, layout.gene_of(GenomeFamily::threshold_width), genome);
 }
 
 /// The weight of a term, from its genes.
-HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, const float* genome,
-                         const RewardInputs& inputs) {
+HEDON_FN float weight_of(const RewardConfig& config, const SpeciesLayout& layout, const RewardTerm& term,
+                         const float* genome, const RewardInputs& inputs) {
   if (term.input == RewardInput::drive_reduction) return 1.0f;  // its gene is the set point
   const float w = genome[term.gene], second = genome[term.second_gene];
   switch (config.family) {
@@ -83,17 +83,17 @@ HEDON_FN float weight_of(const RewardConfig& config, const RewardTerm& term, con
     case RewardFamily::scaled:
       return static_cast<float>(exp_double(second * LOG_10) * w);
     case RewardFamily::fed:
-      return static_cast<float>(w * logistic(beyond(config, genome, inputs.now[ENERGY])));
+      return static_cast<float>(w * logistic(beyond(config, layout, genome, inputs.now[ENERGY])));
     case RewardFamily::hungry:
-      return static_cast<float>(w * logistic(-beyond(config, genome, inputs.now[ENERGY])));
+      return static_cast<float>(w * logistic(-beyond(config, layout, genome, inputs.now[ENERGY])));
     case RewardFamily::by_age:
-      return static_cast<float>(w + (second - w) * logistic(beyond(config, genome, inputs.age)));
+      return static_cast<float>(w + (second - w) * logistic(beyond(config, layout, genome, inputs.age)));
   }
   return w;
 }
 
-HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, const float* genome,
-                            const RewardInputs& inputs) {
+HEDON_FN float reward_input(const RewardConfig& config, const SpeciesLayout& layout, const RewardTerm& term,
+                            const float* genome, const RewardInputs& inputs) {
   switch (term.input) {
     case RewardInput::food:
       return static_cast<float>(inputs.eaten[term.index]);
@@ -106,19 +106,21 @@ HEDON_FN float reward_input(const RewardConfig& config, const RewardTerm& term, 
       return sum / static_cast<float>(inputs.noses);
     }
     case RewardInput::drive_reduction:
-      return drive_reduction(config, genome, inputs);
+      return drive_reduction(layout, genome, inputs);
     case RewardInput::action:
-      return config.action_norm == ActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
+      return config.action_norm == RewardActionNorm::max_force ? inputs.force / inputs.max_force : inputs.force;
   }
   return 0.0f;
 }
 
 /// r = Σ coef · weight · input over the terms.
-HEDON_FN float reward(const RewardConfig& config, const float* genome, const RewardInputs& inputs) {
+HEDON_FN float reward(const RewardConfig& config, const SpeciesLayout& layout, const float* genome,
+                      const RewardInputs& inputs) {
   float sum = 0.0f;
-  for (int32_t i = 0; i < config.terms.count; ++i) {
-    const RewardTerm& term = config.terms[i];
-    sum += term.coef * weight_of(config, term, genome, inputs) * reward_input(config, term, genome, inputs);
+  for (int32_t i = 0; i < layout.terms.count; ++i) {
+    const RewardTerm& term = layout.terms[i];
+    sum += term.coef * weight_of(config, layout, term, genome, inputs) *
+           reward_input(config, layout, term, genome, inputs);
   }
   return sum;
 }

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "learning/config.h"
+#include "config/schema.h"
 #include "learning/network.h"
 #include "learning/observation.h"
 

@@ -192,7 +192,7 @@ HEDON_FN PpoLoss gradient_of_minibatch(const NetworkShape& shape, const Learning
   alignas(64) float sd_inverse[LANES] = {-log_sd[0], -log_sd[1]};
   store(sd_inverse, exp_lanes(load(sd_inverse)));
   float target_mean = 0.0f;
-  if (config.critic_target == CriticTarget::batch_mean) {
+  if (config.critic_target == LearningCriticTarget::batch_mean) {
     for (int32_t i = 0; i < size; ++i) target_mean += batch.target[order[i]];
     target_mean *= share;
   }

@@ -47,7 +47,7 @@ HEDON_INLINE LossConstants make_loss_constants(const LearningConfig& config, con
           broadcast(1.0f + config.clip_coef),
           broadcast(config.value_coef),
           broadcast(target_mean),
-          config.critic_target == CriticTarget::batch_mean};
+          config.critic_target == LearningCriticTarget::batch_mean};
 }
 
 HEDON_INLINE LossSums zero_sums() {

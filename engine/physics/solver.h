@@ -5,8 +5,8 @@
 
 #include "base/math.h"
 #include "base/vec2.h"
+#include "config/schema.h"
 #include "physics/body.h"
-#include "physics/config.h"
 #include "physics/contact.h"
 #include "physics/state.h"
 

@@ -11,8 +11,8 @@
 #include "base/crew.h"
 #include "base/fields.h"
 #include "base/vec2.h"
+#include "config/schema.h"
 #include "physics/body.h"
-#include "physics/config.h"
 #include "physics/contact.h"
 #include "physics/grid.h"
 
@@ -151,7 +151,7 @@ struct PhysicsCapacity {
 /// in a larger world. Among obstacles there are more sides near a body than the two of a corner.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
                                           const BodyTable& table, const PhysicsConfig& config) {
-  const bool bursts = config.solver == ContactSolver::jacobi;
+  const bool bursts = config.solver == PhysicsSolver::jacobi;
   const float skin = config.neighbor_skin;
   PhysicsCapacity capacity{};
   capacity.bodies = bodies;

@@ -183,7 +183,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
       const auto attempt = [&]<class Solver, class Bodies>() {
         try_batch<Solver, Bodies>(crew, config, table, constants, state, scratch, force, limit * limit, batch, visitor);
       };
-      const bool sequential = config.solver == ContactSolver::sequential;
+      const bool sequential = config.solver == PhysicsSolver::sequential;
       if (table.classes == 1)
         sequential ? attempt.template operator()<SequentialSolver, AlikeBodies>()
                    : attempt.template operator()<JacobiSolver, AlikeBodies>();

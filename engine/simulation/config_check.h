@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "base/vec2.h"
+#include "config/config.h"
 #include "physics/body.h"
-#include "world/config.h"
 
 namespace hedon {
 
 /// What is wrong with a config, with the path of the setting; "" if it can be run. Ranges are those of
 /// `src/hedon/config/`, or wider: users see the messages from there; this check protects the engine.
-std::string check_config(const WorldConfig& config);
+std::string check_config(const Config& config);
 
 /// The same for the arguments besides the config.
 /// walls        the first `outer_walls` of them make up the closed outer polygon
 /// slot_order   each slot once, or nothing
-std::string check_arguments(const WorldConfig& config, const std::vector<Segment>& walls, int64_t outer_walls,
+std::string check_arguments(const Config& config, const std::vector<Segment>& walls, int64_t outer_walls,
                             int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order);
 
 }  // namespace hedon

@@ -10,7 +10,7 @@ namespace {
 /// Where things lie in the block that all worlds share.
 struct Common {
   int64_t config = 0;
-  int64_t shape = up(config + static_cast<int64_t>(sizeof(WorldConfig)));
+  int64_t shape = up(config + static_cast<int64_t>(sizeof(Config)));
   int64_t kernel = up(shape + static_cast<int64_t>(sizeof(WorldShape)));
   int64_t worlds = up(kernel + static_cast<int64_t>(sizeof(Kernel)));
 
@@ -27,12 +27,12 @@ void for_each_world_array(World& world, Visit&& visit) {
   for_each_array(world.scene, "", each);
 }
 
-/// Floats of scratch of one update: see `block_scratch_size`.
-int64_t update_scratch(const WorldConfig& config) {
+/// Floats of scratch of one update: advantages, targets, and for each epoch an order and two lists.
+int64_t update_scratch(const Config& config) {
   int64_t most = 0;
   for (int32_t s = 0; s < config.species.count; ++s) {
     const LearningConfig& learning = config.species[s].learning;
-    most = std::max(most, static_cast<int64_t>(learning.rollout_steps) * (2 + 3 * learning.update_epochs));
+    most = std::max(most, static_cast<int64_t>(config.world.rollout_steps) * (2 + 3 * learning.update_epochs));
   }
   return (most + 15) / 16 * 16;
 }
@@ -63,7 +63,7 @@ Device::Device(const DeviceProgram& program, int32_t number, std::vector<World>&
       fetched_(blocks_.size(), true) {
   program_.use(number_);
   const WorldShape& shape = *worlds[0].shape;
-  const WorldConfig& config = *worlds[0].config;
+  const Config& config = *worlds[0].config;
   const Common at;
   const int64_t count = last - first;
   const int64_t stride = update_scratch(config);
@@ -93,8 +93,11 @@ Device::Device(const DeviceProgram& program, int32_t number, std::vector<World>&
   for (int32_t s = 0; s < shape.species; ++s) on_.params[s] = shape.of[s].learns ? shape.of[s].network.size() : 0;
 
   WorldShape there = shape;
-  for (int32_t s = 0; s < shape.species; ++s)
-    there.of[s].config = reinterpret_cast<const WorldConfig*>(common_ + at.config)->species.items + s;
+  const Config* const settings = reinterpret_cast<const Config*>(common_ + at.config);
+  for (int32_t s = 0; s < shape.species; ++s) {
+    there.of[s].config = settings->species.items + s;
+    there.of[s].layout = settings->layout.items + s;
+  }
   note(program.copy_in(common_ + at.config, &config, sizeof config));
   note(program.copy_in(common_ + at.shape, &there, sizeof there));
   note(program.fill_kernel(on_.kernel));
@@ -157,7 +160,7 @@ void Device::place(int index) {
   for (auto& uses : there.rule) {
     for (Rule& rule : uses) rule = nullptr;
   }
-  there.config = reinterpret_cast<const WorldConfig*>(common_ + at.config);
+  there.config = reinterpret_cast<const Config*>(common_ + at.config);
   there.shape = reinterpret_cast<const WorldShape*>(common_ + at.shape);
   there.kernel = on_.kernel;
   note(program_.copy_in(on_.worlds + this->at(index), &there, sizeof there));

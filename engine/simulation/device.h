@@ -62,7 +62,7 @@ using DeviceEntry = const DeviceProgram* (*)();
 /// A number that differs where the library and the engine come from sources with other data.
 constexpr uint64_t device_layout() {
   uint64_t sum = 0;
-  for (const size_t size : {sizeof(World), sizeof(WorldState), sizeof(WorldShape), sizeof(WorldConfig), sizeof(Kernel),
+  for (const size_t size : {sizeof(World), sizeof(WorldState), sizeof(WorldShape), sizeof(Config), sizeof(Kernel),
                             sizeof(DeviceWorlds), sizeof(DeviceProgram), sizeof(PhysicsScratch)})
     sum = sum * 1009 + size;
   return sum;

@@ -44,8 +44,9 @@ void Simulation::set_rule(int32_t species, RuleUse use, Rule rule) {
 std::string Simulation::missing_rule() const {
   for (int32_t s = 0; s < shape_.species; ++s) {
     for (int32_t u = 0; u < RULE_USES; ++u) {
-      if (has_rule(config_.species[s], static_cast<RuleUse>(u)) && worlds_[0].rule[s][u] == nullptr)
-        return "species " + std::to_string(s) + " has a rule for its " + RULE_USE_NAMES[u] + ", which was not given";
+      if (config_.layout[s].has_rule(static_cast<RuleUse>(u)) && worlds_[0].rule[s][u] == nullptr)
+        return "species " + std::to_string(s) + " has a rule for its " + EnumNames<RuleUse>::text[u] +
+               ", which was not given";
     }
   }
   return "";

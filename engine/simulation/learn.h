@@ -12,8 +12,8 @@
 namespace hedon {
 
 /// Floats of scratch that `learn` needs, aligned to 64 bytes.
-HEDON_FN int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfig& config) {
-  return ppo_scratch_size(shape) + static_cast<int64_t>(config.rollout_steps) * (4 + config.update_epochs);
+HEDON_FN int64_t learn_scratch_size(const NetworkShape& shape, const LearningConfig& config, int64_t rollout_steps) {
+  return ppo_scratch_size(shape) + rollout_steps * (4 + config.update_epochs);
 }
 
 /// One learner's whole update from one rollout of at most `rollout_steps` steps. The order of its minibatches comes

@@ -18,7 +18,7 @@ Memory::~Memory() {
 }
 
 PhysicsCapacity world_physics_capacity(const World& world) {
-  const WorldConfig& config = *world.config;
+  const Config& config = *world.config;
   const WorldShape& shape = *world.shape;
   return physics_capacity(shape.capacity, shape.foods, shape.walls, config.arena.width, config.arena.height,
                           shape.bodies, config.physics);

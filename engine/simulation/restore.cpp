@@ -115,7 +115,7 @@ bool check_species(Inspector& in, size_t living) {
 }
 
 bool check_life(Inspector& in) {
-  const WorldConfig& config = *in.world_.config;
+  const Config& config = *in.world_.config;
   const double step = static_cast<double>(in.numbers<int64_t>("head.step")[0]);
   const std::vector<int32_t> ids = in.numbers<int32_t>("life.agent_id");
   const double nobody = ids.empty() ? 1 : 0;

@@ -42,14 +42,14 @@ int64_t lay_out_world(World& world, char* at) {
 
 }  // namespace
 
-int64_t learn_stride(const WorldShape& shape, const WorldConfig& config) {
+int64_t learn_stride(const WorldShape& shape, const Config& config) {
   int64_t most = 0;
   for (int32_t s = 0; s < shape.species; ++s)
-    most = std::max(most, learn_scratch_size(shape.of[s].network, config.species[s].learning));
+    most = std::max(most, learn_scratch_size(shape.of[s].network, config.species[s].learning, shape.steps));
   return (most + 15) / 16 * 16;
 }
 
-Simulation::Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
+Simulation::Simulation(const Config& config, std::vector<Segment> walls, int32_t outer_walls,
                        const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
                        const std::vector<int32_t>& slot_order, bool flush, const DeviceProgram* program)
     : config_(config),
@@ -108,7 +108,7 @@ DeviceSeconds Simulation::device_seconds() const {
   return sum;
 }
 
-MemoryNeed Simulation::bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads) {
+MemoryNeed Simulation::bytes_needed(const Config& config, int32_t walls, int64_t worlds, int threads) {
   const FloatMode mode;
   const WorldShape shape = make_shape(config, walls, walls);
   World world{};

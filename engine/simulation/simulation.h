@@ -46,7 +46,7 @@ struct MemoryNeed {
 };
 
 /// Floats of scratch for each thread that learns, in whole cache lines.
-int64_t learn_stride(const WorldShape& shape, const WorldConfig& config);
+int64_t learn_stride(const WorldShape& shape, const Config& config);
 
 /// Each call sets the floating-point mode that it needs and restores the caller's.
 class Simulation {
@@ -56,12 +56,12 @@ class Simulation {
   /// flush   whether denormals are flushed to zero; it changes no result
   /// program  of the devices that advance the worlds, which are dealt out to them; null for the threads
   /// The arguments must have passed `check_config` and `check_arguments`. It can do nothing unless `pool().whole()`.
-  Simulation(const WorldConfig& config, std::vector<Segment> walls, int32_t outer_walls,
-             const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-             const std::vector<int32_t>& slot_order, bool flush = true, const DeviceProgram* program = nullptr);
+  Simulation(const Config& config, std::vector<Segment> walls, int32_t outer_walls, const std::vector<uint64_t>& seeds,
+             int threads, const Kernel* kernel, const std::vector<int32_t>& slot_order, bool flush = true,
+             const DeviceProgram* program = nullptr);
 
   /// Bytes that a simulation reserves: compare them with the machine's memory before you make it.
-  static MemoryNeed bytes_needed(const WorldConfig& config, int32_t walls, int64_t worlds, int threads);
+  static MemoryNeed bytes_needed(const Config& config, int32_t walls, int64_t worlds, int threads);
 
   /// Empties a world and puts these agents and foods into it, at any places: for tests of chosen scenes.
   /// False if there are more than the world can hold.
@@ -120,7 +120,7 @@ class Simulation {
   DeviceSeconds device_seconds() const;
   int device_count() const { return static_cast<int>(devices_.size()); }
   const WorldShape& shape() const { return shape_; }
-  const WorldConfig& config() const { return config_; }
+  const Config& config() const { return config_; }
   bool flush() const { return flush_; }
   /// What advances the worlds: the name of an instruction set or of a device.
   const char* kernel_name() const { return devices_.empty() ? kernel_->name : devices_[0]->program().name; }
@@ -137,7 +137,7 @@ class Simulation {
   Device* device_of(int index) const;
   void advance_with(Team team, int thread, int world, int64_t steps);
 
-  WorldConfig config_;
+  Config config_;
   WorldShape shape_;
   const Kernel* kernel_;
   bool flush_;

@@ -45,7 +45,7 @@ std::string add_food(World& world, int32_t kind, Vec2 position) {
   FoodStock& stock = world.state.food_stock[kind];
   const int32_t capacity = world.config->food[kind].capacity;
   if (stock.present >= capacity) return "there is no room: the capacity of this food is " + std::to_string(capacity);
-  if (!can_place(world, position, world.config->food_radius)) return NO_PLACE;
+  if (!can_place(world, position, world.config->world.food_radius)) return NO_PLACE;
   place_food(world, kind, position);
   stock.number = stock.number + 1.0 < capacity ? stock.number + 1.0 : capacity;
   return "";
@@ -103,7 +103,7 @@ std::string remove_thing(World& world, Vec2 position, float slack) {
   if (agents.found() >= 0) return settle(world, remove_agent(world, agents.found()));
   const auto& circles = world.state.physics.circles;
   for (int32_t f = 0; f < world.shape->foods; ++f) {
-    if (circles.present[f] != 0) foods.look(f, circles.x[f], circles.y[f], world.config->food_radius + slack);
+    if (circles.present[f] != 0) foods.look(f, circles.x[f], circles.y[f], world.config->world.food_radius + slack);
   }
   return foods.found() < 0 ? "there is nothing to remove" : settle(world, remove_food(world, foods.found()));
 }

@@ -4,7 +4,7 @@
 #include <map>
 #include <type_traits>
 
-#include "world/enum_name.h"
+#include "config/config.h"
 
 namespace hedon {
 namespace {
@@ -15,7 +15,7 @@ template <class T, int N>
 struct IsFixedList<FixedList<T, N>> : std::true_type {};
 
 /// The settings that nobody has read yet, and the first thing that was wrong with one.
-class Settings {
+class Lines {
  public:
   void add(const std::string& path, const std::string& value) {
     if (!values_.emplace(path, value).second) complain(path, "is there twice");
@@ -55,7 +55,7 @@ class Settings {
 };
 
 template <class T>
-T to_number(Settings& settings, const std::string& path, const std::string& text) {
+T to_number(Lines& settings, const std::string& path, const std::string& text) {
   char* end = nullptr;
   T value;
   if constexpr (std::is_same_v<T, bool>) {
@@ -74,7 +74,7 @@ T to_number(Settings& settings, const std::string& path, const std::string& text
 }
 
 template <class T>
-void fill(Settings& settings, const std::string& path, T& out) {
+void fill(Lines& settings, const std::string& path, T& out) {
   if constexpr (std::is_enum_v<T>) {
     const std::string name = settings.take(path);
     int at = 0;
@@ -88,9 +88,8 @@ void fill(Settings& settings, const std::string& path, T& out) {
     settings.complain(path, "unknown name '" + name + "'");
   } else if constexpr (std::is_arithmetic_v<T>) {
     out = to_number<T>(settings, path, settings.take(path));
-  } else if constexpr (std::is_same_v<T, Vec2>) {
-    fill(settings, path + "[0]", out.x);
-    fill(settings, path + "[1]", out.y);
+  } else if constexpr (Pair<T>) {
+    for_each_part(out, [&](int i, auto& part) { fill(settings, path + "[" + std::to_string(i) + "]", part); });
   } else if constexpr (IsFixedList<T>::value) {
     const auto place = [&](int32_t i) { return path + "[" + std::to_string(i) + "]"; };
     const auto present = [&](int32_t i) {
@@ -104,7 +103,7 @@ void fill(Settings& settings, const std::string& path, T& out) {
   }
 }
 
-Segment to_wall(Settings& settings, const std::string& text) {
+Segment to_wall(Lines& settings, const std::string& text) {
   float value[4] = {};
   const char* at = text.c_str();
   for (int i = 0; i < 4; ++i) {
@@ -122,7 +121,7 @@ Segment to_wall(Settings& settings, const std::string& text) {
 }  // namespace
 
 std::string read_input(const std::string& text, WorldInput& out) {
-  Settings settings;
+  Lines settings;
   out = WorldInput{};
   for (size_t at = 0; at < text.size();) {
     size_t end = text.find('\n', at);

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "config/config.h"
 #include "physics/body.h"
-#include "world/config.h"
 
 namespace hedon {
 
 struct WorldInput {
-  WorldConfig config;
+  Config config;
   std::vector<Segment> walls;
   int64_t outer_walls;
   uint64_t seed;

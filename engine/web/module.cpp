@@ -153,7 +153,7 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   const std::string setting = check_config(input.config);
   if (!setting.empty()) return fail(setting);
   for (int32_t s = 0; s < input.config.species.count; ++s) {
-    if (has_rule(input.config.species[s])) return fail("a page cannot have rules in Python");
+    if (input.config.layout[s].has_rule()) return fail("a page cannot have rules in Python");
   }
   const std::string company = check_arguments(input.config, input.walls, input.outer_walls, 1, 1, {});
   return company.empty() ? 0 : fail(company);

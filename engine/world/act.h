@@ -43,18 +43,18 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const float* 
 HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
   float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
   switch (world.species(slot).config->learning.policy) {
-    case Policy::random: {
+    case LearningPolicy::random: {
       const NormalPair noise = action_noise(world, slot);
       action[0] = noise.first;
       action[1] = noise.second;
       return;
     }
-    case Policy::external:
+    case LearningPolicy::external:
       for (int a = 0; a < ACTIONS; ++a) action[a] = world.state.external_action[int64_t{slot} * ACTIONS + a];
       return;
-    case Policy::ppo:
-    case Policy::fixed:
-    case Policy::idle:
+    case LearningPolicy::ppo:
+    case LearningPolicy::fixed:
+    case LearningPolicy::idle:
       return;
   }
 }
@@ -70,14 +70,14 @@ HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
 /// Turns the action into the forces of the two motors, and the force and torque on the body.
 HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
-  const MotorConfig& motor = species.config->motor;
+  const SpeciesLayout& motor = *species.layout;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
-  const bool rests = species.config->learning.policy == Policy::idle;
+  const bool rests = species.config->learning.policy == LearningPolicy::idle;
   const float range = motor.max_force - motor.min_force;
   float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
   float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
-  if (species.config->toxin.present != 0) {
+  if (species.layout->has_toxin != 0) {
     const float left_over = static_cast<float>(strength(species.config->toxin, world.inner(slot)[1]));
     left *= left_over;
     right *= left_over;

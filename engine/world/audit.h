@@ -145,9 +145,9 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const float radius = world.species(slot).body.radius;
   const int32_t own = scene.own[slot];
   const float x = scene.x[own], y = scene.y[own];
-  const bool deep = world.config->physics.solver == ContactSolver::jacobi;
+  const bool deep = world.config->physics.solver == PhysicsSolver::jacobi;
   const float largest = world.shape->bodies.max_radius();
-  const float reach = largest > world.config->food_radius ? largest : world.config->food_radius;
+  const float reach = largest > world.config->world.food_radius ? largest : world.config->world.food_radius;
   const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(x + reach, grid.inverse_cell, grid.columns);
   const int32_t last_row = cell_along(y + reach, grid.inverse_cell, grid.rows);
@@ -180,7 +180,7 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   const bool network_finite = (!species.has_network || all_finite(world.params(slot), size)) &&
                               (!species.learns || (all_finite(&state.first_moment[first], size) &&
                                                    all_finite(&state.second_moment[first], size)));
-  if (!network_finite || !all_finite(world.genome(slot), species.config->genome.genes.count))
+  if (!network_finite || !all_finite(world.genome(slot), species.layout->genes.count))
     return {Status::not_finite, -1, species.learns ? static_cast<double>(state.updates[slot]) : 0.0};
   const double energy = state.life[slot].energy;
   if (!is_finite(energy)) return {Status::not_finite, -1, energy};

@@ -33,10 +33,10 @@ HEDON_FN double death_chance(const World& world, int32_t slot) {
   const HazardConfig& config = world.species(slot).config->hazard;
   const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
   double chance = hazard(config, age, life.energy);
-  const NutrientConfig& nutrient = world.species(slot).config->nutrient;
-  if (nutrient.present != 0)
-    chance += static_cast<double>(nutrient.hazard_share) * hazard_by_store(config, world.inner(slot)[0]);
-  return factor_at(config.schedule, world.head().step) * chance;
+  const float share = world.species(slot).config->nutrient.hazard_share;
+  if (world.species(slot).layout->has_nutrient != 0)
+    chance += static_cast<double>(share) * hazard_by_store(config, world.inner(slot)[0]);
+  return factor_at(config.schedule.scale, world.head().step) * chance;
 }
 
 /// Probability that the agent in `slot` has a child at the end of this step.

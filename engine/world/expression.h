@@ -13,23 +13,23 @@ HEDON_FN double power_of_ten(float exponent) { return exp_double(exponent * LOG_
 
 /// The settings with which the agent in `slot` learns.
 HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
-  const SpeciesConfig& config = *world.species(slot).config;
-  LearningConfig own = config.learning;
-  for (int32_t i = 0; i < config.genome.learning.count; ++i) {
-    const LearningGene& set = config.genome.learning[i];
+  const SpeciesLayout& layout = *world.species(slot).layout;
+  LearningConfig own = world.species(slot).config->learning;
+  for (int32_t i = 0; i < layout.learning.count; ++i) {
+    const LearningGene& set = layout.learning[i];
     const double factor = power_of_ten(world.genome(slot)[set.gene]);
     const double odds = factor * own.gamma / (1.0 - own.gamma);
     switch (set.sets) {
-      case LearningParameter::learning_rate:
+      case GenomeLearning::learning_rate:
         own.learning_rate = static_cast<float>(factor * own.learning_rate);
         break;
-      case LearningParameter::gamma:
+      case GenomeLearning::gamma:
         own.gamma = static_cast<float>(odds / (1.0 + odds));
         break;
-      case LearningParameter::entropy_coef:
+      case GenomeLearning::entropy_coef:
         own.entropy_coef = static_cast<float>(factor * own.entropy_coef);
         break;
-      case LearningParameter::action_sd:
+      case GenomeLearning::action_sd:
         break;  // it is in the network
     }
   }
@@ -41,10 +41,10 @@ HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
 HEDON_FN void express_genes(World& world, int32_t slot) {
   const Species& species = world.species(slot);
   if (!species.learns) return;
-  const GenomeConfig& genome = species.config->genome;
-  for (int32_t i = 0; i < genome.learning.count; ++i) {
-    const LearningGene& set = genome.learning[i];
-    if (set.sets != LearningParameter::action_sd) continue;
+  const SpeciesLayout& layout = *species.layout;
+  for (int32_t i = 0; i < layout.learning.count; ++i) {
+    const LearningGene& set = layout.learning[i];
+    if (set.sets != GenomeLearning::action_sd) continue;
     float* const log_sd = world.params(slot) + species.network.log_sd();
     for (int32_t a = 0; a < ACTIONS; ++a) log_sd[a] = static_cast<float>(world.genome(slot)[set.gene] * LOG_10);
   }

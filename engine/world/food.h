@@ -70,7 +70,7 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 position) {
 /// Tries candidate number `i` as the place of a food of kind `k`; whether it is one now.
 HEDON_FN bool try_food(World& world, int32_t k, const RandomStream& random, uint32_t i) {
   const Vec2 position = draw_food_position(world, k, random, i);
-  if (!has_spacing(world, k, position) || !can_place(world, position, world.config->food_radius)) return false;
+  if (!has_spacing(world, k, position) || !can_place(world, position, world.config->world.food_radius)) return false;
   place_food(world, k, position);
   return true;
 }
@@ -112,7 +112,7 @@ HEDON_FN void share_food(World& world) {
   StepScratch& scratch = world.scratch;
   const BodyState& body = state.physics.bodies;
   world.head().eaten_food_count = 0;
-  const bool all = world.config->rules.mouths == Mouths::all;
+  const bool all = world.config->world.mouths == WorldMouths::all;
   const bool seen = world.shape->shows_eaten_food;
   int32_t found = 0;
   for_each_marked_circle(state.physics.neighbors, [&](int32_t slot, int32_t f) {
@@ -159,8 +159,8 @@ HEDON_FN void grow(World& world) {
     const FoodConfig& config = world.config->food[k];
     FoodStock& stock = world.state.food_stock[k];
     const int64_t step = world.head().step;
-    const double most = factor_at(config.capacity_schedule, step) * config.capacity;
-    stock.number += factor_at(config.growth_schedule, step) * static_cast<double>(config.growth_rate);
+    const double most = factor_at(config.schedule.capacity, step) * config.capacity;
+    stock.number += factor_at(config.schedule.growth_rate, step) * static_cast<double>(config.growth_rate);
     if (stock.number > most) stock.number = most;
     const RandomStream random{world.seed, Purpose::food_place, static_cast<uint32_t>(k),
                               static_cast<uint32_t>(world.head().step)};

@@ -94,7 +94,7 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
 
 /// What an eater gains by its prey: its share of what that has left.
 HEDON_FN double gain_by(const World& world, int32_t eater, int32_t prey) {
-  const float share = world.species(eater).config->diet.prey[world.shape->species_of(prey)];
+  const float share = world.species(eater).layout->eats_species[world.shape->species_of(prey)];
   return static_cast<double>(share) * world.state.life[prey].energy;
 }
 
@@ -164,7 +164,7 @@ HEDON_FN void hunt(World& world) {
     int32_t& clock = state.digestion[state.living[i]];
     if (clock > 0) --clock;
   }
-  if (world.config->rules.prey_sharing == PreySharing::each) return settle_all_at_once(world);
+  if (world.config->world.prey_sharing == WorldPreySharing::each) return settle_all_at_once(world);
   settle_one_by_one(world, claims);
 }
 

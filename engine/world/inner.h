@@ -24,6 +24,7 @@ HEDON_FN void set_inner(const World& world, int32_t slot, double nutrient, doubl
 /// Fills and empties the stores of one agent by this step's meals and costs. `force` is what its motors applied.
 HEDON_FN void update_inner(const World& world, int32_t slot, double force) {
   const SpeciesConfig& config = *world.species(slot).config;
+  const SpeciesLayout& layout = *world.species(slot).layout;
   double* const now = world.inner(slot);
   double eaten = 0.0, poisoned = 0.0;
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
@@ -31,12 +32,12 @@ HEDON_FN void update_inner(const World& world, int32_t slot, double force) {
     poisoned += static_cast<double>(world.config->food[k].toxin) * world.meal(slot)[k];
   }
   for (int32_t s = 0; s < 2; ++s) world.inner_before(slot)[s] = now[s];
-  if (config.nutrient.present != 0) {
+  if (layout.has_nutrient != 0) {
     const double wanted =
         now[0] + eaten - static_cast<double>(config.nutrient.action_cost) * force - config.nutrient.basic_cost;
     now[0] = wanted < 0.0 ? 0.0 : (wanted > config.nutrient.capacity ? config.nutrient.capacity : wanted);
   }
-  if (config.toxin.present != 0) {
+  if (layout.has_toxin != 0) {
     const double left = now[1] + poisoned - config.toxin.decay;
     now[1] = left < 0.0 ? 0.0 : left;
   }

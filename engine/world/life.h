@@ -36,9 +36,10 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   StepScratch& scratch = world.scratch;
   Life& life = state.life[slot];
   const int32_t* meal = world.meal(slot);
+  const SpeciesLayout& layout = *world.species(slot).layout;
   double eaten = 0.0;
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
-    eaten += static_cast<double>(config.diet.food[k] * world.config->food[k].energy) * meal[k];
+    eaten += static_cast<double>(layout.eats_food[k] * world.config->food[k].energy) * meal[k];
     state.eaten[int64_t{slot} * world.shape->meals() + k] += meal[k];
   }
   const double basic = config.energy.basic_cost;
@@ -56,7 +57,7 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   scratch.energy_action[slot] = action;
   scratch.energy_forgiven[slot] = wanted < 0.0 ? -wanted : 0.0;
   scratch.energy_capped[slot] = wanted > capacity ? wanted - capacity : 0.0;
-  scratch.starved[slot] = wanted < 0.0 && config.energy.starvation == Starvation::death;
+  scratch.starved[slot] = wanted < 0.0 && config.energy.starvation == EnergyStarvation::death;
   life.energy = wanted < 0.0 ? 0.0 : (wanted > capacity ? capacity : wanted);
   life.energy_gained += eaten;
   life.energy_spent += basic + action + damage;
@@ -74,7 +75,7 @@ HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
   const int64_t row = world.kept(slot, t);
   if (world.ruled(slot, RuleUse::reward)) return;
-  const float r = reward(species.config->reward, world.genome(slot), reward_inputs(world, slot, t));
+  const float r = reward(species.config->reward, *species.layout, world.genome(slot), reward_inputs(world, slot, t));
   world.state.reward[slot * int64_t{world.shape->rollout} + row] = r;
   world.state.life[slot].reward += r;
 }
@@ -113,10 +114,10 @@ HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
 /// Asks all rules: first what agents are paid, then, with the memories that this leaves, their chances.
 HEDON_FN void apply_rules(World& world) {
   for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
-    const SpeciesConfig& config = *world.shape->of[s].config;
-    if (has_rule(config, RuleUse::reward)) pay_by_rule(world, s);
-    if (has_rule(config, RuleUse::hazard)) decide_by_rule(world, s, RuleUse::hazard);
-    if (has_rule(config, RuleUse::birth)) decide_by_rule(world, s, RuleUse::birth);
+    const SpeciesLayout& layout = *world.shape->of[s].layout;
+    if (layout.has_rule(RuleUse::reward)) pay_by_rule(world, s);
+    if (layout.has_rule(RuleUse::hazard)) decide_by_rule(world, s, RuleUse::hazard);
+    if (layout.has_rule(RuleUse::birth)) decide_by_rule(world, s, RuleUse::birth);
   }
 }
 
@@ -156,15 +157,14 @@ HEDON_FN void keep_ledger(World& world) {
 /// Looks for a free position for the child of `parent` around it.
 HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* position) {
   const SpeciesConfig& species = *world.species(parent).config;
-  const BirthConfig& birth = species.birth;
+  const float sd = world.species(parent).layout->distance_sd;
   const BodyState& body = world.state.physics.bodies;
   const RandomStream random{world.seed, Purpose::child_place, static_cast<uint32_t>(world.state.life[parent].agent_id),
                             static_cast<uint32_t>(world.head().step)};
-  for (int32_t i = 0; i < birth.attempts; ++i) {
+  for (int32_t i = 0; i < species.birth.attempts; ++i) {
     const Random4 bits = random.draw(static_cast<uint32_t>(i));
     const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
-    *position = {body.x[parent] + birth.distance_sd.x * normal.first,
-                 body.y[parent] + birth.distance_sd.y * normal.second};
+    *position = {body.x[parent] + sd * normal.first, body.y[parent] + sd * normal.second};
     if (can_place(world, *position, species.body.radius)) return true;
   }
   return false;

@@ -11,7 +11,7 @@
 namespace hedon {
 
 HEDON_FN bool needs_mate(const World& world, int32_t slot) {
-  return world.species(slot).config->birth.mating == Mating::pairs;
+  return world.species(slot).config->birth.mating == BirthMating::pairs;
 }
 
 /// From this step on the agent in `slot` waits for a second parent.
@@ -50,7 +50,7 @@ HEDON_FN void end_waiting(const World& world, int32_t slot, int32_t mate) {
 /// Draws each gene of a child from one of its parents, before mutation.
 HEDON_FN void recombine(const World& world, uint32_t child_id, int32_t parent, int32_t mate, float* genome) {
   const RandomStream random{world.seed, Purpose::recombination, child_id, 0};
-  for (int32_t g = 0; g < world.species(parent).config->genome.genes.count; ++g) {
+  for (int32_t g = 0; g < world.species(parent).layout->genes.count; ++g) {
     const bool first = (random.draw(static_cast<uint32_t>(g)).word[0] >> 31) == 0;
     genome[g] = world.genome(first ? parent : mate)[g];
   }

@@ -35,7 +35,7 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
 /// Keeps the network of a newcomer, where it will be passed on.
 HEDON_FN void keep_initial(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
-  if (!species.learns || species.config->birth.network != ChildNetwork::initial) return;
+  if (!species.learns || species.config->birth.network != BirthNetwork::initial) return;
   for (int32_t p = 0; p < species.network.size(); ++p) world.initial_params(slot)[p] = world.params(slot)[p];
 }
 
@@ -50,8 +50,8 @@ HEDON_FN void give_own_network(World& world, int32_t slot) {
 HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
   const Species& species = world.species(slot);
   const BirthConfig& birth = species.config->birth;
-  if (!species.has_network || birth.network == ChildNetwork::none) return give_own_network(world, slot);
-  const bool kept = species.learns && birth.network == ChildNetwork::initial;
+  if (!species.has_network || birth.network == BirthNetwork::none) return give_own_network(world, slot);
+  const bool kept = species.learns && birth.network == BirthNetwork::initial;
   const float* from = kept ? world.initial_params(parent) : world.params(parent);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   DrawSequence draws{RandomStream{world.seed, Purpose::inherited_network, id, 0}, 0};
@@ -68,7 +68,7 @@ HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
 }
 
 HEDON_FN bool inherits_late(const World& world) {
-  return world.config->rules.inheritance == Inheritance::at_window_end;
+  return world.config->world.inheritance == WorldInheritance::at_window_end;
 }
 
 /// Puts a network and a genome into every free slot of a new world, for the newborns that come first.
@@ -79,8 +79,7 @@ HEDON_FN void fill_vacancies(World& world) {
     for (int32_t i = 0; i < world.state.free_count[s]; ++i, ++number) {
       const int32_t slot = world.state.free[species.first_slot + i];
       give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
-      init_genome(species.config->genome, RandomStream{world.seed, Purpose::vacant_genome, number, 0},
-                  world.genome(slot));
+      init_genome(*species.layout, RandomStream{world.seed, Purpose::vacant_genome, number, 0}, world.genome(slot));
       express_genes(world, slot);
     }
   }
@@ -116,8 +115,9 @@ HEDON_FN void apply_late_inheritance(World& world) {
     const Newborn& newborn = state.newborn[i];
     const float* parent = newborn_genome(world, newborn.parent < 0 ? i : newborn.parent);
     const int32_t species = state.newborn_species.count > 0 ? state.newborn_species[i] : 0;
-    inherit(world.shape->of[species].config->genome, world.seed, static_cast<uint32_t>(newborn.agent_id),
-            {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent, newborn_genome(world, i));
+    inherit(*world.shape->of[species].layout, world.config->world.mutation_noise, world.seed,
+            static_cast<uint32_t>(newborn.agent_id), {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent,
+            newborn_genome(world, i));
   }
   // Both lists are in the order of ids, and the newborns are the youngest of the living.
   for (int32_t i = births - 1, at = head.living_count - 1; i >= 0 && at >= 0; --i) {
@@ -135,14 +135,14 @@ HEDON_FN void open_window(World& world) {
   WorldHead& head = world.head();
   head.births_before = head.births_in_window;
   head.births_in_window = 0;
-  if (world.config->rules.parents == Parents::all) return;
+  if (world.config->world.parents == WorldParents::all) return;
   for (int32_t slot = 0; slot < world.shape->capacity; ++slot)
     world.state.resident_slot[slot] = world.state.alive[slot];
 }
 
 /// Whether the agent in `slot` may have children in this window.
 HEDON_FN bool may_breed(const World& world, int32_t slot) {
-  return world.config->rules.parents == Parents::all || world.state.resident_slot[slot] != 0;
+  return world.config->world.parents == WorldParents::all || world.state.resident_slot[slot] != 0;
 }
 
 }  // namespace hedon

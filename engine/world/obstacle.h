@@ -78,7 +78,7 @@ HEDON_FN void place_obstacles(World& world) {
 /// How many obstacles do harm now: the first ones.
 HEDON_FN int32_t harmful_obstacles(const World& world) {
   const ObstacleConfig& config = world.config->obstacle;
-  return static_cast<int32_t>(factor_at(config.schedule, world.head().step) * config.count + 0.5);
+  return static_cast<int32_t>(factor_at(config.schedule.harmful, world.head().step) * config.count + 0.5);
 }
 
 /// Counts for each agent the harmful obstacles that it touched in this step, whichever of their sides.

@@ -54,7 +54,7 @@ HEDON_FN bool free_of_bodies(const World& world, Vec2 position, float radius) {
     const Vec2 apart{physics.bodies.x[slot] - position.x, physics.bodies.y[slot] - position.y};
     if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
   });
-  const float food_reach = radius + world.config->food_radius;
+  const float food_reach = radius + world.config->world.food_radius;
   for_each_circle_near(physics, position.x, position.y, food_reach, [&](int32_t f) {
     const Vec2 apart{physics.circles.x[f] - position.x, physics.circles.y[f] - position.y};
     if (physics.circles.present[f] && squared_length(apart) < food_reach * food_reach) is_free = false;

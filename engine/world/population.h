@@ -73,12 +73,12 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
 HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy,
                                int64_t birth_step = 0) {
   const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
-  const NutrientConfig& nutrient = world.shape->of[species].config->nutrient;
-  if (world.shape->inner) set_inner(world, slot, nutrient.present != 0 ? nutrient.initial : 0.0, 0.0);
+  const SpeciesLayout& layout = *world.shape->of[species].layout;
+  const float nutrient = world.shape->of[species].config->nutrient.initial;
+  if (world.shape->inner) set_inner(world, slot, layout.has_nutrient != 0 ? nutrient : 0.0, 0.0);
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
-  init_genome(world.shape->of[species].config->genome, RandomStream{world.seed, Purpose::initial_genome, id, 0},
-              world.genome(slot));
+  init_genome(layout, RandomStream{world.seed, Purpose::initial_genome, id, 0}, world.genome(slot));
   express_genes(world, slot);
   world.counters(slot).energy_initial += energy;
   return slot;
@@ -86,7 +86,7 @@ HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, flo
 
 /// The heading of a child with this id that is born in this step.
 HEDON_FN float child_heading(const World& world, uint32_t id) {
-  const bool shared = world.config->rules.child_heading == ChildHeading::shared;
+  const bool shared = world.config->world.child_heading == WorldChildHeading::shared;
   const uint32_t step = shared ? static_cast<uint32_t>(world.head().step) : 0;
   const Random4 bits = RandomStream{world.seed, Purpose::child_heading, shared ? 0 : id, step}.draw(0);
   return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
@@ -137,7 +137,7 @@ HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 posit
     forget_updates(world, slot);  // it never learns with them, and a checkpoint does not hold those of free slots
   } else {
     give_child_network(world, parent, slot);
-    inherit(species.config->genome, world.seed, id,
+    inherit(*species.layout, world.config->world.mutation_noise, world.seed, id,
             {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)}, genome,
             world.genome(slot));
     express_genes(world, slot);

@@ -52,7 +52,8 @@ HEDON_FN float nearness(const RewardInputs& inputs) {
 HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use, const RewardInputs& inputs) {
   switch (use) {
     case RuleUse::reward:
-      return static_cast<double>(reward(world.species(slot).config->reward, world.genome(slot), inputs));
+      return static_cast<double>(
+          reward(world.species(slot).config->reward, *world.species(slot).layout, world.genome(slot), inputs));
     case RuleUse::hazard:
       return death_chance(world, slot);
     case RuleUse::birth:
@@ -66,13 +67,14 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   const int32_t s = world.shape->species_of(slot);
   const Species& species = world.shape->of[s];
   const SpeciesConfig& config = *species.config;
+  const SpeciesLayout& layout = *species.layout;
   const RewardInputs inputs = reward_inputs(world, slot, world.window_step());
   const Life& life = world.state.life[slot];
   const BodyState& body = world.state.physics.bodies;
   const Vec2 moved{body.x[slot] - world.scratch.start_x[slot], body.y[slot] - world.scratch.start_y[slot]};
-  for (int32_t i = 0; i < config.reward.terms.count; ++i)
-    *record++ = static_cast<double>(reward_input(config.reward, config.reward.terms[i], world.genome(slot), inputs));
-  for (int32_t g = 0; g < config.genome.genes.count; ++g) *record++ = static_cast<double>(world.genome(slot)[g]);
+  for (int32_t i = 0; i < layout.terms.count; ++i)
+    *record++ = static_cast<double>(reward_input(config.reward, layout, layout.terms[i], world.genome(slot), inputs));
+  for (int32_t g = 0; g < layout.genes.count; ++g) *record++ = static_cast<double>(world.genome(slot)[g]);
   *record++ = inputs.age;
   *record++ = inputs.before[ENERGY];
   *record++ = life.energy;
@@ -84,7 +86,7 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   *record++ = static_cast<double>(body.y[slot]);
   *record++ = static_cast<double>(world.head().step);
   *record++ = static_cast<double>(species.capacity() - world.state.free_count[s]);
-  const int32_t present[] = {config.nutrient.present, config.toxin.present};
+  const int32_t present[] = {layout.has_nutrient, layout.has_toxin};
   for (int32_t i = 0; i < 2; ++i) {
     if (present[i] == 0) continue;
     *record++ = world.inner_before(slot)[i];

@@ -43,7 +43,7 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
     } else {
       const int32_t kind =
           circle < eaten ? shape.bodies.circle_class(circle - foods) : state.eaten_food[circle - eaten].kind;
-      scene.radius[at] = world.config->food_radius;
+      scene.radius[at] = world.config->world.food_radius;
       scene.type[at] = static_cast<float>(shape.food_type(kind));
     }
   };
@@ -105,7 +105,7 @@ HEDON_FN void find_circles(const Culler& kernel, const World& world, const RayTa
                            const Box& box, RayCandidates& candidates) {
   const RayGrid& grid = world.shape->scene;
   const float largest = world.shape->bodies.max_radius();
-  const float margin = largest > world.config->food_radius ? largest : world.config->food_radius;
+  const float margin = largest > world.config->world.food_radius ? largest : world.config->world.food_radius;
   const int32_t first_column = cell_along(fan.x + box.low_x - margin, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(fan.x + box.high_x + margin, grid.inverse_cell, grid.columns);
   const int32_t first_row = cell_along(fan.y + box.low_y - margin, grid.inverse_cell, grid.rows);

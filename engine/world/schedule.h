@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/device.h"
-#include "world/config.h"
+#include "config/config.h"
 
 namespace hedon {
 

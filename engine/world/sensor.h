@@ -25,18 +25,17 @@ HEDON_FN void note_start(World& world, int32_t slot) {
 
 /// Writes the entries after energy: other inner states, then smells.
 HEDON_FN void observe_more(const World& world, int32_t slot, Vec2 forward, PackedObservation& out) {
-  const SpeciesConfig& config = *world.species(slot).config;
-  const SensorConfig& sensor = config.sensor;
-  const int32_t scents = sensor.smells.count * sensor.noses;
-  int32_t at = own_entries(config);
-  const bool raw = sensor.scaling == ObservationScaling::raw;
-  if (config.toxin.observed != 0) set_dense(out, --at, static_cast<float>(world.inner(slot)[1] * (raw ? 1.0 : 0.1)));
-  if (config.nutrient.observed != 0)
-    set_dense(out, --at, static_cast<float>(world.inner(slot)[0] * (raw ? 1.0 : 0.01)));
+  const Species& species = world.species(slot);
+  const SensorConfig& sensor = species.config->sensor;
+  const int32_t scents = species.layout->smells.count * sensor.noses;
+  int32_t at = own_entries(species);
+  const bool raw = sensor.scaling == SensorScaling::raw;
+  if (species.observes_toxin) set_dense(out, --at, static_cast<float>(world.inner(slot)[1] * (raw ? 1.0 : 0.1)));
+  if (species.observes_nutrient) set_dense(out, --at, static_cast<float>(world.inner(slot)[0] * (raw ? 1.0 : 0.01)));
   if (scents == 0) return;
   smell(world, slot, forward);
   const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
-  for (int32_t i = 0; i < scents; ++i) set_dense(out, own_entries(config) + i, smelled[i]);
+  for (int32_t i = 0; i < scents; ++i) set_dense(out, own_entries(species) + i, smelled[i]);
 }
 
 /// The heading of the agent in `slot` at the start of the step, a unit vector.
@@ -53,7 +52,7 @@ HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& ou
   if (world.species(slot).network.observation.wide()) extra_of(out).touch = state.touch_more[slot];
   const float energy = static_cast<float>(state.life[slot].energy);
   const float vx = body.velocity_x[slot], vy = body.velocity_y[slot], omega = body.angular_velocity[slot];
-  if (world.species(slot).config->sensor.scaling == ObservationScaling::raw) {
+  if (world.species(slot).config->sensor.scaling == SensorScaling::raw) {
     const float dense[MAX_DENSE] = {vx, vy, body.angle[slot], omega, energy, 0.0f};
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   } else {
@@ -133,9 +132,8 @@ struct TouchVisitor {
 
   HEDON_FN bool eats(const Species& species, int32_t type) const {
     const WorldShape& shape = *world->shape;
-    const DietConfig& diet = species.config->diet;
-    if (type < shape.species) return shape.hunting && diet.prey[type] > 0.0f;
-    return type < shape.wall_type() && diet.food[type - shape.species] != 0.0f;
+    if (type < shape.species) return shape.hunting && species.layout->eats_species[type] > 0.0f;
+    return type < shape.wall_type() && species.layout->eats_food[type - shape.species] != 0.0f;
   }
 };
 

@@ -5,7 +5,7 @@
 
 #include "base/array.h"
 #include "base/math.h"
-#include "world/config.h"
+#include "config/config.h"
 #include "world/species.h"
 
 namespace hedon {
@@ -19,7 +19,7 @@ struct RayGrid {
 
 /// Cells are a third as wide as the longest ray, so that the cells around a fan are few and hold few other circles.
 /// They are wider if an arena is so empty that there would be more cells than circles.
-HEDON_FN RayGrid make_ray_grid(const WorldConfig& config, int32_t circles) {
+HEDON_FN RayGrid make_ray_grid(const Config& config, int32_t circles) {
   const float width = config.arena.width, height = config.arena.height;
   float reach = 0.0f;
   for (int32_t s = 0; s < config.species.count; ++s) {
@@ -89,20 +89,20 @@ struct WorldShape {
 inline constexpr int LOGGED_DEATHS_PER_SLOT = 16;
 
 /// The classes of the physics: one per species, one per food kind.
-HEDON_FN BodyTable make_body_table(const WorldConfig& config, const WorldShape& shape) {
+HEDON_FN BodyTable make_body_table(const Config& config, const WorldShape& shape) {
   BodyTable table{};
   table.classes = shape.species;
   table.circle_classes = shape.kinds;
-  table.circle_radius = config.food_radius;
+  table.circle_radius = config.world.food_radius;
   table.first_obstacle = shape.first_obstacle;
   table.obstacle = {config.obstacle.friction, config.obstacle.restitution};
   for (int32_t k = 0; k <= shape.kinds; ++k) table.first_circle[k] = shape.food_offset[k];
   for (int32_t s = 0; s < shape.species; ++s) {
     table.first_slot[s + 1] = shape.of[s].last_slot;
     table.shape[s] = shape.of[s].body;
-    const FixedList<int32_t, MAX_TYPES>& collides = config.species[s].sensor.collides;
-    for (int32_t c = 0; c < collides.count; ++c) {
-      const int32_t type = collides[c];
+    const FixedList<int32_t, MAX_TYPES>& touches = config.layout[s].touches;
+    for (int32_t c = 0; c < touches.count; ++c) {
+      const int32_t type = touches[c];
       if (type < shape.species) table.meets_bodies[s] |= 1u << type;
       if (type >= shape.species && type < shape.wall_type()) table.meets_circles[s] |= 1u << (type - shape.species);
     }
@@ -110,7 +110,7 @@ HEDON_FN BodyTable make_body_table(const WorldConfig& config, const WorldShape& 
   return table;
 }
 
-HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t outer_walls) {
+HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t outer_walls) {
   WorldShape shape{};
   const auto grow = [](int32_t& most, int32_t value) { most = value > most ? value : most; };
   shape.species = config.species.count;
@@ -118,41 +118,42 @@ HEDON_FN WorldShape make_shape(const WorldConfig& config, int32_t walls, int32_t
   shape.obstacles = config.obstacle.count;
   for (int32_t s = 0; s < shape.species; ++s) {
     const SpeciesConfig& own = config.species[s];
-    const Species& species = shape.of[s] = make_species(own, shape.capacity, shape.types());
+    const SpeciesLayout& layout = config.layout[s];
+    const Species& species = shape.of[s] = make_species(own, layout, shape.capacity, shape.types());
     shape.capacity = species.last_slot;
-    shape.instinct |= species.learns && own.birth.network == ChildNetwork::initial;
-    shape.mating |= own.birth.mating == Mating::pairs;
-    shape.inner |= own.nutrient.present != 0 || own.toxin.present != 0;
-    grow(shape.scents, own.sensor.smells.count * own.sensor.noses);
-    grow(shape.genes, own.genome.genes.count);
+    shape.instinct |= species.learns && own.birth.network == BirthNetwork::initial;
+    shape.mating |= own.birth.mating == BirthMating::pairs;
+    shape.inner |= layout.has_nutrient != 0 || layout.has_toxin != 0;
+    grow(shape.scents, layout.smells.count * own.sensor.noses);
+    grow(shape.genes, layout.genes.count);
     grow(shape.params, species.network.size());
     grow(shape.pairs, species.network.pairs());
     grow(shape.lines, species.network.observation.wide() ? WIDE_LINES : NARROW_LINES);
-    for (int32_t prey = 0; prey < own.diet.prey.count; ++prey) shape.hunting |= own.diet.prey[prey] > 0.0f;
-    shape.causes |= shape.hunting || own.energy.starvation == Starvation::death;
-    if (has_rule(own)) {
+    for (int32_t prey = 0; prey < layout.eats_species.count; ++prey) shape.hunting |= layout.eats_species[prey] > 0.0f;
+    shape.causes |= shape.hunting || own.energy.starvation == EnergyStarvation::death;
+    if (layout.has_rule()) {
       shape.ruled = true;
       grow(shape.memory, own.reward.memory);
       grow(shape.record, species.record);
     }
     shape.networks |= species.has_network;
     shape.learning |= species.learns;
-    shape.external |= own.learning.policy == Policy::external;
-    shape.packed |= species.has_network && own.learning.acting_weights == ActingWeights::bfloat16;
+    shape.external |= own.learning.policy == LearningPolicy::external;
+    shape.packed |= species.has_network && own.learning.acting_weights == LearningActingWeights::bfloat16;
   }
   for (int32_t s = 0; s < shape.species; ++s) shape.of[s].network.observation.lines = shape.lines;
   shape.first_obstacle = walls;
   shape.walls = walls + config.obstacle.count * config.obstacle.corners;
   shape.outer_walls = outer_walls;
   shape.death_log_rows = LOGGED_DEATHS_PER_SLOT * shape.capacity;
-  shape.steps = config.species[0].learning.rollout_steps;
+  shape.steps = config.world.rollout_steps;
   shape.rollout = shape.learning ? shape.steps : 1;
   for (int32_t k = 0; k < shape.kinds; ++k) shape.food_offset[k + 1] = shape.food_offset[k] + config.food[k].capacity;
   shape.foods = shape.food_offset[shape.kinds];
-  shape.shows_eaten_food = config.rules.eaten_food == EatenFoodRule::seen;
-  shape.resident_slots = config.rules.parents == Parents::resident_slots;
+  shape.shows_eaten_food = config.world.eaten_food == WorldEatenFood::seen;
+  shape.resident_slots = config.world.parents == WorldParents::resident_slots;
   shape.circles = shape.capacity + shape.foods + (shape.shows_eaten_food ? shape.foods : 0);
-  shape.newborns = config.rules.inheritance == Inheritance::at_window_end ? shape.death_log_rows : 0;
+  shape.newborns = config.world.inheritance == WorldInheritance::at_window_end ? shape.death_log_rows : 0;
   shape.scene = make_ray_grid(config, shape.capacity + shape.foods);
   shape.bodies = make_body_table(config, shape);
   return shape;

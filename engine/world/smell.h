@@ -31,7 +31,7 @@ HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, in
   const RayGrid& grid = world.shape->scene;
   const float decay = species.config->sensor.smell_decay;
   const float reach = smell_reach(world, decay);
-  const int32_t channels = species.config->sensor.smells.count;
+  const int32_t channels = species.layout->smells.count;
   double sum[MAX_TYPES] = {};
   const int32_t first_column = cell_along(nose.x - reach, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(nose.x + reach, grid.inverse_cell, grid.columns);
@@ -60,7 +60,7 @@ HEDON_FN void smell(const World& world, int32_t slot, Vec2 forward) {
     float smelled[MAX_TYPES];
     const Vec2 nose = nose_at(species, n, {body.x[slot], body.y[slot]}, forward);
     smell_at(world, species, nose, world.scene.own[slot], smelled);
-    for (int32_t c = 0; c < sensor.smells.count; ++c) out[c * sensor.noses + n] = smelled[c];
+    for (int32_t c = 0; c < species.layout->smells.count; ++c) out[c * sensor.noses + n] = smelled[c];
   }
 }
 

@@ -6,9 +6,9 @@
 #include "base/array.h"
 #include "base/math.h"
 #include "base/vec2.h"
+#include "config/config.h"
 #include "learning/network.h"
 #include "physics/body.h"
-#include "world/config.h"
 
 namespace hedon {
 
@@ -28,14 +28,16 @@ HEDON_FN Channels make_channels(const FixedList<int32_t, MAX_TYPES>& list, int32
 
 struct Species {
   const SpeciesConfig* config;
+  const SpeciesLayout* layout;
   int32_t first_slot;  ///< it owns slots [first_slot, last_slot)
   int32_t last_slot;
   NetworkShape network;
   BodyShape body;
   Channels sight, touch, scent;
-  bool has_network;                      ///< its agents act by networks
-  bool learns;                           ///< these networks learn
-  bool observes;                         ///< its network, or its reward, reads what its rays meet
+  bool has_network;  ///< its agents act by networks
+  bool learns;       ///< these networks learn
+  bool observes;     ///< its network, or its reward, reads what its rays meet
+  bool observes_nutrient, observes_toxin;
   int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
@@ -76,35 +78,39 @@ HEDON_FN void set_directions(Species& species) {
 }
 
 /// Entries of an observation for the agent's own motion and heading, its energy and its other inner states.
-HEDON_FN int32_t own_entries(const SpeciesConfig& config) {
-  const int32_t inner = (config.nutrient.observed != 0) + (config.toxin.observed != 0);
-  return (config.sensor.scaling == ObservationScaling::raw ? 5 : 6) + inner;
+HEDON_FN int32_t own_entries(const Species& species) {
+  const int32_t inner = species.observes_nutrient + species.observes_toxin;
+  return (species.config->sensor.scaling == SensorScaling::raw ? 5 : 6) + inner;
 }
 
 /// types   of a world that senses may tell apart
-HEDON_FN Species make_species(const SpeciesConfig& config, int32_t first_slot, int32_t types) {
+HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& layout, int32_t first_slot,
+                              int32_t types) {
   Species species{};
   species.config = &config;
+  species.layout = &layout;
   species.first_slot = first_slot;
   species.last_slot = first_slot + config.population.capacity;
   species.body = make_disc(config.body.radius, config.body.density);
-  species.sight = make_channels(config.sensor.sees, types);
-  species.touch = make_channels(config.sensor.collides, types);
-  species.scent = make_channels(config.sensor.smells, types);
-  species.learns = config.learning.policy == Policy::ppo;
-  species.has_network = species.learns || config.learning.policy == Policy::fixed;
+  species.sight = make_channels(layout.sees, types);
+  species.touch = make_channels(layout.touches, types);
+  species.scent = make_channels(layout.smells, types);
+  species.learns = config.learning.policy == LearningPolicy::ppo;
+  species.has_network = species.learns || config.learning.policy == LearningPolicy::fixed;
   species.observes = species.has_network;
-  species.observes |= has_rule(config);
-  const int32_t inner = (config.nutrient.present != 0) + (config.toxin.present != 0);
-  species.record = config.reward.terms.count + config.genome.genes.count + 12 + 2 * inner + config.reward.memory;
-  for (int32_t i = 0; i < config.reward.terms.count; ++i) species.observes |= is_sensed(config.reward.terms[i].input);
-  const int32_t dense = own_entries(config) + config.sensor.smells.count * config.sensor.noses;
-  species.network = {{config.sensor.ray_count, config.sensor.sees.count,
-                      config.sensor.collides.count * config.sensor.touch_sectors, dense, NARROW_LINES}};
+  species.observes |= layout.has_rule();
+  species.observes_nutrient = layout.has_nutrient != 0 && config.nutrient.observed != 0;
+  species.observes_toxin = layout.has_toxin != 0 && config.toxin.observed != 0;
+  const int32_t inner = layout.has_nutrient + layout.has_toxin;
+  species.record = layout.terms.count + layout.genes.count + 12 + 2 * inner + config.reward.memory;
+  for (int32_t i = 0; i < layout.terms.count; ++i) species.observes |= is_sensed(layout.terms[i].input);
+  const int32_t dense = own_entries(species) + layout.smells.count * config.sensor.noses;
+  species.network = {{config.sensor.ray_count, layout.sees.count, layout.touches.count * config.sensor.touch_sectors,
+                      dense, NARROW_LINES}};
   double sine, cosine;
   sincos_double(config.motor.angle * (PI / 180.0), &sine, &cosine);
   species.motor_arm = static_cast<float>(config.body.radius * sine);
-  species.max_force = config.motor.max_force * sqrtf(2.0f);
+  species.max_force = layout.max_force * sqrtf(2.0f);
   sincos_double(config.sensor.nose_angle * (PI / 180.0), &sine, &cosine);
   species.nose_sine = static_cast<float>(sine);
   species.nose_cosine = static_cast<float>(cosine);

@@ -11,9 +11,9 @@
 #include "base/array.h"
 #include "base/fields.h"
 #include "base/status.h"
+#include "config/config.h"
 #include "learning/observation.h"
 #include "physics/state.h"
-#include "world/config.h"
 #include "world/extent.h"
 
 namespace hedon {

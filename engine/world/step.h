@@ -105,9 +105,9 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     apply_rules(world);
     keep_ledger(world);
     if (world.shape->hunting) apply_deaths(world, scratch.eaten);
-    if (world.config->rules.birth_order == BirthOrder::before_deaths) breed(world);
+    if (world.config->world.birth_order == WorldBirthOrder::before_deaths) breed(world);
     apply_deaths(world, scratch.dies);
-    if (world.config->rules.birth_order == BirthOrder::after_deaths) breed(world);
+    if (world.config->world.birth_order == WorldBirthOrder::after_deaths) breed(world);
     grow(world);
     head.step += 1;
     if (head.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(head.step));

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "base/array.h"
+#include "config/config.h"
 #include "kernel/kernel.h"
 #include "physics/state.h"
-#include "world/config.h"
 #include "world/extent.h"
 #include "world/state.h"
 
@@ -88,7 +88,7 @@ using Rule = void (*)(int64_t count, double* records, double* answers);
 
 struct World {
   Rule rule[MAX_SPECIES][RULE_USES];  ///< of each species; null for none
-  const WorldConfig* config;
+  const Config* config;
   const WorldShape* shape;
   const Kernel* kernel;
   uint64_t seed;
@@ -98,7 +98,7 @@ struct World {
   RayScene scene;
 
   HEDON_FN WorldHead& head() const { return state.head[0]; }
-  HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && has_rule(*species(slot).config, use); }
+  HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && species(slot).layout->has_rule(use); }
   HEDON_FN const Species& species(int32_t slot) const { return shape->of[shape->species_of(slot)]; }
   HEDON_FN Counters& counters(int32_t slot) const { return state.counters[shape->species_of(slot)]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
@@ -118,7 +118,7 @@ struct World {
   HEDON_FN float* initial_params(int32_t slot) const { return &state.initial_params[int64_t{slot} * shape->params]; }
   /// What the agent in `slot` acts with.
   HEDON_FN ActingNetwork network(int32_t slot) const {
-    const bool rounded = species(slot).config->learning.acting_weights == ActingWeights::bfloat16;
+    const bool rounded = species(slot).config->learning.acting_weights == LearningActingWeights::bfloat16;
     float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->pairs] : nullptr;
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }

@@ -17,9 +17,9 @@ import pytest
 from worlds import QUICK, make_engine, make_simulation, set_scene
 
 from hedon import _engine
+from hedon.config.engine import engine_input
 from hedon.config.load import load_config
 from hedon.error import EngineError
-from hedon.experiment.native import engine_input
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 STEPS = 150  # two windows of 64 and a rest

@@ -3,9 +3,11 @@
 HEDON_DOOR=N tries N configs of each kind instead of the few of the suite.
 """
 
+import copy
 import dataclasses
 import os
 import random
+import re
 import subprocess
 import sys
 import textwrap
@@ -13,16 +15,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from worlds import make_engine
 
 import hedon
 from hedon import _engine
 from hedon.config.config import Config
-from hedon.config.field import leaves, sections, settings
+from hedon.config.engine import engine_input, engine_paths
+from hedon.config.field import leaves
 from hedon.config.load import PRESETS
-from hedon.config.species import SpeciesConfig
 from hedon.error import EngineError
-from hedon.experiment.native import engine_input
 
 TRIALS = int(os.environ.get("HEDON_DOOR", "400"))
 SECONDS = 20.0
@@ -69,9 +69,8 @@ def test_what_no_world_can_be_is_refused_by_name(path, value):
 def test_the_engine_itself_refuses_them_too(path, value):
     native = engine_input(hedon.load_config("baseline"))
     table: Any = native.settings
-    # The engine has the length of a window with the learning of each species.
-    path = path.replace("world.", "learning.")
-    within = path.replace("food.normal", "food.0") if path.startswith("food") else f"species.0.{path}"
+    shared = path.startswith(("food.", "world."))
+    within = path.replace("food.normal", "food.0") if shared else f"species.0.{path}"
     *names, last = within.split(".")
     for name in names:
         table = table[int(name) if name.isdigit() else name]
@@ -120,22 +119,35 @@ def test_the_engine_takes_whatever_the_settings_allow():
     assert taken > 4 * left_out
 
 
-def test_every_integer_has_a_limit_in_the_engine():
-    native = engine_input(hedon.load_config("baseline")).settings
-    assert make_engine().world_count == 1
-    for section, kind in {**sections(Config), **sections(SpeciesConfig)}.items():
-        for name, setting in settings(kind.type).items():
-            if setting.type is not int or section in ("arena", "food", "species"):
-                continue
-            if section in ("genome", "world"):
-                continue  # the engine gets genes themselves; of the world's, only the length of a window: see above
-            if section in native:
-                table = {**native, section: {**native[section], name: -(2**31)}}
-            else:
-                own = native["species"][0]
-                table = {**native, "species": [{**own, section: {**own[section], name: -(2**31)}}]}
-            with pytest.raises(EngineError, match=rf"{section}\.{name} = -2147483648: must be from"):
-                _engine.memory_needed(table, 24, 1, 1)
+def test_the_engine_refuses_every_number_that_the_settings_refuse():
+    """It has their limits, and says the same path."""
+    base = hedon.load_config("poison")
+    native, places, refused = engine_input(base), engine_paths(base), 0
+    for path, setting, _ in leaves(base):
+        limits = setting.doc.range
+        if setting.type not in (int, float) or path not in places or path.endswith("_force"):
+            continue  # forces are in the units of a body there
+        at = places[path][0]
+        low, high = (limits.ge if limits.gt is None else limits.gt), limits.le or limits.lt
+        assert low is not None
+        assert high is not None
+        for wrong in (low - 1, high + max(1, high / 1e6)):
+            table = changed_at(native.settings, at, setting.type(wrong))
+            with pytest.raises(EngineError, match=f"^{re.escape(at)} = .*: must be "):
+                _engine.memory_needed(table, len(native.walls), 1, 1)
+            refused += 1
+    assert refused > 150
+
+
+def changed_at(tree: Any, path: str, value: Any) -> Any:
+    """A copy of nested dicts and lists with another value at a path of the engine, such as `food[0].energy`."""
+    copied = copy.deepcopy(tree)
+    *names, last = re.findall(r"\w+", path)
+    inner: Any = copied
+    for name in names:
+        inner = inner[int(name) if isinstance(inner, list) else name]
+    inner[int(last) if isinstance(inner, list) else last] = value
+    return copied
 
 
 NASTY = [-1, 0, 1, 2, 3, 7, 16, 33, 48, 63, 64, 200, 1000, 2**31 - 1, 2**31, -(2**31), 2**63, 10**30]

@@ -125,7 +125,7 @@ def test_forward_of_saturated_units(kernel: str):
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_learn_is_gae_then_update_by_the_stream_s_minibatches_in_order_of_time(kernel: str):
     case = random_case(12, SMALL, 64)
-    settings = config(rollout_steps=64, minibatch_size=16)
+    settings = config(minibatch_size=16)
     value, reward = case.target, case.advantage
     zero = np.zeros_like(case.params)
     got = learning.learn(

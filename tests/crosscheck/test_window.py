@@ -1,5 +1,6 @@
 """What learning is given, and who learns: the rollout's rows against the steps, one update against NumPy."""
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ from acting_weights import as_read
 from worlds import QUICK, make_simulation
 
 from hedon import _engine
-from hedon.config.native import engine_learning
 from hedon.experiment.simulation import Simulation
 
 SEED = 5
@@ -56,7 +56,7 @@ def live_a_window(simulation: Simulation) -> dict[int, dict[str, Any]]:
 def test_a_window_of_learning(case):
     simulation = make_simulation(*CASES[case], seeds=(SEED,))
     world, shape = simulation.worlds[0], network_shape(simulation)
-    settings = engine_learning(WINDOW, simulation.config.species["agent"].learning)
+    settings = asdict(simulation.config.species["agent"].learning)
     simulation.run(WINDOW)  # so that moments are not zero and some agents are born later than others
     told = live_a_window(simulation)
     agents, slots, next_seen = world.agents(), world.living, world.observations()
@@ -114,7 +114,7 @@ def test_a_window_of_learning(case):
 @pytest.mark.parametrize("case", CASES)
 def test_the_first_update_is_that_of_plain_ppo(case):
     simulation = make_simulation(*CASES[case], seeds=(SEED,))
-    world, settings = simulation.worlds[0], engine_learning(WINDOW, simulation.config.species["agent"].learning)
+    world, settings = simulation.worlds[0], asdict(simulation.config.species["agent"].learning)
     told = live_a_window(simulation)
     agents = world.agents()
     learners = np.flatnonzero(agents["birth_step"] == 0)[:6]

@@ -11,18 +11,19 @@ LONGEST = 400
 # What each part of the engine may include, besides itself.
 ALLOWED = {
     "base": set(),
+    "config": {"base"},
     "lanes": {"base"},
-    "learning": {"base"},
-    "kernel": {"base", "lanes", "learning"},
-    "physics": {"base"},
-    "evolution": {"base"},
-    "world": {"base", "physics", "evolution", "learning", "kernel"},
-    "simulation": {"base", "physics", "evolution", "learning", "kernel", "world"},
-    "binding": {"base", "physics", "evolution", "learning", "kernel", "world", "simulation"},
-    "web": {"base", "lanes", "physics", "evolution", "learning", "kernel", "world", "simulation"},
-    "cuda": {"base", "lanes", "learning", "kernel", "simulation"},
+    "learning": {"base", "config"},
+    "kernel": {"base", "config", "lanes", "learning"},
+    "physics": {"base", "config"},
+    "evolution": {"base", "config"},
+    "world": {"base", "config", "physics", "evolution", "learning", "kernel"},
+    "simulation": {"base", "config", "physics", "evolution", "learning", "kernel", "world"},
+    "binding": {"base", "config", "physics", "evolution", "learning", "kernel", "world", "simulation"},
+    "web": {"base", "config", "lanes", "physics", "evolution", "learning", "kernel", "world", "simulation"},
+    "cuda": {"base", "config", "lanes", "learning", "kernel", "simulation"},
 }
-STEP_PATH = ("physics", "evolution", "learning", "world", "kernel")
+STEP_PATH = ("config", "physics", "evolution", "learning", "world", "kernel")
 FORBIDDEN_IN_STEP = re.compile(
     r"#include <(vector|string|map|set|functional|memory|iostream|mutex|thread|chrono|random|algorithm)>"
     r"|\b(new|malloc|calloc|virtual|throw|try|dynamic_cast)\b[^\w]"

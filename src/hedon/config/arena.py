@@ -17,19 +17,19 @@ class ArenaConfig:
 
     width: Annotated[
         float,
-        Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5)),
+        Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5), shapes=True),
     ] = 480.0
     height: Annotated[
         float,
-        Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5)),
+        Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5), shapes=True),
     ] = 360.0
     corner_radius: Annotated[
         float,
-        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0, le=1e5)),
+        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0, le=1e5), derived=True),
     ] = 19.0
     corner_chords: Annotated[
         int,
-        Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64)),
+        Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64), derived=True),
     ] = 4
     inner_walls: Annotated[
         tuple[tuple[float, float, float, float], ...],
@@ -38,6 +38,7 @@ class ArenaConfig:
             "u",
             OURS,
             Range(max_items=256, each=(0, 1e5)),
+            derived=True,
         ),
     ] = ()
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from hedon.config.field import EITHER, OURS, Doc, Range
+from hedon.config.room import MAX_RAYS
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +37,27 @@ class MotorConfig:
 
     min_force: Annotated[
         float,
-        Doc("limit of each motor's force for very negative actions", "mass·u/s²", EITHER, Range(ge=-1e4, le=1e4)),
+        Doc(
+            "limit of each motor's force for very negative actions",
+            "mass·u/s²",
+            EITHER,
+            Range(ge=-1e4, le=1e4),
+            derived=True,
+        ),
     ] = -20.0
     max_force: Annotated[
         float,
-        Doc("limit of each motor's force for very positive actions", "mass·u/s²", EITHER, Range(gt=0, le=1e4)),
+        Doc(
+            "limit of each motor's force for very positive actions",
+            "mass·u/s²",
+            EITHER,
+            Range(gt=0, le=1e4),
+            derived=True,
+        ),
     ] = 80.0
     force_scale: Annotated[
         float,
-        Doc("factor on both limits: for bodies of another size", "", OURS, Range(gt=0, le=1e3)),
+        Doc("factor on both limits: for bodies of another size", "", OURS, Range(gt=0, le=1e3), derived=True),
     ] = 1.0
     angle: Annotated[
         float,
@@ -58,7 +71,7 @@ class SensorConfig:
 
     ray_count: Annotated[
         int,
-        Doc("number of range rays; the first is the rightmost", "", EITHER, Range(ge=1, le=32)),
+        Doc("number of range rays; the first is the rightmost", "", EITHER, Range(ge=1, le=MAX_RAYS)),
     ] = 24
     ray_spread: Annotated[
         float,

@@ -10,9 +10,9 @@ from hedon.config.check_schedule import schedule_problems
 from hedon.config.check_species import MAX_COVERAGE, species_problems
 from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import leaves
-from hedon.config.food import MAX_KINDS, FoodConfig
+from hedon.config.food import FoodConfig
 from hedon.config.problem import Problem, format_value, single
-from hedon.config.schedule import MAX_FACTOR
+from hedon.config.room import MAX_FACTOR, MAX_FOOD_KINDS
 
 MIN_WALL = 0.01
 """Length of the shortest wall whose direction float32 can still hold [u]."""
@@ -102,8 +102,8 @@ def _obstacles(config: Config) -> Iterator[Problem]:
 
 
 def _kinds(config: Config) -> Iterator[Problem]:
-    if not 1 <= len(config.food) <= MAX_KINDS:
-        yield Problem("food", f"there must be from 1 to {MAX_KINDS} kinds of food, not {len(config.food)}")
+    if not 1 <= len(config.food) <= MAX_FOOD_KINDS:
+        yield Problem("food", f"there must be from 1 to {MAX_FOOD_KINDS} kinds of food, not {len(config.food)}")
     for kind, food in config.food.items():
         path = f"food.{kind}"
         if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind) or kind in RESERVED_KINDS:

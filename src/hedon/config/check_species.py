@@ -7,11 +7,9 @@ from collections.abc import Iterator, Sequence
 from hedon.config.check_gene import law_problems
 from hedon.config.check_schedule import schedule_problems
 from hedon.config.config import Config
-from hedon.config.evolution import GenomeConfig
+from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GenomeConfig
 from hedon.config.layout import (
-    FAMILY_GENES,
     INNER_STATES,
-    LEARNING_GENES,
     SOLID,
     chosen,
     inner_states,
@@ -21,18 +19,10 @@ from hedon.config.layout import (
     smelled,
 )
 from hedon.config.problem import Problem, format_value, nearest, single
+from hedon.config.room import MAX_FACTOR, MAX_FORCE, MAX_GENES, MAX_SMELLS, MAX_SPECIES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
-from hedon.config.schedule import MAX_FACTOR
-from hedon.config.species import EVERYTHING, MAX_SPECIES, RULE_USES, SpeciesConfig
+from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
 
-MAX_TOUCH_BITS = 128
-"""Most types times touch sectors that the engine has room for."""
-MAX_SMELLS = 12
-"""Most smells times noses that the engine has room for, beside inner states."""
-MAX_GENES = 64
-"""Most genes that the engine has room for."""
-MAX_FORCE = 1e6
-"""Largest force of a motor, in the engine as for all its numbers: squares of it are finite [mass·u/s²]."""
 THRESHOLDS = ("fed", "hungry", "by_age")
 """Families of rewards that have a threshold."""
 MAX_COVERAGE = 0.45

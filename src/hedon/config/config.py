@@ -4,10 +4,11 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from hedon.config.arena import ArenaConfig
-from hedon.config.field import OURS, Doc
+from hedon.config.field import OURS, Doc, Table
 from hedon.config.food import FoodConfig
 from hedon.config.obstacle import ObstacleConfig
 from hedon.config.physics import PhysicsConfig
+from hedon.config.room import MAX_FOOD_KINDS, MAX_SPECIES
 from hedon.config.species import ONLY, SpeciesConfig
 from hedon.config.world import WorldConfig
 
@@ -41,9 +42,13 @@ class Config:
     arena: ArenaConfig = field(default_factory=ArenaConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     obstacle: ObstacleConfig = field(default_factory=ObstacleConfig)
-    food: dict[str, FoodConfig] = field(default_factory=lambda: {"normal": FoodConfig()})
+    food: Annotated[dict[str, FoodConfig], Table(most=MAX_FOOD_KINDS)] = field(
+        default_factory=lambda: {"normal": FoodConfig()}
+    )
     world: WorldConfig = field(default_factory=WorldConfig)
-    species: dict[str, SpeciesConfig] = field(default_factory=lambda: {ONLY: SpeciesConfig()})
+    species: Annotated[dict[str, SpeciesConfig], Table(most=MAX_SPECIES)] = field(
+        default_factory=lambda: {ONLY: SpeciesConfig()}
+    )
 
     def with_(self, path: str, value: Any) -> "Config":
         """The same config with another value of one setting, checked.

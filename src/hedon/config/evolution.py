@@ -3,7 +3,28 @@
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, DERIVED, EITHER, OURS, PAPER, Doc, Range, Table
+
+LEARNING_GENES = {
+    "learning_rate": "power of ten by which the learning rate differs",
+    "gamma": "power of ten by which the odds of the discount differ",
+    "entropy_coef": "power of ten by which the weight of the entropy differs",
+    "action_sd": "power of ten of the standard deviation of a newborn's actions",
+}
+"""What of learning a gene may set, with what the gene is."""
+FAMILY_GENES = {
+    "threshold": "power of ten by which the threshold of the reward differs",
+    "threshold_width": "power of ten by which the width of that threshold differs",
+}
+"""What of the family of a reward a gene may set, with what the gene is."""
+OF_ALL_GENES = {
+    "law": "mutation_law",
+    "scale": "mutation_scale",
+    "df": "mutation_df",
+    "probability": "mutation_probability",
+    "limit": "weight_limit",
+}
+"""What the mutation of one gene says, and the setting of `genome` that says it for all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +121,8 @@ class GenomeConfig:
     set_point: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
     set_point_nutrient: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
     set_point_toxin: GeneConfig = field(default_factory=GeneConfig)
-    learning: dict[str, GeneConfig] = field(default_factory=dict)
-    family: dict[str, GeneConfig] = field(default_factory=dict)
+    learning: Annotated[dict[str, GeneConfig], Table(names=LEARNING_GENES)] = field(default_factory=dict)
+    family: Annotated[dict[str, GeneConfig], Table(names=FAMILY_GENES)] = field(default_factory=dict)
     mutation: dict[str, MutationConfig] = field(default_factory=dict)
 
 
@@ -150,7 +171,7 @@ class RewardConfig:
 
     family: Annotated[
         Literal["linear", "sinh", "scaled", "fed", "hungry", "by_age"],
-        Doc("how a weight follows from its genes", "", PAPER + "; the others are ours"),
+        Doc("how a weight follows from its genes", "", PAPER + "; the others are ours", shapes=True),
     ] = "linear"
     threshold: Annotated[
         float,
@@ -162,7 +183,13 @@ class RewardConfig:
     ] = 10.0
     meal_coef: Annotated[
         float,
-        Doc("factor of the terms for what is eaten; 0: their weights do nothing", "", PAPER, Range(ge=-1e3, le=1e3)),
+        Doc(
+            "factor of the terms for what is eaten; 0: their weights do nothing",
+            "",
+            PAPER,
+            Range(ge=-1e3, le=1e3),
+            derived=True,
+        ),
     ] = 1.0
     drive_reduction_coef: Annotated[
         float,
@@ -172,12 +199,12 @@ class RewardConfig:
             "",
             OURS,
             Range(ge=-1e3, le=1e3),
+            derived=True,
         ),
     ] = 0.0
-
     action_coef: Annotated[
         float,
-        Doc("factor of the action term", "", EITHER, Range(ge=-1e3, le=1e3)),
+        Doc("factor of the action term", "", EITHER, Range(ge=-1e3, le=1e3), derived=True),
     ] = 0.01
     action_norm: Annotated[
         Literal["max_force", "none"],
@@ -194,7 +221,7 @@ class RewardConfig:
     ] = ""
     memory: Annotated[
         int,
-        Doc("numbers that the rule keeps for each agent from step to step", "", OURS, Range(ge=0, le=16)),
+        Doc("numbers that the rule keeps for each agent from step to step", "", OURS, Range(ge=0, le=16), shapes=True),
     ] = 0
-    see: dict[str, SeeConfig] = field(default_factory=dict)
-    smell: dict[str, SmellConfig] = field(default_factory=dict)
+    see: Annotated[dict[str, SeeConfig], DERIVED] = field(default_factory=dict)
+    smell: Annotated[dict[str, SmellConfig], DERIVED] = field(default_factory=dict)

@@ -62,12 +62,16 @@ class Doc:
         unit: Its unit, or "" if it has none.
         source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if one is needed.
         range: The allowed values, besides their type.
+        derived: The engine gets what is made of it, in layouts, walls or lengths, and not the setting itself.
+        shapes: The engine gets it, but layouts or walls depend on it too: it cannot be changed without them.
     """
 
     meaning: str
     unit: str
     source: str
     range: Range = Range()
+    derived: bool = False
+    shapes: bool = False
     __is_annotated_types_grouped_metadata__: Literal[True] = True
 
     def __iter__(self) -> Iterator[object]:
@@ -122,11 +126,31 @@ def type_name(kind: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True)
+class Table:
+    """The annotation of a table of sections by name.
+
+    Attributes:
+        most: How many there may be, where users choose the names.
+        names: The names, where they are given, each with the largest factor of a schedule or the meaning of a gene.
+        derived: As in `Doc`.
+    """
+
+    most: int = 0
+    names: Mapping[str, Any] | None = None
+    derived: bool = False
+
+
+DERIVED = Table(derived=True)
+"""The annotation of a section whose settings reach the engine in layouts alone."""
+
+
+@dataclass(frozen=True, slots=True)
 class Section:
     """A field that is a section, or a table of sections by the name of their kind."""
 
     type: type
     repeated: bool
+    table: Table = Table()
 
 
 @cache
@@ -135,23 +159,41 @@ def settings(section: type) -> Mapping[str, Setting]:
     hints = get_type_hints(section, include_extras=True)
     found = {}
     for field in fields(section):
-        if get_origin(hints[field.name]) is Annotated:
-            kind, doc = get_args(hints[field.name])
-            found[field.name] = Setting(field.name, kind, field.default, doc)
+        kind, *notes = get_args(hints[field.name]) or [None]
+        if notes and isinstance(notes[0], Doc):
+            found[field.name] = Setting(field.name, kind, field.default, notes[0])
     return MappingProxyType(found)
 
 
 @cache
 def sections(section: type) -> Mapping[str, Section]:
     """The inner sections of a section by name, in order."""
-    hints = get_type_hints(section)
+    hints = get_type_hints(section, include_extras=True)
     found = {}
     for field in fields(section):
-        repeated = get_origin(hints[field.name]) is dict
-        inner = get_args(hints[field.name])[1] if repeated else hints[field.name]
+        kind, table = hints[field.name], Table()
+        if get_origin(kind) is Annotated:
+            kind, table = get_args(kind)
+        repeated = get_origin(kind) is dict
+        inner = get_args(kind)[1] if repeated else kind
         if isinstance(inner, type) and is_dataclass(inner):
-            found[field.name] = Section(inner, repeated)
+            found[field.name] = Section(inner, repeated, table)
     return MappingProxyType(found)
+
+
+def engine_settings(section: type) -> Mapping[str, Setting]:
+    """The settings of a section that the engine gets: numbers, lists of them and choices, unless they are derived."""
+
+    def has_text(kind: Any) -> bool:
+        return kind is str or any(map(has_text, get_args(kind)))
+
+    own = settings(section).items()
+    return {name: each for name, each in own if not each.doc.derived and (each.choices or not has_text(each.type))}
+
+
+def engine_sections(section: type) -> Mapping[str, Section]:
+    """The inner sections of a section of which the engine gets anything itself."""
+    return {name: each for name, each in sections(section).items() if not each.table.derived}
 
 
 def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
@@ -190,6 +232,22 @@ def places(section: type, name: str, path: str = "") -> Iterator[str]:
         if name in settings(inner.type):
             yield below + name
         yield from places(inner.type, name, below)
+
+
+def value_at(section: Any, path: str) -> Any:
+    """What a config, or a part of one, has at a path.
+
+    Args:
+        section: a config, a section, or a table of sections.
+        path: names joined by points.
+
+    Raises:
+        KeyError: There is no such name in a table of sections.
+        AttributeError: A section has no such setting.
+    """
+    for name in path.split("."):
+        section = section[name] if isinstance(section, dict) else getattr(section, name)
+    return section
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:

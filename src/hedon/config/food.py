@@ -4,11 +4,9 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from hedon.config.evolution import GeneConfig
-from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, DERIVED, EITHER, OURS, PAPER, Doc, Range, Table
+from hedon.config.room import MAX_FACTOR
 from hedon.config.schedule import ScheduleConfig
-
-MAX_KINDS = 8
-"""Most kinds that the engine has room for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +69,13 @@ class FoodConfig:
     ] = 1.0
     nutrient: Annotated[
         float,
-        Doc("nutrient gained by eating one piece", "nutrient", OURS, Range(ge=0, le=1e4)),
+        Doc("nutrient gained by eating one piece", "nutrient", OURS, Range(ge=0, le=1e4), shapes=True),
     ] = 0.0
     toxin: Annotated[
         float,
-        Doc("toxin that one piece leaves", "toxin", OURS + "; the paper's code has 10", Range(ge=0, le=1e4)),
+        Doc(
+            "toxin that one piece leaves", "toxin", OURS + "; the paper's code has 10", Range(ge=0, le=1e4), shapes=True
+        ),
     ] = 0.0
     growth_rate: Annotated[
         float,
@@ -108,5 +108,7 @@ class FoodConfig:
         Doc("color in figures; agents do not see it", "", OURS, Range(form="#rrggbb")),
     ] = "#3f8f4f"
     placement: PlacementConfig = field(default_factory=PlacementConfig)
-    gene: GeneConfig = field(default_factory=GeneConfig)
-    schedule: dict[str, ScheduleConfig] = field(default_factory=dict)
+    gene: Annotated[GeneConfig, DERIVED] = field(default_factory=GeneConfig)
+    schedule: Annotated[dict[str, ScheduleConfig], Table(names={"growth_rate": MAX_FACTOR, "capacity": 1.0})] = field(
+        default_factory=dict
+    )

@@ -3,18 +3,11 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from hedon.config.evolution import OF_ALL_GENES
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.species import ONLY, PER_SPECIES
 
 Table = dict[str, Any]
-_MUTATION = {
-    "law": "mutation_law",
-    "scale": "mutation_scale",
-    "df": "mutation_df",
-    "probability": "mutation_probability",
-    "limit": "weight_limit",
-}
-"""What a gene's mutation says, and the setting of `genome` that says it for all."""
 EVERY = "*"
 """In a layer, the kind of food that stands for every kind: `[food."*"]`."""
 
@@ -131,7 +124,7 @@ def settle_mutation(tables: Table) -> None:
     for genome in (owner.get("genome") for owner in owners if isinstance(owner, dict)):
         if not isinstance(genome, dict) or not isinstance(genome.get("mutation"), dict):
             continue
-        common = {name: genome[whole] for name, whole in _MUTATION.items() if whole in genome}
+        common = {name: genome[whole] for name, whole in OF_ALL_GENES.items() if whole in genome}
         genome["mutation"] = {
             gene: _lay(common, own) if isinstance(own, dict) else own
             for gene, own in genome["mutation"].items()

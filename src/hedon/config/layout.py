@@ -3,12 +3,12 @@
 The engine gets these layouts as data, the records carry them, and columns, labels and figures are named by them.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hedon.config.config import Config
-from hedon.config.evolution import GeneConfig, GenomeConfig, MutationConfig
+from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, OF_ALL_GENES, GeneConfig, MutationConfig
+from hedon.config.field import value_at
 from hedon.config.problem import nearest
 from hedon.config.species import EVERYTHING, SpeciesConfig
 from hedon.error import ArgumentError
@@ -26,20 +26,8 @@ SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age"
 SET_POINT = "set_point"
 INNER_STATES = ("energy", "nutrient", "toxin")
 """What an agent may hold, in the engine's order."""
-LEARNING_GENES = {
-    "learning_rate": "power of ten by which the learning rate differs",
-    "gamma": "power of ten by which the odds of the discount differ",
-    "entropy_coef": "power of ten by which the weight of the entropy differs",
-    "action_sd": "power of ten of the standard deviation of a newborn's actions",
-}
-"""What of learning a gene may set, with what the gene is."""
-FAMILY_GENES = {
-    "threshold": "power of ten by which the threshold of the reward differs",
-    "threshold_width": "power of ten by which the width of that threshold differs",
-}
-"""What of the family of a reward a gene may set, with what the gene is."""
-MAX_EXPONENT = 2.0
-"""Limit of genes that are exponents."""
+MAX_EXPONENT, MAX_WEIGHT = 2.0, 1e3
+"""Largest limit of genes that are exponents, and of others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +39,18 @@ class Gene:
         role: "reward", "learning" or "neutral".
         meaning: What it does, as a phrase.
         law: How founders draw it.
-        mutation: How it mutates, and its limit.
+        place: The path of the law: in the config where it begins with "food.", else in the species.
+        mutation: How it mutates, and its limit, which is at most `most`.
+        most: The largest limit that it can have.
     """
 
     name: str
     role: str
     meaning: str
     law: GeneConfig
+    place: str
     mutation: MutationConfig
+    most: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +63,7 @@ class RewardTerm:
         gene: Name of the gene that weighs it.
         second_gene: Name of the weight's other gene, where the family of the reward has one.
         coef: Factor of the term.
+        place: The path of the factor in the species.
     """
 
     input: str
@@ -78,6 +71,7 @@ class RewardTerm:
     gene: str
     second_gene: str
     coef: float
+    place: str
 
     @property
     def name(self) -> str:
@@ -278,46 +272,39 @@ def set_point_of(state: str) -> str:
 class _Layout:
     """Collects the genes and reward terms of one species, in order."""
 
-    def __init__(self, species: SpeciesConfig) -> None:
-        self.genome, self.reward = species.genome, species.reward
+    def __init__(self, config: Config, species: SpeciesConfig) -> None:
+        self.config, self.species = config, species
         self.genes: list[Gene] = []
         self.terms: list[RewardTerm] = []
 
-    def add_gene(self, name: str, role: str, meaning: str, law: GeneConfig) -> None:
-        mutation = _mutation(self.genome, name)
-        most = _most(self.reward.family, role, name)
+    def add_gene(self, name: str, role: str, meaning: str, place: str) -> None:
+        genome = self.species.genome
+        law = value_at(self.config if place.startswith("food.") else self.species, place)
+        common = {own: getattr(genome, whole) for own, whole in OF_ALL_GENES.items()}
+        mutation = genome.mutation.get(name, MutationConfig(**common))
+        most = _most(self.species.reward.family, role, name)
         limited = replace(mutation, limit=min(mutation.limit, most))
-        self.genes.append(Gene(name, role, meaning, law, limited))
+        self.genes.append(Gene(name, role, meaning, law, place, limited, most))
 
-    def add_term(self, kind: str, index: int, of: str, meaning: str, law: GeneConfig, coef: float) -> None:
-        """Adds a term, the gene that weighs its input, and the weight's second gene if it has one."""
+    def add_term(self, kind: str, index: int, of: str, meaning: str, law: str, coef: str) -> None:
+        """Adds a term, the gene that weighs its input, and the weight's second gene if it has one.
+
+        `law` is the place of the gene's law, `coef` that of the term's factor.
+        """
         weight = second = f"w_{of}"
         self.add_gene(weight, "reward", f"reward weight for {meaning}", law)
-        if self.reward.family in SECOND_GENES:
-            ending, what = SECOND_GENES[self.reward.family]
+        if self.species.reward.family in SECOND_GENES:
+            ending, what = SECOND_GENES[self.species.reward.family]
             second = weight + ending
-            self.add_gene(second, "reward", f"{what} for {meaning}", self.genome.second)
-        self.terms.append(RewardTerm(kind, index, weight, second, coef))
-
-
-def _mutation(genome: GenomeConfig, name: str) -> MutationConfig:
-    return genome.mutation.get(
-        name,
-        MutationConfig(
-            law=genome.mutation_law,
-            scale=genome.mutation_scale,
-            df=genome.mutation_df,
-            probability=genome.mutation_probability,
-            limit=genome.weight_limit,
-        ),
-    )
+            self.add_gene(second, "reward", f"{what} for {meaning}", "genome.second")
+        self.terms.append(RewardTerm(kind, index, weight, second, value_at(self.species, coef), coef))
 
 
 def _most(family: str, role: str, name: str) -> float:
     """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
     exponent = family == "sinh" and role == "reward" and not name.startswith(SET_POINT)
     exponent |= name.endswith(SCALE) or role == "learning" or name.removeprefix("g_") in FAMILY_GENES
-    return MAX_EXPONENT if exponent else math.inf
+    return MAX_EXPONENT if exponent else MAX_WEIGHT
 
 
 def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
@@ -327,34 +314,39 @@ def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
         config: with what the species shares with others.
         species: one of the config's.
     """
-    made, genome, reward = _Layout(species), species.genome, species.reward
+    made, genome, reward = _Layout(config, species), species.genome, species.reward
     eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
     inner = inner_states(config, species)
-    for index, (kind, food) in enumerate(config.food.items()):
+    for index, kind in enumerate(config.food):
         if kind in eaten:
-            made.add_term("food", index, kind, f"a food of kind {kind}", food.gene, reward.meal_coef)
+            made.add_term("food", index, kind, f"a food of kind {kind}", f"food.{kind}.gene", "reward.meal_coef")
     for index, name in enumerate(config.species, len(config.food)):
         if name in eaten:
-            made.add_term("food", index, name, f"eating a {name}", genome.prey, reward.meal_coef)
-    made.add_term("action", 0, "action", "motor action", genome.action, reward.action_coef)
+            made.add_term("food", index, name, f"eating a {name}", "genome.prey", "reward.meal_coef")
+    made.add_term("action", 0, "action", "motor action", "genome.action", "reward.action_coef")
     for name, see in reward.see.items():
-        read = sees.index(see.reads or name)
-        made.add_term(f"see_{see.over_rays}", read, f"see_{name}", f"seeing {name}", see.gene, see.coef)
+        read, place = sees.index(see.reads or name), f"reward.see.{name}"
+        made.add_term(f"see_{see.over_rays}", read, f"see_{name}", f"seeing {name}", f"{place}.gene", f"{place}.coef")
     smells = smelled(config, species.sensor.smells)
-    for name, smell in reward.smell.items():
-        made.add_term("smell", smells.index(name), f"smell_{name}", f"smelling {name}", smell.gene, smell.coef)
+    for name in reward.smell:
+        place = f"reward.smell.{name}"
+        made.add_term(
+            "smell", smells.index(name), f"smell_{name}", f"smelling {name}", f"{place}.gene", f"{place}.coef"
+        )
     if reward.drive_reduction_coef:
         for state in inner:
             name = set_point_of(state)
             meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
-            made.add_gene(name, "reward", meaning, getattr(genome, name))
-        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.drive_reduction_coef))
-    for name, law in genome.family.items():
-        made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], law)
-    for name, law in genome.learning.items():
-        made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], law)
+            made.add_gene(name, "reward", meaning, f"genome.{name}")
+        coef = "reward.drive_reduction_coef"
+        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.drive_reduction_coef, coef))
+    for name in genome.family:
+        made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
+    for name in genome.learning:
+        made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], f"genome.learning.{name}")
     for i in range(genome.neutral_count):
-        made.add_gene(f"neutral_{i + 1}", "neutral", "neutral marker: inherited and mutated, no effect", genome.neutral)
+        meaning = "neutral marker: inherited and mutated, no effect"
+        made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
     touches = chosen(config, species.body.collides)
     return SpeciesLayout(
         genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches, smells=smells, inner=inner

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from hedon.config.arena import ArenaConfig
-from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, EITHER, OURS, PAPER, Doc, Range, Table
+from hedon.config.room import MAX_FACTOR
 from hedon.config.schedule import ScheduleConfig
 
 
@@ -44,7 +45,7 @@ class HazardConfig:
             OURS,
         ),
     ] = ""
-    schedule: dict[str, ScheduleConfig] = field(default_factory=dict)
+    schedule: Annotated[dict[str, ScheduleConfig], Table(names={"scale": MAX_FACTOR})] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,11 +89,12 @@ class BirthConfig:
             "distance_unit",
             CODE + "; the paper says about 8 % of the width",
             Range(gt=0, le=1e5),
+            derived=True,
         ),
     ] = 100.0
     distance_unit: Annotated[
         Literal["u", "arena_width"],
-        Doc("unit of distance_sd", "", EITHER),
+        Doc("unit of distance_sd", "", EITHER, derived=True),
     ] = "u"
     network: Annotated[
         Literal["none", "initial", "learned"],

@@ -3,12 +3,11 @@
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from hedon.config.field import OURS, Doc, Range
+from hedon.config.field import OURS, Doc, Range, Table
+from hedon.config.room import MAX_OBSTACLES
 from hedon.config.schedule import ScheduleConfig
 
 SEQUEL = OURS + "; the code of the sequel"
-MAX_OBSTACLES = 256
-"""Most obstacles that the engine has room for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +19,7 @@ class ObstacleConfig:
 
     count: Annotated[
         int,
-        Doc("number of obstacles", "", OURS, Range(ge=0, le=MAX_OBSTACLES)),
+        Doc("number of obstacles", "", OURS, Range(ge=0, le=MAX_OBSTACLES), shapes=True),
     ] = 0
     corners: Annotated[
         int,
@@ -51,4 +50,4 @@ class ObstacleConfig:
             Range(ge=0, le=1e4),
         ),
     ] = 0.0
-    schedule: dict[str, ScheduleConfig] = field(default_factory=dict)
+    schedule: Annotated[dict[str, ScheduleConfig], Table(names={"harmful": 1.0})] = field(default_factory=dict)

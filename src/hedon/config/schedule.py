@@ -5,9 +5,6 @@ from typing import Annotated, Literal
 
 from hedon.config.field import OURS, Doc, Range
 
-MAX_FACTOR = 1000.0
-"""Largest factor of a schedule."""
-
 
 @dataclass(frozen=True, slots=True)
 class ScheduleConfig:

@@ -6,14 +6,12 @@ from typing import Annotated
 from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
 from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import GenomeConfig, RewardConfig
-from hedon.config.field import OURS, Doc, Range
+from hedon.config.field import DERIVED, OURS, Doc, Range
 from hedon.config.inner import NutrientConfig, ToxinConfig
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.population import PopulationConfig
 
-MAX_SPECIES = 4
-"""Most species that the engine has room for."""
 ONLY = "agent"
 """The name of the species of a file without `[species]`."""
 EVERYTHING = "*"
@@ -54,7 +52,7 @@ class SpeciesConfig:
     toxin: ToxinConfig = field(default_factory=ToxinConfig)
     hazard: HazardConfig = field(default_factory=HazardConfig)
     birth: BirthConfig = field(default_factory=BirthConfig)
-    genome: GenomeConfig = field(default_factory=GenomeConfig)
+    genome: Annotated[GenomeConfig, DERIVED] = field(default_factory=GenomeConfig)
     reward: RewardConfig = field(default_factory=RewardConfig)
     learning: LearningConfig = field(default_factory=LearningConfig)
 

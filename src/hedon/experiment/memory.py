@@ -7,8 +7,8 @@ from pathlib import Path
 
 from hedon import _engine
 from hedon.config.config import Config
+from hedon.config.engine import engine_input
 from hedon.error import HedonError
-from hedon.experiment.native import engine_input
 from hedon.record.schema import columns_of, run_tables
 from hedon.record.writer import PART_ROWS
 

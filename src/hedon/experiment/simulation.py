@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from hedon import _engine
 from hedon.config.config import Config
+from hedon.config.engine import engine_input
 from hedon.config.layout import INNER_STATES, layouts
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.device import device_library
-from hedon.experiment.native import engine_input
 from hedon.experiment.rule import rules as find_rules
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
@@ -64,7 +64,8 @@ class Simulation:
         backend: str = "",
         rules: Sequence[RuleSource] = (),
     ) -> None:
-        given = engine_input(config)
+        with _engine.FloatMode():  # the walls must not depend on the caller's rounding mode
+            given = engine_input(config)
         self.config = given.config
         self.seeds = seed_list(seeds, MAX_WORLD_SEED)
         threads = integer("threads", threads, 0, MAX_THREADS)

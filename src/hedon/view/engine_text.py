@@ -5,7 +5,7 @@ from typing import Any
 
 from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
-from hedon.config.native import engine_config
+from hedon.config.engine import engine_config
 
 
 def engine_text(config: Config, seed: int) -> str:
@@ -17,18 +17,8 @@ def engine_text(config: Config, seed: int) -> str:
     """
     lines = [f"seed={seed}", f"outer_walls={outer_count(config.arena)}"]
     lines += ["wall=" + ",".join(repr(float(value)) for value in wall) for wall in walls(config.arena)]
-    lines += [f"{path}={_engine_value(value)}" for path, value in engine_settings(config).items()]
+    lines += [f"{path}={value}" for path, value in _flat(engine_config(config), "")]
     return "\n".join(lines) + "\n"
-
-
-def engine_settings(config: Config) -> dict[str, Any]:
-    """Every setting of the engine by its path, as in `food[0].energy`."""
-    return dict(_flat(engine_config(config), ""))
-
-
-def _engine_value(value: Any) -> str:
-    """A value as the text has it."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:

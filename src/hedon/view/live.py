@@ -1,21 +1,16 @@
 """What the page needs for a live world: the engine's text, the layout, and every setting that can be changed."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import default_path, dump_toml, flatten
+from hedon.config.dump import dump_toml, flatten
+from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
-from hedon.view.engine_text import engine_settings, engine_text
+from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
-
-PLACE = ("arena.", "birth.distance")
-"""Settings that are made into walls or lengths before the engine gets them: the page does not change these."""
-PYTHON = ("reward.memory",)
-"""Ends of settings that mean something only beside a rule in Python, which the page cannot have."""
 
 
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
@@ -65,43 +60,12 @@ def _origin(config: Config) -> str:
 
 
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
-    """The settings that the engine gets as they are, with their schema."""
-    before = engine_settings(config)
-    rows = [row for row in leaves(config) if row[0] not in PROVENANCE]
+    """The numbers and choices that the engine gets as they are, with their schema."""
+    rows, reached = (row for row in leaves(config) if row[0] not in PROVENANCE), engine_paths(config)
     for (path, setting, value), shown in zip(rows, flatten(config), strict=True):
-        if default_path(path).startswith(PLACE) or path.endswith(PYTHON):
-            continue
-        reached = _reached(config, path, setting, value, before)
-        if reached:
-            yield _setting(shown, reached, setting, value)
-
-
-def _reached(config: Config, path: str, setting: Setting, value: Any, before: dict[str, Any]) -> list[str]:
-    """The engine's settings that have just this setting's value; none if it reaches the engine in another form."""
-    if isinstance(value, tuple | bool) or (isinstance(value, str) and not setting.choices):
-        return []
-    number: Any = value
-    other = next(choice for choice in setting.choices if choice != value) if setting.choices else number + 1
-    after = engine_settings(changed(config, path, other))
-    if after.keys() != before.keys():
-        return []
-    found = [name for name, old in before.items() if after[name] != old]
-    direct = all(before[name] == value and after[name] == other for name in found)
-    return found if direct else []
-
-
-def changed(config: Any, path: str, value: Any) -> Any:
-    """A config, or a part of one, with one setting replaced, unchecked.
-
-    Args:
-        config: a config, a section, or a mapping of sections.
-        path: of the setting within it.
-        value: the new one.
-    """
-    name, _, rest = path.partition(".")
-    if isinstance(config, dict):
-        return {**config, name: changed(config[name], rest, value)}
-    return replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
+        single = setting.choices or setting.type in (int, float)
+        if single and path in reached and not setting.doc.shapes:
+            yield _setting(shown, reached[path], setting, value)
 
 
 def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What the engine gets of a config: every setting, under the names of the engine's structs."""
+"""What the engine gets of a config: every setting, at its own path or in a layout."""
 
 import re
 from dataclasses import replace
@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 
-from hedon.config import engine_config, load_config
+from hedon.config import engine_config, load_config, walls
 from hedon.config.config import Config
+from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
+from hedon.config.header import header
 from hedon.config.life import distance_sd
-from hedon.config.native import PYTHON_ONLY
 
 ENGINE = Path(__file__).parents[3] / "engine"
 CONFIG = load_config(
@@ -29,6 +30,7 @@ CONFIG = load_config(
     ],
 )
 OWN = "species.agent."
+WALLS = walls(CONFIG.arena).tolist()
 LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
 OTHER: dict[str, Any] = {
     OWN + "body.collides": ("normal",),
@@ -41,13 +43,6 @@ OTHER: dict[str, Any] = {
     "food.poison.placement.centers": ((1.0, 1.0),),
 }
 """Other values of settings that are lists."""
-
-
-def engine_structs() -> dict[str, list[str]]:
-    """Names of the fields of each config struct of the engine, read from its headers."""
-    text = "".join(path.read_text() for path in ENGINE.glob("*/config.h"))
-    lists = re.findall(r"HEDON_FIELDS\((\w+),([^)]*)\)", text)
-    return {name: [field.strip() for field in fields.split(",")] for name, fields in lists}
 
 
 def changed(config: Any, path: str, value: Any) -> Any:
@@ -75,44 +70,39 @@ def value_of(path: str) -> Any:
     return next(value for name, _, value in leaves(CONFIG) if name == path)
 
 
-def test_names_are_those_of_the_engines_structs() -> None:
-    structs = engine_structs()
-    native = engine_config(CONFIG)
-    assert list(native) == structs["WorldConfig"]
-    for name in ("arena", "physics"):
-        assert list(native[name]) == structs[f"{name.capitalize()}Config"]
-    assert list(native["rules"]) == structs["RuleConfig"]
-    assert list(native["food"][0]) == structs["FoodConfig"]
-    assert list(native["food"][0]["placement"]) == structs["PlacementConfig"]
-    species = native["species"][0]
-    assert list(species) == structs["SpeciesConfig"]
-    for name, section in species.items():
-        assert set(section) == set(structs[f"{name.capitalize()}Config"]), name
-    assert list(species["genome"]["genes"][0]) == structs["GeneConfig"]
-    assert list(species["genome"]["learning"][0]) == structs["LearningGene"]
-    assert list(species["reward"]["terms"][0]) == structs["RewardTerm"]
+def test_the_engines_structs_are_those_of_the_settings() -> None:
+    """After a change of settings: `python -m hedon.config.header > engine/config/schema.h`."""
+    assert (ENGINE / "config" / "schema.h").read_text() == header()
 
 
 @pytest.mark.parametrize("path", LEAVES)
-def test_every_setting_arrives_or_is_listed(path: str) -> None:
-    other = engine_config(changed(CONFIG, path, other_value(path, LEAVES[path])))
-    shown = path.removeprefix(OWN)
-    plain = re.sub(r"^(food|reward\.see|genome\.learning|genome\.mutation)\.\w+\.", r"\1.", shown)
-    # These act only where a species eats another one.
-    quiet = {"genome.prey.initial_mean", "genome.prey.initial_sd"}
-    assert (other != engine_config(CONFIG)) == (plain not in {*PYTHON_ONLY, *quiet} - {"birth.distance_unit"}), path
+def test_every_setting_of_a_world_reaches_the_engine(path: str) -> None:
+    """As itself, in a layout, or in walls; all but names, colors and what tells where founders come from."""
+    other = changed(CONFIG, path, other_value(path, LEAVES[path]))
+    reaches = (engine_config(other), walls(other.arena).tolist()) != (engine_config(CONFIG), WALLS)
+    # The last two act only where a species eats another one.
+    quiet = r"name|preset|fidelity|world\.(founders|networks)|food\.\w+\.color|.*genome\.prey\.\w+"
+    # All rules are the same to the engine: it is told that there is one.
+    assert reaches != bool(re.fullmatch(quiet, path)), path
 
 
-def test_python_only_settings_exist() -> None:
-    plain = {re.sub(r"^food\.\w+\.", "food.", path.removeprefix(OWN)) for path in LEAVES}
-    assert set(PYTHON_ONLY) <= plain
+def test_the_engine_has_settings_at_their_own_paths() -> None:
+    places = engine_paths(CONFIG)
+    assert places["physics.dt"] == ["physics.dt"]
+    assert places["world.rollout_steps"] == ["world.rollout_steps"]
+    assert places["food.poison.energy"] == ["food[1].energy"]
+    assert places[OWN + "hazard.beta_age"] == ["species[0].hazard.beta_age"]
+    assert places["food.poison.gene.initial_sd"] == ["layout[0].genes[2].law.initial_sd"]
+    assert places[OWN + "genome.mutation.w_action.scale"] == ["layout[0].genes[4].mutation.scale"]
+    assert OWN + "motor.min_force" in places
+    assert OWN + "motor.min_force" not in engine_paths(CONFIG.with_("motor.force_scale", 2.0))
 
 
 def test_genes_stand_in_the_order_of_the_layout() -> None:
     config = load_config("poison", overrides=["food.poison.gene.initial_mean=3", "genome.action.initial_mean=-2"])
-    genome = engine_config(config)["species"][0]["genome"]
-    assert [gene["initial_mean"] for gene in genome["genes"]][:4] == [0, 3, -2, 0]
-    assert len(genome["genes"]) == 3 + config.species["agent"].genome.neutral_count
+    genes = engine_config(config)["layout"][0]["genes"]
+    assert [gene["law"]["initial_mean"] for gene in genes][:4] == [0, 3, -2, 0]
+    assert len(genes) == 3 + config.species["agent"].genome.neutral_count
 
 
 def test_distance_is_in_arena_units() -> None:

@@ -1,0 +1,127 @@
+/// A config: its settings, and the layouts that `hedon.config.layout` makes of the names in them.
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+
+#include "base/array.h"
+#include "base/device.h"
+#include "base/fields.h"
+#include "config/schema.h"
+
+namespace hedon {
+
+inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each species, each food kind, wall, obstacle
+inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together
+inline constexpr int LEARNING_GENES = std::size(EnumNames<GenomeLearning>::text);
+inline constexpr int FAMILY_GENES = std::size(EnumNames<GenomeFamily>::text);
+inline constexpr int RULE_USES = std::size(EnumNames<RuleUse>::text);
+
+/// What an agent holds, in the order in which drives count them.
+enum InnerState : int32_t { ENERGY, NUTRIENT, TOXIN, INNER_STATES };
+
+/// One gene.
+struct Gene {
+  GeneConfig law;           ///< by which founders draw it
+  MutationConfig mutation;  ///< `limit`: values are clipped to ± this
+  float most;               ///< largest limit of a gene that stands for this
+
+  HEDON_FIELDS(Gene, law, mutation, most)
+  static constexpr Limit LIMITS[] = {Limit(), Limit(), Limit::over(0, 1e3)};
+
+  HEDON_FN float limit() const { return mutation.limit < most ? mutation.limit : most; }
+};
+
+/// A gene that sets a parameter of learning.
+struct LearningGene {
+  GenomeLearning sets;
+  int32_t gene;
+
+  HEDON_FIELDS(LearningGene, sets, gene)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_GENES - 1)};
+};
+
+/// What a reward is paid for, per step:
+/// food             foods of kind `index` eaten; past the kinds, agents of a species
+/// action           norm of the two forces, divided by what `RewardActionNorm` names
+/// see_mean         mean over the rays of the reading of sight channel `index`
+/// see_max          the largest of them
+/// smell            mean over the noses of what they smell of channel `index`
+/// drive_reduction  by how much inner states came closer to their set points, in shares of their capacities
+HEDON_ENUM(RewardInput, food, action, see_mean, see_max, smell, drive_reduction)
+
+constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
+/// Whether an input needs what the agent observes.
+constexpr bool is_sensed(RewardInput input) { return is_sight(input) || input == RewardInput::smell; }
+
+/// One term of the reward: coef · weight · input.
+struct RewardTerm {
+  RewardInput input;
+  int32_t index;        ///< of the food kind, or of the channel of sight or smell
+  int32_t gene;         ///< index of the gene that weighs it
+  int32_t second_gene;  ///< of the other gene, for the families that have two; otherwise as `gene`
+  float coef;
+
+  HEDON_FIELDS(RewardTerm, input, index, gene, second_gene, coef)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_TYPES - 1), Limit::from(0, MAX_GENES - 1),
+                                     Limit::from(0, MAX_GENES - 1), Limit::from(-1e3, 1e3)};
+};
+
+/// What follows from the names in a species' settings, and from lengths and forces in other units. Types are numbered:
+/// the species, the food kinds, walls, then obstacles.
+struct SpeciesLayout {
+  float min_force;  ///< of each motor, for its body's size
+  float max_force;
+  float distance_sd;                      ///< of a child's place around its parent, along x and along y [u]
+  FixedList<int32_t, MAX_TYPES> sees;     ///< types that rays meet, by channel, ascending
+  FixedList<int32_t, MAX_TYPES> touches;  ///< types that it collides with and feels by touch, by channel, ascending
+  FixedList<int32_t, MAX_TYPES> smells;   ///< types that it smells, by channel, ascending
+  FixedList<float, MAX_FOOD_KINDS> eats_food;  ///< factor on the energy of each kind; 0: it does not eat this kind
+  FixedList<float, MAX_SPECIES> eats_species;  ///< share of the energy of each species that it gains; 0: none
+  int32_t has_nutrient;                        ///< 1 if its food brings it
+  int32_t has_toxin;
+  FixedList<int32_t, RULE_USES> rules;  ///< 1 for each use that a function of the caller decides
+  FixedList<Gene, MAX_GENES> genes;     ///< the genome, in order
+  FixedList<LearningGene, LEARNING_GENES> learning;
+  FixedList<int32_t, FAMILY_GENES> family;      ///< gene that multiplies each setting by ten to its power; -1 for none
+  FixedList<int32_t, INNER_STATES> set_points;  ///< gene of the set point of each inner state; -1 for none
+  FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
+
+  HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species,
+               has_nutrient, has_toxin, rules, genes, learning, family, set_points, terms)
+  static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
+                         YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
+  static constexpr Limit LIMITS[] = {FORCE,
+                                     FORCE,
+                                     Limit::over(0, 1e6),
+                                     TYPE,
+                                     TYPE,
+                                     TYPE,
+                                     Limit::from(-1e4, 1e4),
+                                     YES,
+                                     YES,
+                                     YES,
+                                     YES,
+                                     Limit(),
+                                     Limit(),
+                                     GENE,
+                                     GENE,
+                                     Limit()};
+
+  /// The gene that multiplies a setting of the family of the reward; -1 for none.
+  HEDON_FN int32_t gene_of(GenomeFamily setting) const { return family[static_cast<int32_t>(setting)]; }
+  /// Whether a rule of the caller decides this.
+  HEDON_FN bool has_rule(RuleUse use) const { return rules[static_cast<int32_t>(use)] != 0; }
+  HEDON_FN bool has_rule() const {
+    return has_rule(RuleUse::reward) || has_rule(RuleUse::hazard) || has_rule(RuleUse::birth);
+  }
+};
+
+struct Config : Settings {
+  FixedList<SpeciesLayout, MAX_SPECIES> layout;  ///< of each species
+
+  HEDON_FIELDS(Config, arena, physics, obstacle, food, world, species, layout)
+  static constexpr Limit LIMITS[] = {Limit(), Limit(), Limit(), Limit(), Limit(), Limit(), Limit()};
+};
+
+}  // namespace hedon

@@ -1,0 +1,153 @@
+"""A config as the engine takes it: its settings by the same paths, and layouts in place of names."""
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from hedon.config.arena import outer_count, walls
+from hedon.config.config import Config
+from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
+from hedon.config.field import engine_sections, engine_settings, settings, value_at
+from hedon.config.layout import INNER_STATES, Gene, diet, layout_of, set_point_of, types
+from hedon.config.life import distance_sd
+from hedon.config.species import RULE_USES, SpeciesConfig
+from hedon.config.validate import validated
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class EngineInput:
+    """A config that has passed all checks, and the engine's input made from it.
+
+    Attributes:
+        config: The checked config.
+        settings: Values for the engine's structs.
+        walls: (count, 4) float32, the outer polygon first [u].
+        outer_walls: Number of walls that make up the outer polygon.
+    """
+
+    config: Config
+    settings: dict[str, Any]
+    walls: "NDArray[np.float32]"
+    outer_walls: int
+
+
+def engine_input(config: Config) -> EngineInput:
+    """Checks a config, however it was made, and turns it into the engine's input.
+
+    The walls are computed in the caller's rounding mode: see `FloatMode` of the engine.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: It is not a `Config`.
+    """
+    config = validated(config)
+    return EngineInput(config, engine_config(config), walls(config.arena), outer_count(config.arena))
+
+
+def engine_config(config: Config) -> dict[str, Any]:
+    """The nested dict that the engine's structs are filled from."""
+
+    def filled(value: Any) -> Any:
+        if isinstance(value, _Path):
+            found = value_at(config, value)
+            return int(found) if isinstance(found, bool) else found
+        if isinstance(value, dict):
+            return {name: filled(inner) for name, inner in value.items()}
+        return [filled(inner) for inner in value] if isinstance(value, list) else value
+
+    return filled(_tree(config))
+
+
+def engine_paths(config: Config) -> dict[str, list[str]]:
+    """Where the engine has the value of a setting: its paths, such as `species[0].energy.initial`, by the setting's."""
+    found: dict[str, list[str]] = {}
+
+    def note(value: Any, path: str) -> None:
+        if isinstance(value, _Path):
+            found.setdefault(value, []).append(path)
+        for name, inner in value.items() if isinstance(value, dict) else ():
+            note(inner, f"{path}.{name}".lstrip("."))
+        for i, inner in enumerate(value if isinstance(value, list) else ()):
+            note(inner, f"{path}[{i}]")
+
+    note(_tree(config), "")
+    return found
+
+
+class _Path(str):
+    """In the engine's input, what stands for the value of the setting with this path."""
+
+    __slots__ = ()
+
+
+def _tree(config: Config) -> dict[str, Any]:
+    """The engine's input with paths of settings in place of their values."""
+    return _section(config, "") | {"layout": [_layout(config, name) for name in config.species]}
+
+
+def _section(section: Any, path: str) -> dict[str, Any]:
+    made: dict[str, Any] = {name: _Path(path + name) for name in engine_settings(type(section))}
+    for name, inner in engine_sections(type(section)).items():
+        below, place = getattr(section, name), f"{path}{name}."
+        if inner.table.names:
+            every = {each: below.get(each) for each in inner.table.names}
+            made[name] = {
+                each: asdict(inner.type()) if own is None else _section(own, f"{place}{each}.")
+                for each, own in every.items()
+            }
+        elif inner.repeated:
+            made[name] = [_section(own, f"{place}{each}.") for each, own in below.items()]
+        else:
+            made[name] = _section(below, place)
+    return made
+
+
+def _layout(config: Config, name: str) -> dict[str, Any]:
+    """What follows from the names in a species' settings, and from lengths and forces in other units."""
+    species, path = config.species[name], f"species.{name}."
+    layout = layout_of(config, species)
+    eaten, motor = diet(config, species), species.motor
+    number = {name: i for i, name in enumerate(types(config))}
+    gene = {name: i for i, name in enumerate(layout.gene_names)}
+    force: dict[str, Any] = {
+        limit: _Path(f"{path}motor.{limit}") if motor.force_scale == 1.0 else motor.force_scale * getattr(motor, limit)
+        for limit in ("min_force", "max_force")
+    }
+    return force | {
+        "distance_sd": distance_sd(config.arena, species.birth),
+        "sees": [number[each] for each in layout.sees],
+        "touches": [number[each] for each in layout.touches],
+        "smells": [number[each] for each in layout.smells],
+        "eats_food": [eaten.get(each, 0.0) for each in config.food],
+        "eats_species": [eaten.get(each, 0.0) for each in config.species],
+        "has_nutrient": int("nutrient" in layout.inner),
+        "has_toxin": int("toxin" in layout.inner),
+        "rules": [int(bool(getattr(species, use).rule)) for use in RULE_USES],
+        "genes": [_gene(species, path, each) for each in layout.genes],
+        "learning": [{"sets": each, "gene": gene[f"g_{each}"]} for each in species.genome.learning],
+        "family": [gene.get(f"g_{each}", -1) for each in FAMILY_GENES],
+        "set_points": [gene.get(set_point_of(state), -1) for state in INNER_STATES],
+        "terms": [
+            {
+                "input": term.input,
+                "index": term.index,
+                "gene": gene[term.gene],
+                "second_gene": gene[term.second_gene],
+                "coef": _Path(path + term.place),
+            }
+            for term in layout.terms
+        ],
+    }
+
+
+def _gene(species: SpeciesConfig, path: str, gene: Gene) -> dict[str, Any]:
+    law = gene.place if gene.place.startswith("food.") else path + gene.place
+    own = f"{path}genome.mutation.{gene.name}." if gene.name in species.genome.mutation else ""
+    return {
+        "law": {name: _Path(f"{law}.{name}") for name in settings(GeneConfig)},
+        "mutation": {name: _Path(own + name if own else f"{path}genome.{OF_ALL_GENES[name]}") for name in OF_ALL_GENES},
+        "most": gene.most,
+    }

@@ -1,0 +1,20 @@
+"""What the engine has room for. `hedon.config.header` tells the engine these numbers."""
+
+MAX_SPECIES = 4
+"""Most species."""
+MAX_FOOD_KINDS = 8
+"""Most kinds of food."""
+MAX_OBSTACLES = 256
+"""Most obstacles."""
+MAX_RAYS = 32
+"""Most rays of an agent."""
+MAX_TOUCH_BITS = 128
+"""Most types times touch sectors."""
+MAX_SMELLS = 12
+"""Most smells times noses, beside inner states."""
+MAX_GENES = 64
+"""Most genes of a genome."""
+MAX_FORCE = 1e6
+"""Largest force of a motor, as for all numbers: squares of it are finite [mass·u/s²]."""
+MAX_FACTOR = 1000.0
+"""Largest factor of a schedule."""
