@@ -11,10 +11,11 @@ from reference_case.case import LIVELY, each
 from reference_step import Judge, command, network_size
 from worlds import set_scene
 
-from hedon.config.config import PROVENANCE, Config
+from hedon.config.config import Config
 from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.load import load_config
 from hedon.config.physics import PhysicsConfig
+from hedon.config.settings import PROVENANCE
 from hedon.experiment.simulation import Simulation
 from hedon.record.founder import make_founders
 

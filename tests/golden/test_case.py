@@ -6,10 +6,11 @@ from typing import Any
 from golden_case import cases
 from mechanism import BASE, mechanisms
 
-from hedon.config.config import PROVENANCE, Config
+from hedon.config.config import Config
 from hedon.config.field import sections, settings
 from hedon.config.layout import FAMILY_GENES, LEARNING_GENES
 from hedon.config.load import FIDELITIES, PRESETS
+from hedon.config.settings import PROVENANCE
 from hedon.config.species import PER_SPECIES, SpeciesConfig
 
 AS_DATA = {"world.founders": "founders", "world.networks": "networks"}

@@ -1,7 +1,7 @@
 """The settings of a run, each with meaning, unit, range and source; read from presets, files and overrides."""
 
 from hedon.config.arena import walls
-from hedon.config.config import Config
+from hedon.config.config import Config, validated
 from hedon.config.dump import diff, digest, dump_toml, file_leaves, flatten
 from hedon.config.engine import engine_config
 from hedon.config.food import PlacementConfig
@@ -10,7 +10,6 @@ from hedon.config.layout import hunters
 from hedon.config.load import FIDELITIES, PAPER_PRESETS, PRESETS, describe_preset, load_config
 from hedon.config.problem import ConfigError, Problem, format_value
 from hedon.config.species import ONLY
-from hedon.config.validate import validated
 
 __all__ = [
     "FIDELITIES",

@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-from hedon.config.field import CODE, OURS, PAPER, Doc, Range
+from hedon.config.field import CODE, OURS, PAPER, setting
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,32 +15,23 @@ if TYPE_CHECKING:
 class ArenaConfig:
     """Where the agents live."""
 
-    width: Annotated[
-        float,
-        Doc("extent along x", "u", PAPER, Range(gt=0, le=1e5), shapes=True),
-    ] = 480.0
-    height: Annotated[
-        float,
-        Doc("extent along y", "u", PAPER, Range(gt=0, le=1e5), shapes=True),
-    ] = 360.0
-    corner_radius: Annotated[
-        float,
-        Doc("radius of the rounded corners; 0 leaves them square", "u", CODE, Range(ge=0, le=1e5), derived=True),
-    ] = 19.0
-    corner_chords: Annotated[
-        int,
-        Doc("straight walls that make up each rounded corner", "", CODE, Range(ge=1, le=64), derived=True),
-    ] = 4
-    inner_walls: Annotated[
-        tuple[tuple[float, float, float, float], ...],
-        Doc(
-            "inner walls: a list of [ax, ay, bx, by], each a wall from (ax, ay) to (bx, by)",
-            "u",
-            OURS,
-            Range(max_items=256, each=(0, 1e5)),
-            derived=True,
-        ),
-    ] = ()
+    width: float = setting(480.0, "extent along x", "u", PAPER, gt=0, le=1e5, shapes=True)
+    height: float = setting(360.0, "extent along y", "u", PAPER, gt=0, le=1e5, shapes=True)
+    corner_radius: float = setting(
+        19.0, "radius of the rounded corners; 0 leaves them square", "u", CODE, ge=0, le=1e5, derived=True
+    )
+    corner_chords: int = setting(
+        4, "straight walls that make up each rounded corner", "", CODE, ge=1, le=64, derived=True
+    )
+    inner_walls: tuple[tuple[float, float, float, float], ...] = setting(
+        (),
+        "inner walls: a list of [ax, ay, bx, by], each a wall from (ax, ay) to (bx, by)",
+        "u",
+        OURS,
+        max_items=256,
+        each=(0, 1e5),
+        derived=True,
+    )
 
 
 def outline(arena: ArenaConfig) -> list[tuple[float, float]]:

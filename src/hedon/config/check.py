@@ -1,78 +1,59 @@
-"""Contradictions: settings that are allowed one by one, but not together."""
+"""Contradictions in a world: settings that are allowed one by one, but not together."""
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from hedon.config.arena import ArenaConfig, is_inside
-from hedon.config.check_schedule import schedule_problems
-from hedon.config.check_species import MAX_COVERAGE, species_problems
-from hedon.config.config import PROVENANCE, Config
-from hedon.config.field import leaves
+from hedon.config.check_species import MAX_COVERAGE, check_species
+from hedon.config.field import Section, sections
 from hedon.config.food import FoodConfig
-from hedon.config.problem import Problem, format_value, single
-from hedon.config.room import MAX_FACTOR, MAX_FOOD_KINDS
+from hedon.config.problem import Check, Problem, nearest, single
+from hedon.config.room import MAX_FOOD_KINDS
+from hedon.config.schedule import ScheduleConfig
+from hedon.config.settings import PROVENANCE, Settings
 
 MIN_WALL = 0.01
 """Length of the shortest wall whose direction float32 can still hold [u]."""
 RESERVED_KINDS = ("agent", "wall", "obstacle", "action")
 """Names with another meaning in sensor channels or in the columns of records."""
+NAME = r"[a-z][a-z0-9_]{0,31}"
+"""What kinds of food and species may be called."""
 
 
-def contradictions(config: Config) -> Iterator[Problem]:
-    """Yields every contradiction in a config."""
-    yield from _names(config)
-    yield from _rounding(config)
-    yield from _arena(config)
-    yield from _obstacles(config)
-    yield from _kinds(config)
-    yield from _founders(config)
-    yield from species_problems(config)
+def contradictions(config: Settings) -> list[Problem]:
+    """Every contradiction in a config."""
+    check = Check(config)
+    _names(check)
+    _arena(check, config.arena)
+    _obstacles(check, config)
+    _kinds(check, config)
+    _tables(check, config, "")
+    check_species(check)
+    return check.problems
 
 
-def _names(config: Config) -> Iterator[Problem]:
+def _names(check: Check) -> None:
     for field in PROVENANCE:  # folders of runs are named by them
-        text = getattr(config, field)
-        if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", text):
-            rule = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
-            yield Problem(field, rule, format_value(text))
+        rule = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
+        check.match(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", field, rule)
+    for name, what in (("founders", "table of founders"), ("networks", "file of networks")):
+        rule = f"must be empty, or the digest of a {what}, which `--{name}` sets"
+        check.match("([0-9a-f]{64})?", f"world.{name}", rule)
 
 
-def _rounding(config: Config) -> Iterator[Problem]:
-    """Numbers that are outside their range after rounding to the engine's 32 bits, and those in lists."""
-    for path, setting, value in leaves(config):
-        if setting.type is float and single(value) not in setting.doc.range:
-            message = f"is {single(value):g} in the engine's 32-bit numbers, but must be {setting.allowed}"
-            yield Problem(path, message, format_value(value))
-        if setting.doc.range.each is not None:
-            low, high = setting.doc.range.each
-            for place, number in _numbers(value):
-                if not low <= number <= high:
-                    yield Problem(path + place, f"must be from {low:.10g} to {high:.10g}", format_value(number))
-
-
-def _numbers(items: Sequence[Any], path: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers in a list and in the lists in it, each with its place: [2][0]."""
-    for i, item in enumerate(items):
-        if isinstance(item, Sequence) and not isinstance(item, str):
-            yield from _numbers(item, f"{path}[{i}]")
-        elif not isinstance(item, str):
-            yield f"{path}[{i}]", item
-
-
-def _arena(config: Config) -> Iterator[Problem]:
-    arena = config.arena
-    if not _corners_fit(arena):
-        side = min(arena.width, arena.height)
-        rule = f"must be 0 or below {side / 2:g} [u], with no wall shorter than {MIN_WALL:g} [u]"
-        yield _problem(config, "arena.corner_radius", rule)
+def _arena(check: Check, arena: ArenaConfig) -> None:
+    half = min(arena.width, arena.height) / 2
+    rule = f"must be 0 or below {half:g} [u], with no wall shorter than {MIN_WALL:g} [u]"
+    check.need(_corners_fit(arena), "arena.corner_radius", rule)
     for i, wall in enumerate(arena.inner_walls):
-        ax, ay, bx, by = wall
-        if _is_outside(arena, ax, ay) or _is_outside(arena, bx, by):
-            yield Problem(f"arena.inner_walls[{i}]", "lies outside the arena", format_value(wall))
-        if math.dist((ax, ay), (bx, by)) < MIN_WALL:
-            yield Problem(f"arena.inner_walls[{i}]", f"must be at least {MIN_WALL:g} [u] long", format_value(wall))
+        path, (ax, ay, bx, by) = f"arena.inner_walls[{i}]", wall
+        outside = _is_outside(arena, ax, ay) or _is_outside(arena, bx, by)
+        check.need(not outside, path, "lies outside the arena", wall)
+        long = math.dist((ax, ay), (bx, by)) >= MIN_WALL
+        check.need(long, path, f"must be at least {MIN_WALL:g} [u] long", wall)
 
 
 def _corners_fit(arena: ArenaConfig) -> bool:
@@ -86,68 +67,73 @@ def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
     return _corners_fit(arena) and not is_inside(arena, x, y)
 
 
-def _obstacles(config: Config) -> Iterator[Problem]:
+def _obstacles(check: Check, config: Settings) -> None:
     obstacle = config.obstacle
-    yield from schedule_problems(obstacle.schedule, "obstacle.schedule", {"harmful": 1.0})
-    if obstacle.min_side > obstacle.max_side:
-        rule = f"must be at most obstacle.max_side = {obstacle.max_side:g}"
-        yield Problem("obstacle.min_side", rule, format_value(obstacle.min_side))
+    rule = f"must be at most obstacle.max_side = {obstacle.max_side:g}"
+    check.need(obstacle.min_side <= obstacle.max_side, "obstacle.min_side", rule)
     # Circles around obstacles do not overlap when they are placed; random placement stops long before they fill it.
     around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
     area, room = math.pi * around**2, MAX_COVERAGE * config.arena.width * config.arena.height
-    if obstacle.count * area > room:
-        most = math.floor(room / area)
-        rule = f"too many to place: the arena has room for {most} with sides of {obstacle.max_side:g}"
-        yield Problem("obstacle.count", rule, format_value(obstacle.count))
+    rule = f"the arena has room for {math.floor(room / area)} with sides of {obstacle.max_side:g}"
+    check.need(obstacle.count * area <= room, "obstacle.count", f"too many to place: {rule}")
 
 
-def _kinds(config: Config) -> Iterator[Problem]:
-    if not 1 <= len(config.food) <= MAX_FOOD_KINDS:
-        yield Problem("food", f"there must be from 1 to {MAX_FOOD_KINDS} kinds of food, not {len(config.food)}")
+def _kinds(check: Check, config: Settings) -> None:
+    count = len(config.food)
+    if not 1 <= count <= MAX_FOOD_KINDS:
+        check.add("food", f"there must be from 1 to {MAX_FOOD_KINDS} kinds of food, not {count}")
     for kind, food in config.food.items():
         path = f"food.{kind}"
-        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind) or kind in RESERVED_KINDS:
+        if not re.fullmatch(NAME, kind) or kind in RESERVED_KINDS:
             rule = "a kind's name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
-            yield Problem(path, f"{rule} and not be one of " + ", ".join(RESERVED_KINDS))
-        if not re.fullmatch(r"#[0-9a-f]{6}", food.color):
-            yield Problem(
-                f"{path}.color",
-                'must be "#rrggbb" in lower-case hexadecimal digits',
-                format_value(food.color),
-            )
-        if food.initial_count > food.capacity:
-            message = f"must be at most {path}.capacity = {food.capacity}"
-            yield Problem(f"{path}.initial_count", message, format_value(food.initial_count))
-        yield from _placement(config, food, f"{path}.placement")
-        yield from schedule_problems(food.schedule, f"{path}.schedule", {"growth_rate": MAX_FACTOR, "capacity": 1.0})
+            check.add(path, f"{rule} and not be one of " + ", ".join(RESERVED_KINDS))
+        check.match("#[0-9a-f]{6}", f"{path}.color", 'must be "#rrggbb" in lower-case hexadecimal digits')
+        rule = f"must be at most {path}.capacity = {food.capacity}"
+        check.need(food.initial_count <= food.capacity, f"{path}.initial_count", rule)
+        _placement(check, config.arena, food, f"{path}.placement")
 
 
-def _placement(config: Config, food: FoodConfig, path: str) -> Iterator[Problem]:
-    place = food.placement
+def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) -> None:
+    place, count = food.placement, len(food.placement.centers)
     for i, (x, y) in enumerate(place.centers):
-        if _is_outside(config.arena, x, y):
-            yield Problem(f"{path}.centers[{i}]", "lies outside the arena", format_value((x, y)))
+        check.need(not _is_outside(arena, x, y), f"{path}.centers[{i}]", "lies outside the arena", (x, y))
     if place.form == "uniform":
         return
-    if place.form in ("gaussian", "rectangle") and len(place.centers) != 1:
-        yield Problem(f"{path}.centers", f'"{place.form}" takes one center, not {len(place.centers)}')
-    if place.form in ("switching", "mixture") and len(place.centers) < 2:
-        yield Problem(f"{path}.centers", f'"{place.form}" takes at least two centers, not {len(place.centers)}')
-    if single(min(place.sd)) <= 0:
-        yield Problem(f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]', format_value(place.sd))
+    if place.form in ("gaussian", "rectangle") and count != 1:
+        check.add(f"{path}.centers", f'"{place.form}" takes one center, not {count}')
+    if place.form in ("switching", "mixture") and count < 2:
+        check.add(f"{path}.centers", f'"{place.form}" takes at least two centers, not {count}')
+    check.need(single(min(place.sd)) > 0, f"{path}.sd", f'"{place.form}" takes two numbers > 0 [u]')
 
 
-def _founders(config: Config) -> Iterator[Problem]:
-    digests = {
-        "world.founders": "a table of founders, which `--founders` sets",
-        "world.networks": "a file of networks, which `--networks` sets",
-    }
-    for path, what in digests.items():
-        section, name = path.split(".")
-        if not re.fullmatch(r"([0-9a-f]{64})?", getattr(getattr(config, section), name)):
-            yield _problem(config, path, f"must be empty, or the digest of {what}")
+def _tables(check: Check, section: Any, path: str) -> None:
+    """Tables whose names are given have no others, and schedules can be followed."""
+    for place, inner, own in _inner(section, path):
+        name = place.rpartition(".")[2]
+        if inner.names and name not in inner.names:
+            what = "this cannot follow a schedule here" if inner.type is ScheduleConfig else "no gene can set this"
+            check.add(place, f"{what}: there are " + ", ".join(inner.names), nearest(name, inner.names))
+        elif inner.type is ScheduleConfig:
+            _schedule(check, own, f"{place}.points", inner.names[name])
+        _tables(check, own, f"{place}.")
 
 
-def _problem(config: Config, path: str, message: str) -> Problem:
-    section, name = path.split(".")
-    return Problem(path, message, format_value(getattr(getattr(config, section), name)))
+def _inner(section: Any, path: str) -> Sequence[tuple[str, Section, Any]]:
+    every = [(name, inner, getattr(section, name)) for name, inner in sections(type(section)).items()]
+    return [
+        (f"{path}{name}.{each}" if each else f"{path}{name}", inner, own)
+        for name, inner, below in every
+        for each, own in (below.items() if inner.repeated else [("", below)])
+    ]
+
+
+def _schedule(check: Check, schedule: ScheduleConfig, path: str, most: float) -> None:
+    steps = [step for step, _ in schedule.points]
+    if not steps:
+        check.add(path, "must have at least one point")
+    rises = all(first < second for first, second in pairwise(steps)) and all(step >= 0 for step in steps)
+    check.need(rises, path, "steps must rise, from 0 on")
+    if rises and steps and schedule.period:
+        check.need(steps[-1] < schedule.period, path, f"steps must lie below period = {schedule.period}")
+    for _, factor in schedule.points:
+        check.need(0 <= factor <= most, path, f"factors must be from 0 to {most:g}", factor)

@@ -1,54 +1,27 @@
-"""The root of a config: all settings of a run, and where they came from."""
+"""A config: settings that have passed all checks, and how one of them is changed."""
 
-from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
-from hedon.config.arena import ArenaConfig
-from hedon.config.field import OURS, Doc, Table
-from hedon.config.food import FoodConfig
-from hedon.config.obstacle import ObstacleConfig
-from hedon.config.physics import PhysicsConfig
-from hedon.config.room import MAX_FOOD_KINDS, MAX_SPECIES
-from hedon.config.species import ONLY, SpeciesConfig
-from hedon.config.world import WorldConfig
-
-PROVENANCE = ("name", "preset", "fidelity")
-"""Fields that say where a config came from; they change no result."""
+from hedon.config.layer import EVERY, settle_mutation
+from hedon.config.migrate import MOVED
+from hedon.config.override import parse_path
+from hedon.config.problem import ConfigError, Problem
+from hedon.config.settings import Settings
+from hedon.config.species import PER_SPECIES, default_path
+from hedon.config.validate import build
+from hedon.error import ArgumentError
+from hedon.text import brief
 
 
 @dataclass(frozen=True, slots=True)
-class Config:
+class Config(Settings):
     """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`.
 
     What stands beside `species` is the world. There is at least one species; the only one of a file without `[species]`
     is called `agent`.
     """
-
-    # For the validator: no conversion between types, no unknown names, no NaN or infinity, in any section.
-    __pydantic_config__: ClassVar[Any] = {"strict": True, "extra": "forbid", "allow_inf_nan": False}
-
-    name: Annotated[
-        str,
-        Doc("name of the run", "", OURS),
-    ] = "baseline"
-    preset: Annotated[
-        str,
-        Doc("preset that the config is based on", "", OURS),
-    ] = "baseline"
-    fidelity: Annotated[
-        str,
-        Doc("fidelity that the preset was combined with", "", OURS),
-    ] = "corrected"
-    arena: ArenaConfig = field(default_factory=ArenaConfig)
-    physics: PhysicsConfig = field(default_factory=PhysicsConfig)
-    obstacle: ObstacleConfig = field(default_factory=ObstacleConfig)
-    food: Annotated[dict[str, FoodConfig], Table(most=MAX_FOOD_KINDS)] = field(
-        default_factory=lambda: {"normal": FoodConfig()}
-    )
-    world: WorldConfig = field(default_factory=WorldConfig)
-    species: Annotated[dict[str, SpeciesConfig], Table(most=MAX_SPECIES)] = field(
-        default_factory=lambda: {ONLY: SpeciesConfig()}
-    )
 
     def with_(self, path: str, value: Any) -> "Config":
         """The same config with another value of one setting, checked.
@@ -61,6 +34,56 @@ class Config:
         Raises:
             ConfigError: There is no such setting, or the value cannot be used.
         """
-        from hedon.config.load import with_setting
+        tables, names = asdict(self), parse_path(path)
+        if not names:
+            raise ConfigError(self.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
+        now = MOVED.get(default_path(".".join(names)))
+        if now is not None:
+            raise ConfigError(self.name, [Problem(path, f"is called {now} now")])
+        roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
+        kinds = list(tables["food"]) if names[:2] == ["food", EVERY] else []
+        for root in [["food", kind] for kind in kinds] or roots:
+            if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
+                raise ConfigError(self.name, [Problem(path, "there is no such setting")])
+        settle_mutation(tables)
+        return from_tables(tables, self.name)
 
-        return with_setting(self, path, value)
+
+def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
+    """Builds a config from nested tables; settings that are not given have their defaults.
+
+    Args:
+        tables: Sections and settings by name, as TOML gives them.
+        origin: The name of the tables in errors.
+
+    Raises:
+        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
+    """
+    return build(Config, tables, origin)
+
+
+def validated(config: Config, origin: str = "config") -> Config:
+    """The same config, after all checks; for a config that was made in Python.
+
+    Args:
+        config: put together in any way.
+        origin: what errors call it.
+
+    Raises:
+        ConfigError: As `from_tables`.
+        ArgumentError: It is not a `Config`.
+    """
+    if not isinstance(config, Config):
+        raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
+    return build(Config, asdict(config), origin)
+
+
+def _put(tables: dict[str, Any], names: list[str], value: Any) -> bool:
+    """Sets a value in nested tables, if there is a place; a gene's mutation, which may have none yet, gets a table."""
+    for depth, name in enumerate(names[:-1]):
+        below = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
+        if not isinstance(below, dict):
+            return False
+        tables = below
+    tables[names[-1]] = value
+    return True

@@ -2,14 +2,13 @@
 
 import hashlib
 import json
-import re
 from collections.abc import Iterator
 from typing import Any
 
-from hedon.config.config import PROVENANCE, Config
 from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.problem import format_value
-from hedon.config.species import ONLY
+from hedon.config.settings import PROVENANCE, Settings
+from hedon.config.species import ONLY, default_path
 
 SCHEMA = "1"
 """The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
@@ -18,7 +17,7 @@ configs of other versions are migrated as they are read."""
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
 
-def dump_toml(config: Config, section: str | None = None) -> str:
+def dump_toml(config: Settings, section: str | None = None) -> str:
     """Writes a config as a TOML file that loads to an equal config; each setting with its meaning and unit.
 
     Args:
@@ -45,14 +44,14 @@ def dump_toml(config: Config, section: str | None = None) -> str:
     return "\n\n".join(wanted) + "\n"
 
 
-def section_paths(config: Config) -> list[str]:
+def section_paths(config: Settings) -> list[str]:
     """The sections that `dump_toml` can write separately."""
     own = [*sections(type(next(iter(config.species.values()))))]
     species = [path for name in config.species for path in (f"species.{name}", *(f"species.{name}.{s}" for s in own))]
-    return [*sections(Config), *(f"food.{kind}" for kind in config.food), *own, *species]
+    return [*sections(Settings), *(f"food.{kind}" for kind in config.food), *own, *species]
 
 
-def file_leaves(config: Config) -> Iterator[tuple[str, Setting, Any]]:
+def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
     """Every setting as `leaves` has it, but without the names of preset and fidelity.
 
     Where there is only the species of a file without `[species]`, paths are as in such a file: `energy.initial`.
@@ -63,12 +62,12 @@ def file_leaves(config: Config) -> Iterator[tuple[str, Setting, Any]]:
             yield path.removeprefix(unnamed), setting, value
 
 
-def flatten(config: Config) -> dict[str, Any]:
+def flatten(config: Settings) -> dict[str, Any]:
     """Every setting by its path, in order, as `file_leaves` has it."""
     return {path: value for path, _, value in file_leaves(config)}
 
 
-def digest(config: Config) -> str:
+def digest(config: Settings) -> str:
     """A fingerprint of a config: equal exactly if all settings are equal, apart from names and colors.
 
     It is of the complete config and of the version of the schema.
@@ -82,7 +81,7 @@ def digest(config: Config) -> str:
     return hashlib.sha256(json.dumps({"schema": SCHEMA, "settings": rows}).encode()).hexdigest()
 
 
-def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
+def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
     """The settings in which two configs differ.
 
     Args:
@@ -99,12 +98,7 @@ def diff(a: Config, b: Config) -> list[tuple[str, Any, Any]]:
     return kinds + [(path, left.get(path), right.get(path)) for path in paths if left.get(path) != right.get(path)]
 
 
-def default_path(path: str) -> str:
-    """The path at the top of a file of what holds for all species: `birth.kappa` for `species.prey.birth.kappa`."""
-    return re.sub(r"^species\.[^.]+\.", "", path)
-
-
-def _tables(config: Config) -> Iterator[tuple[str, str]]:
+def _tables(config: Settings) -> Iterator[tuple[str, str]]:
     def write(path: str, section: Any) -> Iterator[tuple[str, str]]:
         lines = [f"[{path}]"] if path else []
         for name, setting in settings(type(section)).items():

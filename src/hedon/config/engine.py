@@ -4,13 +4,12 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from hedon.config.arena import outer_count, walls
-from hedon.config.config import Config
+from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.field import engine_sections, engine_settings, settings, value_at
 from hedon.config.layout import INNER_STATES, Gene, diet, layout_of, set_point_of, types
 from hedon.config.life import distance_sd
 from hedon.config.species import RULE_USES, SpeciesConfig
-from hedon.config.validate import validated
 
 if TYPE_CHECKING:
     import numpy as np
@@ -92,8 +91,8 @@ def _section(section: Any, path: str) -> dict[str, Any]:
     made: dict[str, Any] = {name: _Path(path + name) for name in engine_settings(type(section))}
     for name, inner in engine_sections(type(section)).items():
         below, place = getattr(section, name), f"{path}{name}."
-        if inner.table.names:
-            every = {each: below.get(each) for each in inner.table.names}
+        if inner.names:
+            every = {each: below.get(each) for each in inner.names}
             made[name] = {
                 each: asdict(inner.type()) if own is None else _section(own, f"{place}{each}.")
                 for each, own in every.items()

@@ -1,9 +1,9 @@
 """Evolution: the genome, how it mutates, and the reward that it defines."""
 
-from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from dataclasses import dataclass
+from typing import Literal
 
-from hedon.config.field import CODE, DERIVED, EITHER, OURS, PAPER, Doc, Range, Table
+from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
 
 LEARNING_GENES = {
     "learning_rate": "power of ten by which the learning rate differs",
@@ -31,40 +31,21 @@ OF_ALL_GENES = {
 class GeneConfig:
     """How founders draw one gene: from a normal law, then clipped to ± `genome.weight_limit`."""
 
-    initial_mean: Annotated[
-        float,
-        Doc("mean of the founders' gene", "", EITHER, Range(ge=-1e3, le=1e3)),
-    ] = 0.0
-    initial_sd: Annotated[
-        float,
-        Doc("standard deviation of the founders' gene", "", EITHER, Range(ge=0, le=1e3)),
-    ] = 0.1
+    initial_mean: float = setting(0.0, "mean of the founders' gene", "", EITHER, ge=-1e3, le=1e3)
+    initial_sd: float = setting(0.1, "standard deviation of the founders' gene", "", EITHER, ge=0, le=1e3)
 
 
 @dataclass(frozen=True, slots=True)
 class MutationConfig:
     """How one gene mutates, by the gene's name; what is not said here is as `[genome]` says for all genes."""
 
-    law: Annotated[
-        Literal["cauchy", "student_t", "normal", "uniform"],
-        Doc("law of the noise added at birth", "", OURS),
-    ] = "cauchy"
-    scale: Annotated[
-        float,
-        Doc("scale of the noise, or the largest noise if it is uniform", "", OURS, Range(ge=0, le=1e3)),
-    ] = 0.02
-    df: Annotated[
-        float,
-        Doc("degrees of freedom of student_t", "", OURS, Range(gt=0, le=1e3)),
-    ] = 2.0
-    probability: Annotated[
-        float,
-        Doc("probability that the gene mutates at a birth", "", OURS, Range(ge=0, le=1)),
-    ] = 1.0
-    limit: Annotated[
-        float,
-        Doc("the gene is clipped to ± this", "", OURS, Range(gt=0, le=1e3)),
-    ] = 10.0
+    law: Literal["cauchy", "student_t", "normal", "uniform"] = setting(
+        "cauchy", "law of the noise added at birth", "", OURS
+    )
+    scale: float = setting(0.02, "scale of the noise, or the largest noise if it is uniform", "", OURS, ge=0, le=1e3)
+    df: float = setting(2.0, "degrees of freedom of student_t", "", OURS, gt=0, le=1e3)
+    probability: float = setting(1.0, "probability that the gene mutates at a birth", "", OURS, ge=0, le=1)
+    limit: float = setting(10.0, "the gene is clipped to ± this", "", OURS, gt=0, le=1e3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,83 +62,56 @@ class GenomeConfig:
     `[genome.mutation.GENE]` gives one gene a mutation of its own.
     """
 
-    neutral_count: Annotated[
-        int,
-        Doc(
-            "number of neutral markers: inherited and mutated like weights, a control for drift",
-            "",
-            OURS,
-            Range(ge=0, le=16),
-        ),
-    ] = 16
-    mutation_scale: Annotated[
-        float,
-        Doc("scale of the noise added to every weight at birth", "", EITHER, Range(ge=0, le=1e3)),
-    ] = 0.02
-    weight_limit: Annotated[
-        float,
-        Doc("weights are clipped to ± this", "", EITHER, Range(gt=0, le=1e3)),
-    ] = 10.0
-    mutation_law: Annotated[
-        Literal["cauchy", "student_t", "normal", "uniform"],
-        Doc(
-            "law of the noise added at birth; mutation_scale is its scale, or the largest noise if it is uniform",
-            "",
-            PAPER,
-        ),
-    ] = "cauchy"
-    mutation_df: Annotated[
-        float,
-        Doc("degrees of freedom of student_t", "", OURS + "; the code of the sequel has 2", Range(gt=0, le=1e3)),
-    ] = 2.0
-    mutation_probability: Annotated[
-        float,
-        Doc("probability that a gene mutates at a birth", "", EITHER, Range(ge=0, le=1)),
-    ] = 1.0
-    action: GeneConfig = field(default_factory=GeneConfig)
-    prey: GeneConfig = field(default_factory=GeneConfig)
-    neutral: GeneConfig = field(default_factory=GeneConfig)
-    second: GeneConfig = field(default_factory=GeneConfig)
-    set_point: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
-    set_point_nutrient: GeneConfig = field(default_factory=lambda: GeneConfig(initial_mean=0.5))
-    set_point_toxin: GeneConfig = field(default_factory=GeneConfig)
-    learning: Annotated[dict[str, GeneConfig], Table(names=LEARNING_GENES)] = field(default_factory=dict)
-    family: Annotated[dict[str, GeneConfig], Table(names=FAMILY_GENES)] = field(default_factory=dict)
-    mutation: dict[str, MutationConfig] = field(default_factory=dict)
+    neutral_count: int = setting(
+        16, "number of neutral markers: inherited and mutated like weights, a control for drift", "", OURS, ge=0, le=16
+    )
+    mutation_scale: float = setting(0.02, "scale of the noise added to every weight at birth", "", EITHER, ge=0, le=1e3)
+    weight_limit: float = setting(10.0, "weights are clipped to ± this", "", EITHER, gt=0, le=1e3)
+    mutation_law: Literal["cauchy", "student_t", "normal", "uniform"] = setting(
+        "cauchy",
+        "law of the noise added at birth; mutation_scale is its scale, or the largest noise if it is uniform",
+        "",
+        PAPER,
+    )
+    mutation_df: float = setting(
+        2.0, "degrees of freedom of student_t", "", OURS + "; the code of the sequel has 2", gt=0, le=1e3
+    )
+    mutation_probability: float = setting(1.0, "probability that a gene mutates at a birth", "", EITHER, ge=0, le=1)
+    action: GeneConfig = section(GeneConfig)
+    prey: GeneConfig = section(GeneConfig)
+    neutral: GeneConfig = section(GeneConfig)
+    second: GeneConfig = section(GeneConfig)
+    set_point: GeneConfig = section(lambda: GeneConfig(initial_mean=0.5))
+    set_point_nutrient: GeneConfig = section(lambda: GeneConfig(initial_mean=0.5))
+    set_point_toxin: GeneConfig = section(GeneConfig)
+    learning: dict[str, GeneConfig] = section(names=LEARNING_GENES)
+    family: dict[str, GeneConfig] = section(names=FAMILY_GENES)
+    mutation: dict[str, MutationConfig] = section()
 
 
 @dataclass(frozen=True, slots=True)
 class SeeConfig:
     """A reward for seeing a species, a kind of food, walls or obstacles, by name: coef·weight·what rays read of it."""
 
-    coef: Annotated[
-        float,
-        Doc("factor of the term", "", OURS + "; the code of the sequel has 0.1", Range(ge=-1e3, le=1e3)),
-    ] = 0.1
-    over_rays: Annotated[
-        Literal["mean", "max"],
-        Doc("how the readings of the rays, 0 for those that meet something else, become one number", "", OURS),
-    ] = "mean"
-    reads: Annotated[
-        str,
-        Doc(
-            "the rays of this name are read instead: a wrong channel. Empty for its own",
-            "",
-            OURS + "; for obstacles the code of the sequel reads those of food",
-        ),
-    ] = ""
-    gene: GeneConfig = field(default_factory=GeneConfig)
+    coef: float = setting(0.1, "factor of the term", "", OURS + "; the code of the sequel has 0.1", ge=-1e3, le=1e3)
+    over_rays: Literal["mean", "max"] = setting(
+        "mean", "how the readings of the rays, 0 for those that meet something else, become one number", "", OURS
+    )
+    reads: str = setting(
+        "",
+        "the rays of this name are read instead: a wrong channel. Empty for its own",
+        "",
+        OURS + "; for obstacles the code of the sequel reads those of food",
+    )
+    gene: GeneConfig = section(GeneConfig)
 
 
 @dataclass(frozen=True, slots=True)
 class SmellConfig:
     """A reward for smelling a species or a kind of food, by its name: coef·weight·mean over the noses."""
 
-    coef: Annotated[
-        float,
-        Doc("factor of the term", "", OURS, Range(ge=-1e3, le=1e3)),
-    ] = 0.1
-    gene: GeneConfig = field(default_factory=GeneConfig)
+    coef: float = setting(0.1, "factor of the term", "", OURS, ge=-1e3, le=1e3)
+    gene: GeneConfig = section(GeneConfig)
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,59 +123,47 @@ class RewardConfig:
     w·σ(-x) of energy; `by_age` w + (w' - w)·σ(x) of age with a second gene w'.
     """
 
-    family: Annotated[
-        Literal["linear", "sinh", "scaled", "fed", "hungry", "by_age"],
-        Doc("how a weight follows from its genes", "", PAPER + "; the others are ours", shapes=True),
-    ] = "linear"
-    threshold: Annotated[
-        float,
-        Doc("energy, or age in steps, around which weights change", "energy or step", OURS, Range(ge=0, le=1e6)),
-    ] = 50.0
-    threshold_width: Annotated[
-        float,
-        Doc("how wide the change around the threshold is", "energy or step", OURS, Range(gt=0, le=1e6)),
-    ] = 10.0
-    meal_coef: Annotated[
-        float,
-        Doc(
-            "factor of the terms for what is eaten; 0: their weights do nothing",
-            "",
-            PAPER,
-            Range(ge=-1e3, le=1e3),
-            derived=True,
-        ),
-    ] = 1.0
-    drive_reduction_coef: Annotated[
-        float,
-        Doc(
-            "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer "
-            "to set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
-            "",
-            OURS,
-            Range(ge=-1e3, le=1e3),
-            derived=True,
-        ),
-    ] = 0.0
-    action_coef: Annotated[
-        float,
-        Doc("factor of the action term", "", EITHER, Range(ge=-1e3, le=1e3), derived=True),
-    ] = 0.01
-    action_norm: Annotated[
-        Literal["max_force", "none"],
-        Doc("what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'),
-    ] = "max_force"
-    rule: Annotated[
-        str,
-        Doc(
-            "a Python function that pays instead, as FILE.py:NAME; a run adds @ and the digest of the file. Empty for "
-            "the sum above (guide/rule.md)",
-            "",
-            OURS,
-        ),
-    ] = ""
-    memory: Annotated[
-        int,
-        Doc("numbers that the rule keeps for each agent from step to step", "", OURS, Range(ge=0, le=16), shapes=True),
-    ] = 0
-    see: Annotated[dict[str, SeeConfig], DERIVED] = field(default_factory=dict)
-    smell: Annotated[dict[str, SmellConfig], DERIVED] = field(default_factory=dict)
+    family: Literal["linear", "sinh", "scaled", "fed", "hungry", "by_age"] = setting(
+        "linear", "how a weight follows from its genes", "", PAPER + "; the others are ours", shapes=True
+    )
+    threshold: float = setting(
+        50.0, "energy, or age in steps, around which weights change", "energy or step", OURS, ge=0, le=1e6
+    )
+    threshold_width: float = setting(
+        10.0, "how wide the change around the threshold is", "energy or step", OURS, gt=0, le=1e6
+    )
+    meal_coef: float = setting(
+        1.0,
+        "factor of the terms for what is eaten; 0: their weights do nothing",
+        "",
+        PAPER,
+        ge=-1e3,
+        le=1e3,
+        derived=True,
+    )
+    drive_reduction_coef: float = setting(
+        0.0,
+        "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer "
+        "to set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
+        "",
+        OURS,
+        ge=-1e3,
+        le=1e3,
+        derived=True,
+    )
+    action_coef: float = setting(0.01, "factor of the action term", "", EITHER, ge=-1e3, le=1e3, derived=True)
+    action_norm: Literal["max_force", "none"] = setting(
+        "max_force", "what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'
+    )
+    rule: str = setting(
+        "",
+        "a Python function that pays instead, as FILE.py:NAME; a run adds @ and the digest of the file. Empty for "
+        "the sum above (guide/rule.md)",
+        "",
+        OURS,
+    )
+    memory: int = setting(
+        0, "numbers that the rule keeps for each agent from step to step", "", OURS, ge=0, le=16, shapes=True
+    )
+    see: dict[str, SeeConfig] = section(derived=True)
+    smell: dict[str, SmellConfig] = section(derived=True)

@@ -1,10 +1,10 @@
-"""The documentation of each setting: its meaning, unit, range and source, for people and for programs."""
+"""How settings are declared: each with its meaning, unit, range and source, for people and for programs."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from functools import cache
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 PAPER = "paper"
 """Printed in Kanagawa & Doya (2024), ALIFE."""
@@ -55,37 +55,31 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Doc:
-    """The annotation of one setting: `Annotated[float, Doc("meaning", "unit", SOURCE, Range(ge=0))]`.
-
-    Attributes:
-        meaning: What the value does, as a phrase.
-        unit: Its unit, or "" if it has none.
-        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if one is needed.
-        range: The allowed values, besides their type.
-        derived: The engine gets what is made of it, in layouts, walls or lengths, and not the setting itself.
-        shapes: The engine gets it, but layouts or walls depend on it too: it cannot be changed without them.
-    """
+    """What is said of a setting where it is declared; see `setting`."""
 
     meaning: str
     unit: str
     source: str
-    range: Range = Range()
-    derived: bool = False
-    shapes: bool = False
-    __is_annotated_types_grouped_metadata__: Literal[True] = True
+    range: Range
+    derived: bool
+    shapes: bool
 
-    def __iter__(self) -> Iterator[object]:
-        """Yields the range in the validator's form (the protocol of grouped metadata)."""
-        from pydantic import Field
 
-        bounds: Any = Field(
-            ge=self.range.ge,
-            gt=self.range.gt,
-            le=self.range.le,
-            lt=self.range.lt,
-            max_length=self.range.max_items,
-        )
-        yield from bounds.metadata
+def setting(
+    default: Any, meaning: str, unit: str, source: str, *, derived: bool = False, shapes: bool = False, **limits: Any
+) -> Any:
+    """Declares a setting: `width: float = setting(480.0, "extent along x", "u", PAPER, gt=0)`.
+
+    Args:
+        default: Its value where nothing is said.
+        meaning: What the value does, as a phrase.
+        unit: Its unit, or "" if it has none.
+        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if one is needed.
+        derived: The engine gets what is made of it, in layouts, walls or lengths, and not the setting itself.
+        shapes: The engine gets it, but layouts or walls depend on it too: it cannot be changed without them.
+        limits: The allowed values, besides their type, as `Range` takes them.
+    """
+    return field(default=default, metadata={"doc": Doc(meaning, unit, source, Range(**limits), derived, shapes)})
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,58 +120,49 @@ def type_name(kind: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
-    """The annotation of a table of sections by name.
-
-    Attributes:
-        most: How many there may be, where users choose the names.
-        names: The names, where they are given, each with the largest factor of a schedule or the meaning of a gene.
-        derived: As in `Doc`.
-    """
-
-    most: int = 0
-    names: Mapping[str, Any] | None = None
-    derived: bool = False
-
-
-DERIVED = Table(derived=True)
-"""The annotation of a section whose settings reach the engine in layouts alone."""
-
-
-@dataclass(frozen=True, slots=True)
 class Section:
-    """A field that is a section, or a table of sections by the name of their kind."""
+    """A field that is a section, or a table of sections by name; see `section`."""
 
     type: type
     repeated: bool
-    table: Table = Table()
+    most: int
+    names: Mapping[str, Any]
+    derived: bool
+
+
+def section(
+    make: Callable[[], Any] = dict, *, most: int = 0, names: Mapping[str, Any] | None = None, derived: bool = False
+) -> Any:
+    """Declares a section, or a table of sections by name.
+
+    Args:
+        make: Makes its default.
+        most: How many there may be, where users choose the names.
+        names: The names, where they are given, each with the largest factor of a schedule or the meaning of a gene.
+        derived: As for a setting: its settings reach the engine in layouts alone.
+    """
+    return field(default_factory=make, metadata={"section": (most, names or {}, derived)})
 
 
 @cache
 def settings(section: type) -> Mapping[str, Setting]:
-    """The documented settings of a section by name, in order, without its inner sections."""
-    hints = get_type_hints(section, include_extras=True)
-    found = {}
-    for field in fields(section):
-        kind, *notes = get_args(hints[field.name]) or [None]
-        if notes and isinstance(notes[0], Doc):
-            found[field.name] = Setting(field.name, kind, field.default, notes[0])
-    return MappingProxyType(found)
+    """The settings of a section by name, in order, without its inner sections."""
+    hints, own = get_type_hints(section), (each for each in fields(section) if "doc" in each.metadata)
+    return MappingProxyType(
+        {each.name: Setting(each.name, hints[each.name], each.default, each.metadata["doc"]) for each in own}
+    )
 
 
 @cache
 def sections(section: type) -> Mapping[str, Section]:
     """The inner sections of a section by name, in order."""
-    hints = get_type_hints(section, include_extras=True)
-    found = {}
-    for field in fields(section):
-        kind, table = hints[field.name], Table()
-        if get_origin(kind) is Annotated:
-            kind, table = get_args(kind)
-        repeated = get_origin(kind) is dict
-        inner = get_args(kind)[1] if repeated else kind
-        if isinstance(inner, type) and is_dataclass(inner):
-            found[field.name] = Section(inner, repeated, table)
+    hints, found = get_type_hints(section), {}
+    for each in fields(section):
+        if "section" in each.metadata:
+            kind = hints[each.name]
+            repeated = get_origin(kind) is dict
+            inner = get_args(kind)[1] if repeated else kind
+            found[each.name] = Section(inner, repeated, *each.metadata["section"])
     return MappingProxyType(found)
 
 
@@ -193,45 +178,7 @@ def engine_settings(section: type) -> Mapping[str, Setting]:
 
 def engine_sections(section: type) -> Mapping[str, Section]:
     """The inner sections of a section of which the engine gets anything itself."""
-    return {name: each for name, each in sections(section).items() if not each.table.derived}
-
-
-def find(root: type, path: Sequence[str | int]) -> Setting | type | None:
-    """Follows a path below a section: gives the setting that it leads to or into, a section, or None.
-
-    Args:
-        root: the type of a section.
-        path: names below it, and names or indices of what repeats.
-    """
-    here, parts = root, list(path)
-    while parts:
-        name = parts.pop(0)
-        if not isinstance(name, str):
-            return None
-        if name in settings(here):
-            return settings(here)[name]
-        if name not in sections(here):
-            return None
-        if sections(here)[name].repeated and parts:
-            parts.pop(0)
-        here = sections(here)[name].type
-    return here
-
-
-def places(section: type, name: str, path: str = "") -> Iterator[str]:
-    """The paths of all settings of this name in a section and its inner sections, in order.
-
-    Args:
-        section: its type.
-        name: of the setting.
-        path: of the section, with a dot at its end; empty for the config itself.
-    """
-    for inner_name, inner in sections(section).items():
-        # A file has the sections of species at the top too.
-        below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
-        if name in settings(inner.type):
-            yield below + name
-        yield from places(inner.type, name, below)
+    return {name: each for name, each in sections(section).items() if not each.derived}
 
 
 def value_at(section: Any, path: str) -> Any:
@@ -242,12 +189,17 @@ def value_at(section: Any, path: str) -> Any:
         path: names joined by points.
 
     Raises:
-        KeyError: There is no such name in a table of sections.
+        ValueError: There is no such name in a table of sections.
         AttributeError: A section has no such setting.
     """
-    for name in path.split("."):
-        section = section[name] if isinstance(section, dict) else getattr(section, name)
-    return section
+    if not path:
+        return section
+    if not isinstance(section, dict):
+        name, _, rest = path.partition(".")
+        return value_at(getattr(section, name), rest)
+    # The names of users' sections may have points, until they are refused.
+    name = max((each for each in section if f"{path}.".startswith(f"{each}.")), key=len)
+    return value_at(section[name], path[len(name) + 1 :])
 
 
 def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:

@@ -1,10 +1,10 @@
 """A gene by the name of its column in the records."""
 
-from hedon.config.config import Config
 from hedon.config.layout import Gene, layouts
+from hedon.config.settings import Settings
 
 
-def gene_of(config: Config, column: str) -> Gene:
+def gene_of(config: Settings, column: str) -> Gene:
     """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species.
 
     Args:
@@ -17,7 +17,7 @@ def gene_of(config: Config, column: str) -> Gene:
     return next(gene for layout in wanted for gene in layout.genes if gene.name == name)
 
 
-def limit_of(config: Config, column: str) -> float:
+def limit_of(config: Settings, column: str) -> float:
     """What a gene is clipped to, on both sides; without a species in the column, in all that have it.
 
     Args:

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from typing import Any, get_args
 
 from hedon.config import room
-from hedon.config.config import Config
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
 from hedon.config.field import Setting, engine_sections, engine_settings
+from hedon.config.settings import Settings
 from hedon.config.species import RULE_USES
 
 _HEAD = """\
@@ -47,7 +47,7 @@ def _room() -> Iterator[str]:
 
 def _structs() -> Iterator[str]:
     made: dict[str, list[str]] = {}
-    for root in (GeneConfig, MutationConfig, Config):  # layouts have laws and mutations of genes
+    for root in (GeneConfig, MutationConfig, Settings):  # layouts have laws and mutations of genes
         _add(root, made)
     for lines in made.values():
         yield from lines
@@ -58,7 +58,7 @@ def _structs() -> Iterator[str]:
 
 def _add(section: type, made: dict[str, list[str]]) -> str:
     """Adds the struct of a section after those of its inner sections; returns its name."""
-    name = "Settings" if section is Config else section.__name__
+    name = section.__name__
     own, enums, members = name.removesuffix("Config"), [], []
     for setting in engine_settings(section).values():
         kind = _type(setting)
@@ -68,12 +68,12 @@ def _add(section: type, made: dict[str, list[str]]) -> str:
         members.append((kind, setting.name, _limit(setting), setting.doc.unit))
     for place, inner in engine_sections(section).items():
         kind = _add(inner.type, made)
-        if inner.table.names:
-            names = [(kind, each, f"Limit::from(0, {factor:.10g})", "") for each, factor in inner.table.names.items()]
+        if inner.names:
+            names = [(kind, each, f"Limit::from(0, {factor:.10g})", "") for each, factor in inner.names.items()]
             kind = own + _camel(place)
             made[kind] = _struct(kind, names)
         elif inner.repeated:
-            kind = f"FixedList<{kind}, {inner.table.most}>"
+            kind = f"FixedList<{kind}, {inner.most}>"
         members.append((kind, place, "Limit()", ""))
     made[name] = [*enums, *_struct(name, members)]
     return name

@@ -1,9 +1,8 @@
 """Inner states beside energy: a second nutrient, and a toxin."""
 
 from dataclasses import dataclass
-from typing import Annotated
 
-from hedon.config.field import OURS, Doc, Range
+from hedon.config.field import OURS, setting
 
 CODE = OURS + "; the paper's code has this value"
 
@@ -15,35 +14,16 @@ class NutrientConfig:
     A species has it if it eats a kind of food with `nutrient` above 0. A child gets `energy.birth_share` of it.
     """
 
-    initial: Annotated[
-        float,
-        Doc("nutrient of each founder at the start", "nutrient", CODE, Range(ge=0, le=1e6)),
-    ] = 40.0
-    capacity: Annotated[
-        float,
-        Doc("most that an agent can hold", "nutrient", OURS, Range(gt=0, le=1e6)),
-    ] = 400.0
-    basic_cost: Annotated[
-        float,
-        Doc("used up by living", "nutrient/step", CODE, Range(ge=0, le=1e4)),
-    ] = 1e-4
-    action_cost: Annotated[
-        float,
-        Doc("used up by motor force, per norm of the two forces", "nutrient/(step·force)", CODE, Range(ge=0, le=1e4)),
-    ] = 2e-6
-    hazard_share: Annotated[
-        float,
-        Doc(
-            "weight of the hazard's part by energy, with this store in place of energy",
-            "",
-            CODE,
-            Range(ge=0, le=1e4),
-        ),
-    ] = 0.2
-    observed: Annotated[
-        bool,
-        Doc("whether agents observe it", "", OURS),
-    ] = True
+    initial: float = setting(40.0, "nutrient of each founder at the start", "nutrient", CODE, ge=0, le=1e6)
+    capacity: float = setting(400.0, "most that an agent can hold", "nutrient", OURS, gt=0, le=1e6)
+    basic_cost: float = setting(1e-4, "used up by living", "nutrient/step", CODE, ge=0, le=1e4)
+    action_cost: float = setting(
+        2e-6, "used up by motor force, per norm of the two forces", "nutrient/(step·force)", CODE, ge=0, le=1e4
+    )
+    hazard_share: float = setting(
+        0.2, "weight of the hazard's part by energy, with this store in place of energy", "", CODE, ge=0, le=1e4
+    )
+    observed: bool = setting(True, "whether agents observe it", "", OURS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,15 +34,6 @@ class ToxinConfig:
     A species has it if it eats a kind of food with `toxin` above 0. A child is born without any.
     """
 
-    decay: Annotated[
-        float,
-        Doc("how much goes in a step", "toxin/step", CODE, Range(ge=0, le=1e4)),
-    ] = 0.01
-    threshold: Annotated[
-        float,
-        Doc("toxin that takes about half of the force", "toxin", CODE, Range(gt=0, le=1e3)),
-    ] = 5.0
-    observed: Annotated[
-        bool,
-        Doc("whether agents observe it", "", OURS),
-    ] = True
+    decay: float = setting(0.01, "how much goes in a step", "toxin/step", CODE, ge=0, le=1e4)
+    threshold: float = setting(5.0, "toxin that takes about half of the force", "toxin", CODE, gt=0, le=1e3)
+    observed: bool = setting(True, "whether agents observe it", "", OURS)

@@ -6,10 +6,10 @@ The engine gets these layouts as data, the records carry them, and columns, labe
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hedon.config.config import Config
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, OF_ALL_GENES, GeneConfig, MutationConfig
 from hedon.config.field import value_at
 from hedon.config.problem import nearest
+from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, SpeciesConfig
 from hedon.error import ArgumentError
 from hedon.text import brief
@@ -105,17 +105,17 @@ class SpeciesLayout:
         return tuple(gene.name for gene in self.genes)
 
 
-def types(config: Config) -> tuple[str, ...]:
+def types(config: Settings) -> tuple[str, ...]:
     """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
     return (*config.species, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
 
 
-def layouts(config: Config) -> dict[str, SpeciesLayout]:
+def layouts(config: Settings) -> dict[str, SpeciesLayout]:
     """The layouts of every species, by name, in the order of the config."""
     return {name: layout_of(config, species) for name, species in config.species.items()}
 
 
-def gene_columns(config: Config) -> tuple[str, ...]:
+def gene_columns(config: Settings) -> tuple[str, ...]:
     """Names of the genes of all species, each once, in order; neutral markers last."""
     genes = {gene.name: gene for layout in layouts(config).values() for gene in layout.genes}
     return (
@@ -124,7 +124,7 @@ def gene_columns(config: Config) -> tuple[str, ...]:
     )
 
 
-def observation_columns(config: Config, name: str) -> tuple[str, ...]:
+def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
     """Names of the entries of what a species observes, in order: model page, section 5.
 
     Args:
@@ -141,7 +141,7 @@ def observation_columns(config: Config, name: str) -> tuple[str, ...]:
     )
 
 
-def inner_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
+def inner_states(config: Settings, species: SpeciesConfig) -> tuple[str, ...]:
     """Which of `INNER_STATES` a species has: energy, and what its food brings.
 
     Args:
@@ -152,7 +152,7 @@ def inner_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
     return tuple(name for name in INNER_STATES if name == "energy" or any(getattr(kind, name) > 0 for kind in kinds))
 
 
-def observed_states(config: Config, species: SpeciesConfig) -> tuple[str, ...]:
+def observed_states(config: Settings, species: SpeciesConfig) -> tuple[str, ...]:
     """Which of its inner states a species observes: energy, and the others unless the config says no.
 
     Args:
@@ -170,7 +170,7 @@ RULE_INPUTS = (
 """What a rule gets of every agent beside its reward's inputs, its genes and its memory, in the engine's order."""
 
 
-def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, ...]:
+def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str, ...]:
     """Names of the fields of the record that a rule of a species gets of each agent, in order.
 
     An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or
@@ -191,7 +191,7 @@ def rule_columns(config: Config, name: str, use: str = "reward") -> tuple[str, .
     return (*inputs, *layout.gene_names, *RULE_INPUTS, *states, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
-def choose_species(name: str | None, config: Config) -> str:
+def choose_species(name: str | None, config: Settings) -> str:
     """The species of this name, or by default the first.
 
     Args:
@@ -209,7 +209,7 @@ def choose_species(name: str | None, config: Config) -> str:
     return known[0] if name is None else name
 
 
-def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
+def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
     """What a species eats: factors by name.
 
     Args:
@@ -224,7 +224,7 @@ def diet(config: Config, species: SpeciesConfig) -> dict[str, float]:
     }
 
 
-def hunted(config: Config) -> str:
+def hunted(config: Settings) -> str:
     """The first species that another one eats.
 
     Raises:
@@ -233,7 +233,7 @@ def hunted(config: Config) -> str:
     return next(name for name in config.species if hunters(config, name))
 
 
-def hunters(config: Config, name: str) -> tuple[str, ...]:
+def hunters(config: Settings, name: str) -> tuple[str, ...]:
     """The other species that eat a species, in order.
 
     Args:
@@ -243,7 +243,7 @@ def hunters(config: Config, name: str) -> tuple[str, ...]:
     return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
 
 
-def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
+def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """The types that a list of names stands for, in order; walls and obstacles are always among them.
 
     Args:
@@ -254,7 +254,7 @@ def chosen(config: Config, names: Sequence[str]) -> tuple[str, ...]:
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
-def smelled(config: Config, names: Sequence[str]) -> tuple[str, ...]:
+def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """The sources of smell that a list of names stands for, in order: species and kinds of food.
 
     Args:
@@ -272,7 +272,7 @@ def set_point_of(state: str) -> str:
 class _Layout:
     """Collects the genes and reward terms of one species, in order."""
 
-    def __init__(self, config: Config, species: SpeciesConfig) -> None:
+    def __init__(self, config: Settings, species: SpeciesConfig) -> None:
         self.config, self.species = config, species
         self.genes: list[Gene] = []
         self.terms: list[RewardTerm] = []
@@ -307,7 +307,7 @@ def _most(family: str, role: str, name: str) -> float:
     return MAX_EXPONENT if exponent else MAX_WEIGHT
 
 
-def layout_of(config: Config, species: SpeciesConfig) -> SpeciesLayout:
+def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     """The layouts of one species. It must see and smell all that it is rewarded for.
 
     Args:

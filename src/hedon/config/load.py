@@ -8,17 +8,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import PROVENANCE, Config
-from hedon.config.dump import SCHEMA, default_path, diff, digest, dump_toml
+from hedon.config.config import Config, from_tables
+from hedon.config.dump import SCHEMA, diff, digest, dump_toml
 from hedon.config.field import leaves
-from hedon.config.layer import EVERY, Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
-from hedon.config.migrate import MOVED, is_earlier, migrate_text, migrated, renamed
-from hedon.config.override import parse_override, parse_path
+from hedon.config.layer import Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
+from hedon.config.migrate import is_earlier, migrate_text, migrated, renamed
+from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
-from hedon.config.species import PER_SPECIES
+from hedon.config.settings import PROVENANCE
 from hedon.config.toml import parse_toml, read_toml, require_plain
-from hedon.config.validate import from_tables
 from hedon.error import ArgumentError
 
 _FOLDER = Path(__file__).parent
@@ -102,43 +101,6 @@ def _current(tables: Table, origin: str) -> Table:
     if problems:
         raise ConfigError(origin, problems)
     return {"complete": True, "schema": SCHEMA} | asdict(from_tables(old, origin))
-
-
-def with_setting(config: Config, path: str, value: Any) -> Config:
-    """The same config with another value of one setting, as `Config.with_`.
-
-    Args:
-        config: that has the setting.
-        path: as in a file; without a species it stands for all of them.
-        value: the new one.
-
-    Raises:
-        ConfigError: There is no such setting, or the value is not allowed.
-    """
-    tables, names = asdict(config), parse_path(path)
-    if not names:
-        raise ConfigError(config.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
-    now = MOVED.get(default_path(".".join(names)))
-    if now is not None:
-        raise ConfigError(config.name, [Problem(path, f"is called {now} now")])
-    roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
-    kinds = list(tables["food"]) if names[:2] == ["food", EVERY] else []
-    for root in [["food", kind] for kind in kinds] or roots:
-        if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
-            raise ConfigError(config.name, [Problem(path, "there is no such setting")])
-    settle_mutation(tables)
-    return from_tables(tables, config.name)
-
-
-def _put(tables: Table, names: list[str], value: Any) -> bool:
-    """Sets a value in nested tables, if there is a place; a gene's mutation, which may have none yet, gets a table."""
-    for depth, name in enumerate(names[:-1]):
-        below = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
-        if not isinstance(below, dict):
-            return False
-        tables = below
-    tables[names[-1]] = value
-    return True
 
 
 def migrated_file(path: Path) -> str:

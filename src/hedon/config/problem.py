@@ -2,12 +2,14 @@
 
 import json
 import math
+import re
 import struct
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
+from hedon.config.field import value_at
 from hedon.error import HedonError
 from hedon.text import LINE, brief
 
@@ -60,6 +62,56 @@ class ConfigError(HedonError):
             super().__init__("\n  ".join([f"{brief(origin)}: {count:,} problems", *lines, *more]))
 
 
+class Check:
+    """Collects the problems of a config.
+
+    Args:
+        config: what is checked.
+    """
+
+    def __init__(self, config: Any) -> None:
+        self.config = config
+        self.problems: list[Problem] = []
+
+    def add(self, path: str, rule: str, near: str | None = None) -> None:
+        """Adds a problem that no single value shows.
+
+        Args:
+            path: of the setting, or of a section.
+            rule: what is wrong and what is allowed.
+            near: a valid name close to the one there.
+        """
+        self.problems.append(Problem(path, rule, nearest=near))
+
+    def need(self, good: bool, path: str, rule: str, value: Any = None, near: str | None = None) -> None:
+        """Adds a problem unless all is good.
+
+        Args:
+            good: whether the rule holds.
+            path: of the setting.
+            rule: what is wrong and what is allowed.
+            value: what is wrong, if it is not just the setting.
+            near: a valid name close to it.
+        """
+        if not good:
+            shown = format_value(value_at(self.config, path) if value is None else value)
+            self.problems.append(Problem(path, rule, shown, near))
+
+    def match(self, pattern: str, path: str, rule: str) -> None:
+        """Adds a problem unless the text at a path matches a pattern as a whole.
+
+        Args:
+            pattern: a regular expression.
+            path: of the setting.
+            rule: what is wrong and what is allowed.
+        """
+        self.need(bool(re.fullmatch(pattern, value_at(self.config, path))), path, rule)
+
+    def has(self, start: str) -> bool:
+        """Whether there is a problem whose path starts so."""
+        return any(problem.path.startswith(start) for problem in self.problems)
+
+
 def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
     """The same problems, each once under the path of a file's default where all species have it.
 
@@ -109,11 +161,3 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
     return matches[0] if matches else None
-
-
-def format_path(parts: Iterable[str | int]) -> str:
-    """A path as messages show it: names joined by points, positions in brackets."""
-    text = ""
-    for part in parts:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text

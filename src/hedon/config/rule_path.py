@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import Config
+from hedon.config.settings import Settings
 from hedon.config.species import RULE_USES
 
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
 """A rule: its file, its function and, once a run has it, the digest of the file."""
 
 
-def rule_places(config: Config) -> tuple[str, ...]:
+def rule_places(config: Settings) -> tuple[str, ...]:
     """The places of all rules of a config."""
     places = (getattr(species, use).rule for species in config.species.values() for use in RULE_USES)
     return tuple(place for place in places if place)

@@ -1,31 +1,27 @@
-"""Checks all input: turns plain nested tables into a `Config`, or raises one error that names all problems."""
+"""Checks all input: turns plain nested tables into settings, or raises one error that names all problems."""
 
-import json
+import math
 import re
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
-from functools import cache
-from typing import TYPE_CHECKING, Any
+import sys
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeVar, get_args
 
 from hedon.config.check import contradictions
-from hedon.config.config import Config
-from hedon.config.field import Setting, find, places, sections, settings
-from hedon.config.problem import ConfigError, Problem, folded, format_path, format_value, nearest
+from hedon.config.field import Setting, sections, settings
+from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest, single
+from hedon.config.settings import Settings
 from hedon.config.species import PER_SPECIES
 from hedon.config.toml import require_plain
-from hedon.error import ArgumentError
-from hedon.text import brief
 
-if TYPE_CHECKING:
-    from pydantic import TypeAdapter
-    from pydantic_core import ErrorDetails
+T = TypeVar("T")
+S = TypeVar("S", bound=Settings)
 
 
-def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
+def build(root: type[S], tables: Mapping[str, Any], origin: str) -> S:
     """Builds a config from nested tables; settings that are not given have their defaults.
 
     Args:
+        root: `Config`.
         tables: Sections and settings by name, as TOML gives them.
         origin: The name of the tables in errors.
 
@@ -33,35 +29,128 @@ def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another.
     """
     require_plain(tables, origin)
-    config, errors = _try(tables)
-    problems = list(dict.fromkeys(_problem(details) for details in errors))
-    if errors:
-        # Leave out what is wrong by itself, so that the same error also lists contradictions among the rest.
-        config, _ = _try(_without(tables, [details["loc"] for details in errors]))
-    if config is not None:
-        wrong = [_parts(problem.path) for problem in problems]
-        problems += [
-            each for each in contradictions(config) if not any(_overlap(_parts(each.path), path) for path in wrong)
-        ]
-    if problems or config is None:
-        species = tables.get("species")
-        raise ConfigError(origin, folded(problems, tuple(species) if isinstance(species, Mapping) else ()))
+    problems: list[Problem] = []
+    config = _section(root, tables, "", problems)
+    wrong = [_parts(problem.path) for problem in problems]
+    # What is wrong by itself has its default now; contradictions are looked for among the rest.
+    rest = (each for each in contradictions(config) if not any(_overlap(_parts(each.path), path) for path in wrong))
+    problems.extend(rest)
+    if problems:
+        raise ConfigError(origin, folded(problems, tuple(config.species)))
     return config
 
 
-def _try(tables: Mapping[str, Any]) -> "tuple[Config | None, list[ErrorDetails]]":
-    from pydantic import ValidationError
-
-    try:
-        # Through JSON: only there does a strict validator accept tables for dataclasses and lists for tuples.
-        return _validator().validate_json(json.dumps(tables, default=_plain)), []
-    except ValidationError as error:
-        return None, error.errors(include_url=False)
+def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[Problem]) -> T:
+    """A section from its table; adds what is wrong to `problems`, and leaves it out."""
+    own, inner, values = settings(kind), sections(kind), {}
+    for name, value in zip(map(str, table), table.values(), strict=True):
+        place = f"{path}{name}"
+        if name in own:
+            plain = _plain(value)
+            wrong = list(_setting_problems(own[name], plain, place))
+            values |= {} if wrong else {name: _converted(own[name].type, plain)}
+            problems.extend(wrong)
+        elif name not in inner:
+            problems.append(Problem(place, "unknown name", nearest=_nearest_name(kind, name)))
+        elif not isinstance(value, Mapping):
+            problems.append(Problem(place, "must be a table", format_value(value)))
+        elif not inner[name].repeated:
+            values[name] = _section(inner[name].type, value, f"{place}.", problems)
+        else:
+            values[name] = {}
+            for each, below in zip(map(str, value), value.values(), strict=True):
+                if isinstance(below, Mapping):
+                    values[name][each] = _section(inner[name].type, below, f"{place}.{each}.", problems)
+                else:
+                    problems.append(Problem(f"{place}.{each}", "must be a table", format_value(below)))
+    return kind(**values)
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers as Python's, anything else as text, which a setting for numbers refuses."""
-    return value.item() if hasattr(value, "item") else str(value)
+    """NumPy's numbers as Python's."""
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value.item() if getattr(value, "ndim", 1) == 0 and hasattr(value, "item") else value
+
+
+def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Problem]:
+    """What is wrong with one value: its type, its length, or a number in it."""
+    limits, must = setting.doc.range, f"must be {setting.allowed}"
+    wrong: dict[str, Any] = dict(_misfits(setting.type, value))
+    number = setting.type in (int, float)
+    if not wrong and (value not in limits if number else limits.max_items and len(value) > limits.max_items):
+        wrong = {"": value}
+    for place, part in wrong.items():
+        near = nearest(part, setting.choices) if isinstance(part, str) else None
+        yield Problem(path + place, must, format_value(part), near)
+    if wrong:
+        return
+    if setting.type is float and single(value) not in limits:
+        yield Problem(path, f"is {single(value):g} in the engine's 32-bit numbers, but {must}", format_value(value))
+    low, high = limits.each or (-math.inf, math.inf)
+    for place, part in _numbers(value):
+        if not low <= part <= high:
+            yield Problem(path + place, f"must be from {low:.10g} to {high:.10g}", format_value(part))
+
+
+def _misfits(kind: Any, value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    """The parts of a value that are not of their type, each with its place: [2][0]."""
+    items = get_args(kind)
+    if items and isinstance(items[0], str):
+        if not isinstance(value, str) or value not in items:
+            yield place, value
+    elif not items:
+        if not _is_a(kind, value):
+            yield place, value
+    elif not isinstance(value, list | tuple):
+        yield place, value
+    elif items[1:] != (Ellipsis,) and len(value) != len(items):
+        yield f"{place}[{len(value)}]" if len(value) < len(items) else place, value
+    else:
+        for i, part in enumerate(value):
+            yield from _misfits(items[0 if items[1] is Ellipsis else i], part, f"{place}[{i}]")
+
+
+def _is_a(kind: type, value: Any) -> bool:
+    if isinstance(value, bool) or kind is bool:
+        return isinstance(value, bool) and kind is bool
+    if kind is float:
+        return isinstance(value, int | float) and abs(value) <= sys.float_info.max  # False for NaN
+    # Half of a pair of UTF-16 is no text that a file could hold.
+    return isinstance(value, kind) and not (kind is str and re.search("[\ud800-\udfff]", value))
+
+
+def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
+    """The numbers in a list and in the lists in it, each with its place."""
+    for i, item in enumerate(value) if isinstance(value, list | tuple) else ():
+        yield from _numbers(item, f"{place}[{i}]")
+    if isinstance(value, int | float):
+        yield place, value
+
+
+def _converted(kind: Any, value: Any) -> Any:
+    """A value of the right type with tuples for lists, and numbers with a point where a setting has them."""
+    items = get_args(kind)
+    if not isinstance(value, list | tuple):
+        return float(value) if kind is float else value
+    return tuple(_converted(items[0 if items[1] is Ellipsis else i], part) for i, part in enumerate(value))
+
+
+def _nearest_name(section: type, name: str) -> str | None:
+    """The name nearest to an unknown one in its section, else the sections that have this name."""
+    default = PER_SPECIES if issubclass(section, Settings) else ()
+    beside = nearest(name, [*settings(section), *sections(section), *default])
+    return beside or " or ".join(_places(Settings, name)) or None
+
+
+def _places(section: type, name: str, path: str = "") -> Iterator[str]:
+    """The paths of all settings of this name in the inner sections of a section, as a file has them."""
+    for inner_name, inner in sections(section).items():
+        # A file has the sections of species at the top too.
+        below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
+        if name in settings(inner.type):
+            yield below + name
+        yield from _places(inner.type, name, below)
 
 
 def _parts(path: str) -> list[str]:
@@ -71,65 +160,3 @@ def _parts(path: str) -> list[str]:
 def _overlap(path: list[str], other: list[str]) -> bool:
     """Whether two paths name the same setting, or one path names a section that holds the other."""
     return all(x == y for x, y in zip(path, other, strict=False))
-
-
-def _without(tables: Mapping[str, Any], locations: Sequence[Sequence[str | int]]) -> dict[str, Any]:
-    """A copy of nested tables without the settings at these places."""
-    kept, below = {}, defaultdict(list)
-    for location in locations:
-        below[location[0]].append(location[1:])
-    for name, value in tables.items():
-        inner = below[name]
-        if isinstance(value, Mapping) and all(inner):
-            kept[name] = _without(value, inner)
-        elif not inner:
-            kept[name] = value
-    return kept
-
-
-def validated(config: Config, origin: str = "config") -> Config:
-    """The same config, after all checks; for a config that was made in Python.
-
-    Args:
-        config: put together in any way.
-        origin: what errors call it.
-
-    Raises:
-        ConfigError: As `from_tables`.
-        ArgumentError: It is not a `Config`.
-    """
-    if not isinstance(config, Config):
-        raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
-    return from_tables(asdict(config), origin)
-
-
-@cache
-def _validator() -> "TypeAdapter[Config]":
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(Config)
-
-
-def _problem(details: "ErrorDetails") -> Problem:
-    location = details["loc"]
-    path = format_path(location)
-    if details["type"] == "unexpected_keyword_argument":
-        return Problem(path, "unknown name", nearest=_nearest_name(location))
-    target = find(Config, location)
-    if isinstance(target, Setting):
-        given = details["input"]
-        near = nearest(given, target.choices) if isinstance(given, str) else None
-        return Problem(path, f"must be {target.allowed}", format_value(given), near)
-    if target is not None:
-        return Problem(path, "must be a table", format_value(details["input"]))
-    return Problem(path, details["msg"])
-
-
-def _nearest_name(location: Sequence[str | int]) -> str | None:
-    """The name nearest to an unknown one in its section, else the sections that have this name."""
-    name, section = str(location[-1]), find(Config, location[:-1])
-    if not isinstance(section, type):
-        return None
-    default = PER_SPECIES if section is Config else ()
-    beside = nearest(name, [*settings(section), *sections(section), *default])
-    return beside or " or ".join(places(Config, name)) or None

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.config.config import Config
-from hedon.config.dump import default_path, diff, digest
+from hedon.config.dump import diff, digest
 from hedon.config.load import load_config
+from hedon.config.species import default_path
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from hedon.config.config import Config
-from hedon.config.validate import validated
+from hedon.config.config import Config, validated
 from hedon.error import ArgumentError
 from hedon.experiment.argument import (
     MAX_SECONDS,

@@ -4,11 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import PROVENANCE, Config
+from hedon.config.config import Config
 from hedon.config.dump import dump_toml, flatten
 from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
+from hedon.config.settings import PROVENANCE
 from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
 

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_toml, load_config
 from hedon.config import field as doc
-from hedon.config.config import PROVENANCE, Config
+from hedon.config.config import Config
 from hedon.config.dump import flatten, section_paths
 from hedon.config.evolution import GeneConfig, MutationConfig, SeeConfig, SmellConfig
 from hedon.config.load import parse_config
 from hedon.config.schedule import ScheduleConfig
+from hedon.config.settings import PROVENANCE
 from hedon.config.species import SpeciesConfig
 
 

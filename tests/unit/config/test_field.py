@@ -3,7 +3,7 @@ import dataclasses
 import pytest
 
 from hedon.config.config import Config
-from hedon.config.field import Range, Setting, find, sections, settings
+from hedon.config.field import Range, Setting, leaves, sections, settings, value_at
 
 
 def all_settings(section: type = Config) -> list[Setting]:
@@ -32,26 +32,26 @@ def test_every_field_is_a_setting_or_a_section() -> None:
 @pytest.mark.parametrize(
     ("path", "text"),
     [
-        (("species", "x", "energy", "initial"), "a number from 0 to 1000000 [energy]"),
-        (("species", "x", "body", "radius"), "a number > 0 and <= 1000 [u]"),
-        (("species", "x", "sensor", "scaling"), 'one of "raw", "unit"'),
-        (("species", "x", "sensor", "ray_count"), "an integer from 1 to 32"),
+        ("species.agent.energy.initial", "a number from 0 to 1000000 [energy]"),
+        ("species.agent.body.radius", "a number > 0 and <= 1000 [u]"),
+        ("species.agent.sensor.scaling", 'one of "raw", "unit"'),
+        ("species.agent.sensor.ray_count", "an integer from 1 to 32"),
         (
-            ("food", "x", "placement", "centers"),
+            "food.normal.placement.centers",
             "a list of [number, number] with at most 16 items, with numbers from 0 to 100000 [u]",
         ),
-        (("food", "x", "color"), "a text of the form `#rrggbb`"),
+        ("food.normal.color", "a text of the form `#rrggbb`"),
     ],
 )
-def test_allowed_in_words(path: tuple[str, ...], text: str) -> None:
-    setting = find(Config, path)
-    assert isinstance(setting, Setting)
-    assert setting.allowed == text
+def test_allowed_in_words(path: str, text: str) -> None:
+    assert {place: setting for place, setting, _ in leaves(Config())}[path].allowed == text
 
 
-def test_find_leads_into_settings_and_to_sections() -> None:
-    assert find(Config, ("arena", "inner_walls", 0, 3)) is settings(sections(Config)["arena"].type)["inner_walls"]
-    assert find(Config, ("physics",)) is sections(Config)["physics"].type
-    assert find(Config, ("food", "any", "placement")) is find(Config, ("food", "other", "placement"))
-    assert find(Config, ("enrgy",)) is None
-    assert find(Config, (0,)) is None
+def test_a_path_leads_to_a_value() -> None:
+    config = Config()
+    assert all(value_at(config, path) == value for path, _, value in leaves(config))
+    assert value_at(config, "food.normal.placement") is config.food["normal"].placement
+    assert value_at({"a": {"b": 1}, "a.b": {"c": 2}}, "a.b.c") == 2
+    for path in ("enrgy", "food.norml", "arena.inner_walls.x"):
+        with pytest.raises((ValueError, AttributeError)):
+            value_at(config, path)

@@ -13,7 +13,7 @@ from hedon.check.run import check_run
 from hedon.config import ConfigError, diff, digest, dump_toml, load_config
 from hedon.config.dump import flatten
 from hedon.config.evolution import GeneConfig
-from hedon.config.field import find, settings
+from hedon.config.field import sections, settings
 from hedon.config.load import migrated_file, parse_config
 from hedon.config.migrate import MOVED, VALUES
 from hedon.config.species import SpeciesConfig
@@ -72,10 +72,9 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize("old", MOVED)
 def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: str) -> None:
     new = MOVED[old]
-    assert find(SpeciesConfig, old.split(".")) is None
-    assert (
-        new.split(".")[1] in settings(WorldConfig) if new.startswith("world.") else find(SpeciesConfig, new.split("."))
-    )
+    known = {f"{place}.{name}" for place, each in sections(SpeciesConfig).items() for name in settings(each.type)}
+    assert old not in known
+    assert new in known | {f"world.{name}" for name in settings(WorldConfig)}
     said = f"{old}: is called {new} now"
     with pytest.raises(ConfigError, match=re.escape(said)):
         load_config("baseline", overrides=[f"{old}=1"])

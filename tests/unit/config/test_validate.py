@@ -4,11 +4,11 @@ from typing import Any
 import pytest
 
 from hedon.config import Config, ConfigError, diff, load_config, validated
+from hedon.config.config import from_tables
 from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import MutationConfig
 from hedon.config.layer import settle_species
 from hedon.config.species import SpeciesConfig
-from hedon.config.validate import from_tables
 
 
 def made(tables: dict[str, Any]) -> Config:

@@ -1,0 +1,34 @@
+"""The root of a config: all settings of a run, and where they came from."""
+
+from dataclasses import dataclass
+
+from hedon.config.arena import ArenaConfig
+from hedon.config.field import OURS, section, setting
+from hedon.config.food import FoodConfig
+from hedon.config.obstacle import ObstacleConfig
+from hedon.config.physics import PhysicsConfig
+from hedon.config.room import MAX_FOOD_KINDS, MAX_SPECIES
+from hedon.config.species import ONLY, SpeciesConfig
+from hedon.config.world import WorldConfig
+
+PROVENANCE = ("name", "preset", "fidelity")
+"""Fields that say where a config came from; they change no result."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`.
+
+    What stands beside `species` is the world. There is at least one species; the only one of a file without `[species]`
+    is called `agent`.
+    """
+
+    name: str = setting("baseline", "name of the run", "", OURS)
+    preset: str = setting("baseline", "preset that the config is based on", "", OURS)
+    fidelity: str = setting("corrected", "fidelity that the preset was combined with", "", OURS)
+    arena: ArenaConfig = section(ArenaConfig)
+    physics: PhysicsConfig = section(PhysicsConfig)
+    obstacle: ObstacleConfig = section(ObstacleConfig)
+    food: dict[str, FoodConfig] = section(lambda: {"normal": FoodConfig()}, most=MAX_FOOD_KINDS)
+    world: WorldConfig = section(WorldConfig)
+    species: dict[str, SpeciesConfig] = section(lambda: {ONLY: SpeciesConfig()}, most=MAX_SPECIES)
