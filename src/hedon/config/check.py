@@ -2,13 +2,12 @@
 
 import math
 import re
-from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.check_species import MAX_COVERAGE, check_species
-from hedon.config.field import Section, sections
+from hedon.config.field import inner_sections
 from hedon.config.food import FoodConfig
 from hedon.config.problem import Check, Problem, nearest, single
 from hedon.config.room import MAX_FOOD_KINDS
@@ -108,7 +107,7 @@ def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) ->
 
 def _tables(check: Check, section: Any, path: str) -> None:
     """Tables whose names are given have no others, and schedules can be followed."""
-    for place, inner, own in _inner(section, path):
+    for place, inner, own in inner_sections(section, path):
         name = place.rpartition(".")[2]
         if inner.names and name not in inner.names:
             what = "this cannot follow a schedule here" if inner.type is ScheduleConfig else "no gene can set this"
@@ -116,15 +115,6 @@ def _tables(check: Check, section: Any, path: str) -> None:
         elif inner.type is ScheduleConfig:
             _schedule(check, own, f"{place}.points", inner.names[name])
         _tables(check, own, f"{place}.")
-
-
-def _inner(section: Any, path: str) -> Sequence[tuple[str, Section, Any]]:
-    every = [(name, inner, getattr(section, name)) for name, inner in sections(type(section)).items()]
-    return [
-        (f"{path}{name}.{each}" if each else f"{path}{name}", inner, own)
-        for name, inner, below in every
-        for each, own in (below.items() if inner.repeated else [("", below)])
-    ]
 
 
 def _schedule(check: Check, schedule: ScheduleConfig, path: str, most: float) -> None:

@@ -5,10 +5,10 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from hedon.config.field import Setting, leaves, sections, settings
+from hedon.config.field import Setting, inner_sections, leaves, sections, settings
 from hedon.config.problem import format_value
 from hedon.config.settings import PROVENANCE, Settings
-from hedon.config.species import ONLY, default_path
+from hedon.config.species import ONLY, PER_SPECIES, default_path
 
 SCHEMA = "1"
 """The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
@@ -46,9 +46,9 @@ def dump_toml(config: Settings, section: str | None = None) -> str:
 
 def section_paths(config: Settings) -> list[str]:
     """The sections that `dump_toml` can write separately."""
-    own = [*sections(type(next(iter(config.species.values()))))]
-    species = [path for name in config.species for path in (f"species.{name}", *(f"species.{name}.{s}" for s in own))]
-    return [*sections(Settings), *(f"food.{kind}" for kind in config.food), *own, *species]
+    species = (f"species.{name}{own}" for name in config.species for own in ("", *(f".{each}" for each in PER_SPECIES)))
+    foods = (f"food.{kind}" for kind in config.food)
+    return [*sections(Settings), *foods, *PER_SPECIES, *species]
 
 
 def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
@@ -98,17 +98,13 @@ def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
     return kinds + [(path, left.get(path), right.get(path)) for path in paths if left.get(path) != right.get(path)]
 
 
-def _tables(config: Settings) -> Iterator[tuple[str, str]]:
-    def write(path: str, section: Any) -> Iterator[tuple[str, str]]:
-        lines = [f"[{path}]"] if path else []
-        for name, setting in settings(type(section)).items():
-            unit = f" [{setting.doc.unit}]" if setting.doc.unit else ""
-            lines.append(f"{name} = {format_value(getattr(section, name))}  # {setting.doc.meaning}{unit}")
-        if len(lines) > bool(path):
-            yield path, "\n".join(lines)
-        for name, inner in sections(type(section)).items():
-            below, value = f"{path}.{name}".lstrip("."), getattr(section, name)
-            for kind, item in value.items() if inner.repeated else [("", value)]:
-                yield from write(f"{below}.{kind}".rstrip("."), item)
-
-    return write("", config)
+def _tables(section: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    """The text of each section that has settings, by its path."""
+    lines = [f"[{path}]"] if path else []
+    for name, setting in settings(type(section)).items():
+        unit = f" [{setting.doc.unit}]" if setting.doc.unit else ""
+        lines.append(f"{name} = {format_value(getattr(section, name))}  # {setting.doc.meaning}{unit}")
+    if len(lines) > bool(path):
+        yield path, "\n".join(lines)
+    for place, _, own in inner_sections(section, f"{path}." if path else ""):
+        yield from _tables(own, place)

@@ -1,5 +1,6 @@
 """A config as the engine takes it: its settings by the same paths, and layouts in place of names."""
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -63,17 +64,27 @@ def engine_config(config: Config) -> dict[str, Any]:
 def engine_paths(config: Config) -> dict[str, list[str]]:
     """Where the engine has the value of a setting: its paths, such as `species[0].energy.initial`, by the setting's."""
     found: dict[str, list[str]] = {}
-
-    def note(value: Any, path: str) -> None:
+    for path, value in flat(_tree(config)):
         if isinstance(value, _Path):
             found.setdefault(value, []).append(path)
-        for name, inner in value.items() if isinstance(value, dict) else ():
-            note(inner, f"{path}.{name}".lstrip("."))
-        for i, inner in enumerate(value if isinstance(value, list) else ()):
-            note(inner, f"{path}[{i}]")
-
-    note(_tree(config), "")
     return found
+
+
+def flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """What nested dicts and lists have, each by its path, as in `food[0].energy`.
+
+    Args:
+        value: as `engine_config` gives it.
+        path: of the value.
+    """
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from flat(inner, f"{path}.{name}" if path else name)
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from flat(inner, f"{path}[{i}]")
+    else:
+        yield path, value
 
 
 class _Path(str):

@@ -202,7 +202,20 @@ def value_at(section: Any, path: str) -> Any:
     return value_at(section[name], path[len(name) + 1 :])
 
 
-def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
+def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section, Any]]:
+    """Every section that is directly in a section, or in a table of it, by its path, in order.
+
+    Args:
+        section: a config, or a part of one.
+        path: of the section, with a dot at its end; empty for the config itself.
+    """
+    for name, inner in sections(type(section)).items():
+        below = getattr(section, name)
+        for each, own in below.items() if inner.repeated else [("", below)]:
+            yield f"{path}{name}.{each}" if inner.repeated else f"{path}{name}", inner, own
+
+
+def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
     """Every setting in a section and its inner sections by its path, in order, with its value.
 
     Args:
@@ -211,7 +224,5 @@ def leaves(section: object, path: str = "") -> Iterator[tuple[str, Setting, Any]
     """
     for name, setting in settings(type(section)).items():
         yield f"{path}{name}", setting, getattr(section, name)
-    for name, inner in sections(type(section)).items():
-        below = getattr(section, name)
-        for kind, item in below.items() if inner.repeated else [("", below)]:
-            yield from leaves(item, f"{path}{name}.{kind}." if kind else f"{path}{name}.")
+    for place, _, own in inner_sections(section, path):
+        yield from leaves(own, f"{place}.")

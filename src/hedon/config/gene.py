@@ -11,10 +11,7 @@ def gene_of(config: Settings, column: str) -> Gene:
         config: with the species.
         column: of a genome.
     """
-    species, _, name = column.rpartition(".")
-    made = layouts(config)
-    wanted = [made[species]] if species else made.values()
-    return next(gene for layout in wanted for gene in layout.genes if gene.name == name)
+    return _genes(config, column)[0]
 
 
 def limit_of(config: Settings, column: str) -> float:
@@ -24,7 +21,11 @@ def limit_of(config: Settings, column: str) -> float:
         config: with the species.
         column: of a genome.
     """
+    return min(gene.mutation.limit for gene in _genes(config, column))
+
+
+def _genes(config: Settings, column: str) -> list[Gene]:
     species, _, name = column.rpartition(".")
     made = layouts(config)
     wanted = [made[species]] if species else made.values()
-    return min(gene.mutation.limit for layout in wanted for gene in layout.genes if gene.name == name)
+    return [gene for layout in wanted for gene in layout.genes if gene.name == name]

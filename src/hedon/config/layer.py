@@ -132,28 +132,20 @@ def settle_mutation(tables: Table) -> None:
         }
 
 
-def _lay(base: Table, over: Table) -> Table:
-    merged = dict(base)
-    for name, value in over.items():
-        below = merged.get(name)
-        merged[name] = _lay(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
-    return merged
+def _lay(base: Any, over: Any) -> Any:
+    """What counts of two values: tables merge, of all else the later one."""
+    if not isinstance(base, dict) or not isinstance(over, dict):
+        return over
+    return base | {name: _lay(base.get(name), value) for name, value in over.items()}
 
 
 def _lay_food(base: Table, over: Table) -> Table:
-    merged = dict(base)
     every = over.get(EVERY, {})
-    if isinstance(every, dict):
-        for kind, below in base.items():
-            merged[kind] = _lay(below, every) if isinstance(below, dict) else below
-        merged[EVERY] = _lay(base.get(EVERY, {}), every) if isinstance(base.get(EVERY, {}), dict) else every
-    else:
-        merged[EVERY] = every
+    known = isinstance(every, dict)  # else it is refused later
+    merged = {name: _lay(below, every) if known and isinstance(below, dict) else below for name, below in base.items()}
+    merged[EVERY] = _lay(base.get(EVERY, {}), every)
     for kind, value in over.items():
-        if kind == EVERY:
-            continue
-        below = merged.get(kind)
-        if not isinstance(below, dict):
-            below = merged[EVERY] if isinstance(merged[EVERY], dict) else {}
-        merged[kind] = _lay(below, value) if isinstance(value, dict) else value
+        if kind != EVERY:
+            below = merged.get(kind)
+            merged[kind] = _lay(below if isinstance(below, dict) else merged[EVERY], value)
     return merged

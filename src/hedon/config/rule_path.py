@@ -35,20 +35,16 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
 
 def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a config, or of a species, with the absolute paths of the files of rules.
+    """The tables of a config with the absolute paths of the files of rules.
 
     Args:
-        tables: of the config or the species.
+        tables: of the config, or of a part of it.
         folder: that paths start from.
     """
     found = dict(tables)
-    for use in RULE_USES:
-        section = found.get(use)
-        if isinstance(section, dict) and "rule" in section:
-            found[use] = section | {"rule": absolute_rule(section["rule"], folder)}
-    species = found.get("species")
-    if isinstance(species, dict):
-        found["species"] = {
-            name: with_absolute_rules(own, folder) if isinstance(own, dict) else own for name, own in species.items()
-        }
+    for name, value in tables.items():
+        if isinstance(value, dict):
+            found[name] = with_absolute_rules(value, folder)
+        elif name == "rule":
+            found[name] = absolute_rule(value, folder)
     return found

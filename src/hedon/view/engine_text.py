@@ -1,11 +1,8 @@
 """A config as the text that the engine in a web page is made from; `engine/web/input.h` describes it."""
 
-from collections.abc import Iterator
-from typing import Any
-
 from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
-from hedon.config.engine import engine_config
+from hedon.config.engine import engine_config, flat
 
 
 def engine_text(config: Config, seed: int) -> str:
@@ -17,16 +14,5 @@ def engine_text(config: Config, seed: int) -> str:
     """
     lines = [f"seed={seed}", f"outer_walls={outer_count(config.arena)}"]
     lines += ["wall=" + ",".join(repr(float(value)) for value in wall) for wall in walls(config.arena)]
-    lines += [f"{path}={value}" for path, value in _flat(engine_config(config), "")]
+    lines += [f"{path}={value}" for path, value in flat(engine_config(config))]
     return "\n".join(lines) + "\n"
-
-
-def _flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, dict):
-        for name, inner in value.items():
-            yield from _flat(inner, f"{path}.{name}" if path else name)
-    elif isinstance(value, list | tuple):
-        for i, inner in enumerate(value):
-            yield from _flat(inner, f"{path}[{i}]")
-    else:
-        yield path, value
