@@ -1,6 +1,5 @@
 """A config: settings that have passed all checks, and how one of them is changed."""
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -17,11 +16,7 @@ from hedon.text import brief
 
 @dataclass(frozen=True, slots=True)
 class Config(Settings):
-    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`.
-
-    What stands beside `species` is the world. There is at least one species; the only one of a file without `[species]`
-    is called `agent`.
-    """
+    """One run's settings, of which one can be changed; see `Settings`."""
 
     def with_(self, path: str, value: Any) -> "Config":
         """The same config with another value of one setting, checked.
@@ -46,20 +41,7 @@ class Config(Settings):
             if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
                 raise ConfigError(self.name, [Problem(path, "there is no such setting")])
         settle_mutation(tables)
-        return from_tables(tables, self.name)
-
-
-def from_tables(tables: Mapping[str, Any], origin: str = "config") -> Config:
-    """Builds a config from nested tables; settings that are not given have their defaults.
-
-    Args:
-        tables: Sections and settings by name, as TOML gives them.
-        origin: The name of the tables in errors.
-
-    Raises:
-        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
-    """
-    return build(Config, tables, origin)
+        return build(Config, tables, self.name)
 
 
 def validated(config: Config, origin: str = "config") -> Config:
@@ -70,7 +52,7 @@ def validated(config: Config, origin: str = "config") -> Config:
         origin: what errors call it.
 
     Raises:
-        ConfigError: As `from_tables`.
+        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
         ArgumentError: It is not a `Config`.
     """
     if not isinstance(config, Config):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
-from hedon.config.field import engine_sections, engine_settings, settings, value_at
+from hedon.config.field import engine_sections, engine_settings, leaves, settings
 from hedon.config.layout import INNER_STATES, Gene, diet, layout_of, set_point_of, types
 from hedon.config.life import distance_sd
 from hedon.config.species import RULE_USES, SpeciesConfig
@@ -50,10 +50,11 @@ def engine_input(config: Config) -> EngineInput:
 def engine_config(config: Config) -> dict[str, Any]:
     """The nested dict that the engine's structs are filled from."""
 
+    values = {path: value for path, _, value in leaves(config)}
+
     def filled(value: Any) -> Any:
         if isinstance(value, _Path):
-            found = value_at(config, value)
-            return int(found) if isinstance(found, bool) else found
+            return int(values[value]) if isinstance(values[value], bool) else values[value]
         if isinstance(value, dict):
             return {name: filled(inner) for name, inner in value.items()}
         return [filled(inner) for inner in value] if isinstance(value, list) else value

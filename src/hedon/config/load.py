@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import Config, from_tables
+from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, diff, digest, dump_toml
 from hedon.config.field import leaves
 from hedon.config.layer import Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
@@ -18,6 +18,7 @@ from hedon.config.problem import ConfigError, Problem, folded, format_value, nea
 from hedon.config.rule_path import with_absolute_rules
 from hedon.config.settings import PROVENANCE
 from hedon.config.toml import parse_toml, read_toml, require_plain
+from hedon.config.validate import build
 from hedon.error import ArgumentError
 
 _FOLDER = Path(__file__).parent
@@ -69,9 +70,9 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     problems = [item for item in over if isinstance(item, Problem)]
     tables = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
     require_plain(tables, "--set")
-    problems += [
-        _not_settable(name) for table in tables for name in ("preset", "fidelity", "complete") if name in table
-    ]
+    for name in [each for table in tables for each in table if each in ("preset", "fidelity", "complete")]:
+        other = "--fidelity" if name == "fidelity" else "the preset or file itself"
+        problems.append(Problem(name, f"is not a setting: give it with {other}"))
     below = _layers_below(own, fidelity, problems)
     if problems:
         raise ConfigError(origin, problems)
@@ -100,7 +101,7 @@ def _current(tables: Table, origin: str) -> Table:
     problems = [*settle_food(old), *settle_species(old, [])]
     if problems:
         raise ConfigError(origin, problems)
-    return {"complete": True, "schema": SCHEMA} | asdict(from_tables(old, origin))
+    return {"complete": True, "schema": SCHEMA} | asdict(build(Config, old, origin))
 
 
 def migrated_file(path: Path) -> str:
@@ -186,11 +187,12 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
         problems.append(Problem("complete", "must be true or left out", format_value(own["complete"])))
     own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
     own.setdefault("preset", DEFAULT_PRESET)
-    good = [
-        _is_one_of("preset", own["preset"], PRESETS, problems),
-        _is_one_of("fidelity", own["fidelity"], FIDELITIES, problems),
-    ]
-    if not all(good):
+    for field, names in (("preset", PRESETS), ("fidelity", FIDELITIES)):
+        value = own[field]
+        if value not in names:
+            near = nearest(value, names) if isinstance(value, str) else None
+            problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
+    if problems:
         return []
     return [*_preset_layers(own["preset"]), _settings_of(_FOLDER / "overlays" / f"{own['fidelity']}.toml")]
 
@@ -207,7 +209,7 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     settle_mutation(merged)
     if problems:
         raise ConfigError(origin, problems)
-    config = from_tables(merged, origin)
+    config = build(Config, merged, origin)
     if complete:
         _require_complete(config, merged, origin)
     return config
@@ -231,19 +233,6 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
     ]
     if problems:
         raise ConfigError(origin, folded(problems, tuple(config.species)))
-
-
-def _is_one_of(field: str, value: Any, names: tuple[str, ...], problems: list[Problem]) -> bool:
-    if value in names:
-        return True
-    near = nearest(value, names) if isinstance(value, str) else None
-    problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
-    return False
-
-
-def _not_settable(name: str) -> Problem:
-    other = "--fidelity" if name == "fidelity" else "the preset or file itself"
-    return Problem(name, f"is not a setting: give it with {other}")
 
 
 def _preset_layers(name: str) -> list[Table]:

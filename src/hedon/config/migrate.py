@@ -1,6 +1,7 @@
 """Configs of earlier versions: what was renamed or moved since, and how such a config is read and rewritten."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import deepcopy
 from typing import Any
 
 from hedon.config.layer import Table, has
@@ -33,7 +34,7 @@ VALUES = {
 _MEANT = {"learning": {"acting_weights": "float32"}}
 """What complete files of the first versions mean by settings that they lack, where the default is another value."""
 _HINT = "`hedon config migrate FILE` rewrites a file"
-_GENES = ("initial_mean_food", "initial_mean_action", "initial_sd")
+_LAWS = ("initial_mean_food", "initial_mean_action", "initial_sd")
 """Settings of `genome` that stood for the law of every gene before 0.4."""
 
 
@@ -63,63 +64,21 @@ def migrated(tables: Table) -> Table:
 
     Where such a file has species, each has all its settings, and those at the top mean nothing.
     """
-    species = _tables(tables.get("species"))
-    made = {name: value for name, value in tables.items() if name not in (*PER_SPECIES, "complete", "species")}
-    tops = {name: tables[name] for name in PER_SPECIES if name in tables}
-    world = {}
-    for own in (*species.values(), tops):
-        for old, new in MOVED.items():
-            if has(own, old.split(".")) and new.startswith("world."):
-                world[new.removeprefix("world.")] = _value(new, _at(own, old))
-    made["food"] = {kind: _food(tops, food) for kind, food in _tables(tables.get("food")).items()}
-    every = {name: _species(own) for name, own in species.items()}
-    return made | {"world": world} | ({"species": every} if species else _species(tops))
-
-
-def _tables(value: Any) -> dict[str, Table]:
-    """The tables in a table; none where there is none."""
-    return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}
-
-
-def _at(tables: Table, path: str) -> Any:
-    section, name = path.split(".")
-    return tables[section][name]
-
-
-def _species(sections: Table) -> Table:
-    made = {
-        section: {
-            name: _value(f"{section}.{name}", value)
-            for name, value in settings.items()
-            if f"{section}.{name}" not in MOVED
-        }
-        for section, settings in _tables(sections).items()
-    }
-    for old, new in MOVED.items():
-        section, name = new.split(".")
-        if section in made and has(sections, old.split(".")):
-            made[section][name] = _at(sections, old)
-    for section, settings in _MEANT.items():
-        made[section] = settings | made.get(section, {})
-    genome = made.get("genome", {})
-    if genome.keys() >= {*_GENES}:
-        laws = {"action": _law(genome, _GENES[1]), "neutral": {"initial_mean": 0.0, "initial_sd": genome[_GENES[2]]}}
-        made["genome"] = {name: value for name, value in genome.items() if name not in _GENES} | laws
+    made = deepcopy({name: value for name, value in tables.items() if name != "complete"})
+    species, genome = _tables(made.get("species")), made.get("genome", {})
+    for food in _tables(made.get("food")).values():
+        food |= {"gene": _law(genome, "initial_mean_food")} if has(genome, ["initial_mean_food"]) else {}
+    _rename(made, [*species.values(), made])
+    for name in PER_SPECIES if species else ():
+        made.pop(name, None)
+    for own in species.values() or [made]:
+        for section, settings in _MEANT.items():
+            own[section] = settings | own.get(section, {})
+        genome = own.get("genome", {})
+        if has(genome, ["initial_mean_action"]):
+            laws = {"action": _law(genome, "initial_mean_action"), "neutral": _law(genome)}
+            own["genome"] = {name: value for name, value in genome.items() if name not in _LAWS} | laws
     return made
-
-
-def _value(path: str, value: Any) -> Any:
-    """A setting's value by its name of today."""
-    return VALUES[path].get(value, value) if path in VALUES and isinstance(value, str) else value
-
-
-def _food(sections: Table, food: Table) -> Table:
-    genome = _tables(sections).get("genome", {})
-    return food | ({"gene": _law(genome, _GENES[0])} if genome.keys() >= {*_GENES} else {})
-
-
-def _law(genome: Table, mean: str) -> Table:
-    return {"initial_mean": genome[mean], "initial_sd": genome[_GENES[2]]}
 
 
 def migrate_text(text: str) -> str:
@@ -127,8 +86,21 @@ def migrate_text(text: str) -> str:
     import tomlkit
 
     document: Any = tomlkit.parse(text)
-    species = document.get("species")
-    owners: list[Any] = [document, *(species.values() if isinstance(species, dict) else ())]
+    _rename(document, [document, *_tables(document.get("species")).values()], tomlkit.table)
+    return tomlkit.dumps(document)
+
+
+def _tables(value: Any) -> dict[str, Any]:
+    """The tables in a table; none where there is none."""
+    return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}
+
+
+def _law(genome: Table, mean: str = "") -> Table:
+    return {"initial_mean": genome.get(mean, 0.0), "initial_sd": genome["initial_sd"]}
+
+
+def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict) -> None:
+    """Gives settings and choices the names of this version, in place."""
     for old, new in MOVED.items():
         (section, name), (target, now) = old.split("."), new.split(".")
         for owner in owners:
@@ -137,13 +109,10 @@ def migrate_text(text: str) -> str:
             value = owner[section].pop(name)
             if not owner[section]:
                 owner.pop(section)
-            root = document if target == "world" else owner
-            if target not in root:
-                root[target] = tomlkit.table()
-            root[target][now] = value
+            home = root if target == "world" else owner
+            home.setdefault(target, table())[now] = value
     for path, names in VALUES.items():
         section, name = path.split(".")
         for owner in owners:
-            if has(owner, [section, name]) and owner[section][name] in names:
-                owner[section][name] = names[owner[section][name]]
-    return tomlkit.dumps(document)
+            if has(owner, [section, name]) and isinstance(owner[section][name], str):
+                owner[section][name] = names.get(owner[section][name], owner[section][name])

@@ -4,10 +4,10 @@ import sys
 from collections.abc import Iterator
 from inspect import getdoc
 
-from hedon.config.config import Config
 from hedon.config.field import sections, settings, type_name
 from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
 from hedon.config.problem import format_value
+from hedon.config.settings import Settings
 from hedon.config.species import SpeciesConfig
 
 _HEAD = """\
@@ -47,7 +47,7 @@ def reference() -> str:
     """The whole page, in Markdown."""
     names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
     overlays = _table(("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES))
-    return "\n".join([_HEAD, names, overlays, *_sections(Config(), "")]).rstrip() + "\n"
+    return "\n".join([_HEAD, names, overlays, *_sections(Settings(), "")]).rstrip() + "\n"
 
 
 def _sections(default: object, path: str) -> Iterator[str]:

@@ -4,17 +4,17 @@ from typing import Any
 import pytest
 
 from hedon.config import Config, ConfigError, diff, load_config, validated
-from hedon.config.config import from_tables
 from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import MutationConfig
 from hedon.config.layer import settle_species
 from hedon.config.species import SpeciesConfig
+from hedon.config.validate import build
 
 
 def made(tables: dict[str, Any]) -> Config:
     """The config of a file's tables."""
     assert not list(settle_species(tables, []))
-    return from_tables(tables, "here")
+    return build(Config, tables, "here")
 
 
 def lines(tables: dict[str, Any]) -> list[str]:
