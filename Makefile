@@ -39,15 +39,13 @@ static: tools $(UV)
 sanitized: tools $(UV)
 	$(RUN) python tests/sanitize.py asan
 
-# The same questions asked hundreds of times, and those that take minutes: before a release.
+# The same questions asked hundreds of times, and those that take minutes: before a release, beside `make test`.
 test-long: sync
-	HEDON_NODES=20 $(RUN) $(EXTRA) --extra remote pytest -m "long or not long" tests/sweep
-	HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=40 HEDON_DAMAGED=50 HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
-	  $(RUN) $(EXTRA) pytest --numprocesses auto --dist loadfile \
-	  -m "long or not long" tests/property tests/contract
-	$(RUN) $(BROWSER) $(EXTRA) --group viewer pytest --numprocesses auto --dist load -m "long or not long" tests/view
+	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \
+	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
+	  $(RUN) $(BROWSER) $(EXTRA) --extra remote --group viewer --group cuda --group wheel \
+	  pytest --numprocesses auto --dist worksteal -m "long or repeated"
 	$(RUN) python tests/soak.py
-	$(RUN) $(EXTRA) --group cuda --group wheel pytest -m long tests/repository
 	$(RUN) python tests/cuda_step.py
 	$(RUN) python tests/sanitize.py asan --cuda
 	$(RUN) python tests/sanitize.py tsan --cuda

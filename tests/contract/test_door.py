@@ -194,6 +194,7 @@ TRIAL = """
 """
 
 
+@pytest.mark.repeated
 def test_random_configs_are_refused_by_name_or_lived_in():
     """In a process of its own: a signal or a hang there is a failure here, and says which config it was."""
     tests = Path(__file__).parents[1]

@@ -118,6 +118,7 @@ def test_two_reports_at_once_on_a_run_that_goes_on_harm_nothing(tmp_path):
     assert not list(folder.rglob("*.tmp"))
 
 
+@pytest.mark.repeated
 def test_a_report_that_is_killed_leaves_nothing_behind(run):
     whole = {path for path in content(run) if not path.startswith(("figures", "analysis", "report", "summary"))}
     for i in range(KILLS):

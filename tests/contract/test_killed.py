@@ -83,6 +83,7 @@ def check_between(folder: Path, before: list[int]) -> list[int]:
 WAYS = ("SIGKILL", "SIGTERM", "Ctrl-C", "Ctrl-C twice", "in checkpoints", "in agents", "in population", "in frames")
 
 
+@pytest.mark.repeated
 def test_runs_survive_being_killed_at_any_moment(tmp_path, whole, capsys):
     draw = random.Random(7)
     ways, exits, finished, folder, kept = Counter(), Counter(), 0, tmp_path / "run0", []

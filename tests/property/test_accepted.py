@@ -6,6 +6,7 @@ HEDON_FUZZ=N tries N examples instead of the few of the suite.
 import os
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 
@@ -118,6 +119,7 @@ def changes(draw: st.DrawFn) -> tuple[str, list[tuple[str, Any]]]:
     return source, [(path, draw(values(setting, value))) for path, setting, value in chosen]
 
 
+@pytest.mark.repeated
 @settings(max_examples=EXAMPLES or 400, **FUZZ)
 @given(changed=changes())
 @example(changed=("one", [("nutrient.hazard_share", 1e7)]))

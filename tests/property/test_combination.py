@@ -23,6 +23,8 @@ SIZE = 18
 WORLDS = int(os.environ.get("HEDON_WORLDS", "0"))
 RECORDED = int(os.environ.get("HEDON_RECORDED", "4"))
 ONLY = os.environ.get("HEDON_WORLD")
+PARTS = 16 if WORLDS else 1
+"""Parts of many worlds, which several processes can try at once."""
 REPORTED = 20
 """Of so many recorded worlds one gets a report with its figures."""
 SHOWN = 3
@@ -54,11 +56,15 @@ def failures(trial: Trial, every: int, number: int) -> Iterator[str]:
             return  # the next doors need what this one makes
 
 
-def test_every_door_takes_every_combination(tmp_path, capsys):
+@pytest.mark.repeated
+@pytest.mark.parametrize("part", range(PARTS))
+def test_every_door_takes_every_combination(part, tmp_path, capsys):
     every = max((WORLDS or 57) // max(RECORDED, 1), 1)
     seen: dict[str, str] = {}
     pairs, count, failed = set(), 0, []
     for number, world in tried():
+        if WORLDS and number * PARTS // WORLDS != part:
+            continue
         with tempfile.TemporaryDirectory(dir=tmp_path) as folder:
             trial = Trial(world, Path(folder), random.Random(number), seen)
             for failure in failures(trial, every, number):

@@ -82,6 +82,7 @@ def change(content: bytes, draw: random.Random) -> bytes:
     return bytes(changed)
 
 
+@pytest.mark.repeated
 @pytest.mark.parametrize("damage", [cut, change])
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_damaged_file_ends_no_command_in_a_traceback(original, tmp_path, name, damage):
@@ -128,6 +129,7 @@ NEVER = {
 """What a file may hold that no run has written."""
 
 
+@pytest.mark.repeated
 @pytest.mark.parametrize("name", [*COMMANDS, *(pytest.param(name, marks=pytest.mark.long) for name in SLOW)])
 def test_values_that_no_run_has_end_no_command_in_a_traceback(original, tmp_path, name):
     """In its first, its last or a middle row."""

@@ -121,6 +121,7 @@ override = st.one_of(
 )
 
 
+@pytest.mark.repeated
 def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path):
     path, found = tmp_path / "fuzz.toml", Counter()
 
@@ -212,6 +213,7 @@ def command_lines(draw: st.DrawFn) -> list[str]:
     return words
 
 
+@pytest.mark.repeated
 @settings(max_examples=EXAMPLES or 150, **FUZZ)
 @given(words=command_lines())
 def test_any_command_line_does_what_it_says_or_ends_with_a_message(place, monkeypatch, words):

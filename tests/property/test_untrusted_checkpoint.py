@@ -164,6 +164,7 @@ def mixtures(count):
         yield Mixture(world.species, kept)
 
 
+@pytest.mark.repeated
 @pytest.mark.parametrize("number", range(WORLDS))
 def test_spoiled_worlds_of_every_mechanism_are_refused_or_do_no_harm(number, tmp_path):
     """What passes is lived through, past the learning of its window. A signal ends the test with its number shown."""

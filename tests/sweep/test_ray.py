@@ -78,6 +78,7 @@ def parent(process: int) -> int:
         return 0
 
 
+@pytest.mark.repeated
 @pytest.mark.parametrize("kill", range(KILLS))
 def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
     plan, store = planned(file_of(tmp_path), str(tmp_path / "ray"))
