@@ -115,7 +115,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         begun: Where the run continues, as text to follow the number of steps.
         report: Whether the run ends with a report.
     """
-    from hedon.cli.display.run import duration, make_display
+    from hedon.cli.display.run import RunDisplay, duration
     from hedon.record.schema import columns_of
 
     config, console = plan.config, make_console()
@@ -124,7 +124,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {out}",
         soft_wrap=True,
     )
-    with make_display(console, columns_of(config), plan.seeds) as display:
+    with RunDisplay(console, columns_of(config), plan.seeds) as display:
         manifest = go(display)
     for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:

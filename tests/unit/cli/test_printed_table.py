@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from hedon.cli.display.run import LiveDisplay
+from hedon.cli.display.run import RunDisplay
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
@@ -78,7 +78,7 @@ def test_the_display_of_a_run_fits_and_tells_who_died_out() -> None:
     row = dict.fromkeys(("alive", "births", "deaths"), 12) | {"energy_mean": 1.5, "generation_mean": 2.0}
     row |= {"eaten_normal": 3} | dict.fromkeys(("w_normal_mean", "w_action_mean", "neutral_1_mean"), 0.25)
     console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)
-    display = LiveDisplay(console, Columns(("normal",), 1), (1, 2))
+    display = RunDisplay(console, Columns(("normal",), 1), (1, 2))
     moment = Moment(first=0, step=2048, steps=4096, seconds=1.0, rows=(row, row), extinct=(None, 1500), window=1024)
     with display:
         display.update(moment)

@@ -4,7 +4,7 @@ import io
 
 from rich.console import Console
 
-from hedon.cli.display.run import LineDisplay, LiveDisplay
+from hedon.cli.display.run import RunDisplay
 from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
 
@@ -15,7 +15,7 @@ ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean"
 def shown(moments: list[tuple[float, int]]) -> list[str]:
     """The lines for moments (seconds, step) of a run of 100 windows."""
     stream = io.StringIO()
-    display = LineDisplay(stream, Columns(("normal",), 0), (1,))
+    display = RunDisplay(Console(file=stream), Columns(("normal",), 0), (1,))
     for seconds, step in moments:
         display.update(Moment(0, step, 100 * WINDOW, seconds, (ROW,), (None,), WINDOW))
     return stream.getvalue().splitlines()
@@ -51,11 +51,11 @@ def test_a_species_that_is_gone_has_no_energy():
     columns = Columns(("normal",), 0, species=("prey", "hunter"))
     moment = Moment(0, WINDOW, WINDOW, 60.0, (here, gone), (None, None), WINDOW)
     stream, file = io.StringIO(), io.StringIO()
-    LineDisplay(stream, columns, (1,)).update(moment)
+    RunDisplay(Console(file=stream), columns, (1,)).update(moment)
     lines = stream.getvalue().splitlines()
     assert "seed 1 prey: 3 alive" in lines[0]
     assert lines[1].endswith("seed 1 hunter: 0 alive, 0 births, 0 deaths")
     console = Console(file=file, width=140)
-    console.print(LiveDisplay(console, columns, (1,))._draw(moment, None))
+    console.print(RunDisplay(console, columns, (1,))._draw(moment, None))
     assert "nan" not in file.getvalue()
     assert "1 hunter" in file.getvalue()

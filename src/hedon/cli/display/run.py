@@ -1,15 +1,14 @@
 """Shows the progress of a run: a live table on a terminal, plain lines elsewhere."""
 
 import math
-import time
 from collections import deque
-from typing import IO, Any
+from typing import Any
 
 from rich.console import Console, Group
-from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
+from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
@@ -55,43 +54,6 @@ def _head(moment: Moment, speed: float | None, gap: str) -> str:
     return gap.join([place, f"{speed:,.0f} steps/s", f"{duration((moment.steps - moment.step) / speed)} left"])
 
 
-class LineDisplay:
-    """Plain lines from time to time, for logs.
-
-    Args:
-        stream: To print on.
-        columns: Of the run's tables.
-        seeds: One per world.
-    """
-
-    def __init__(self, stream: IO[str], columns: Columns, seeds: tuple[int, ...]) -> None:
-        self._stream = stream
-        self._weights = columns.shown_names
-        self._labels = _labels(columns, seeds)
-        self._speed = _Speed()
-        self._due = FIRST_LINE_SECONDS
-
-    def __enter__(self) -> "LineDisplay":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stream.flush()
-
-    def update(self, moment: Moment) -> None:
-        """Prints a line for each world, if enough time has passed or the run is at its end."""
-        speed = self._speed.update(moment)
-        if moment.seconds < self._due and moment.step < moment.steps:
-            return
-        self._due = moment.seconds + LINE_SECONDS
-        head = _head(moment, speed, "  ")
-        for label, row, extinct in zip(self._labels, moment.rows, moment.extinct, strict=True):
-            print(
-                f"{head}  seed {label}: {_describe(row, extinct, self._weights)}",
-                file=self._stream,
-                flush=True,
-            )
-
-
 def _labels(columns: Columns, seeds: tuple[int, ...]) -> list[str]:
     """What each row is of: the seed of its world, and its species where there are several."""
     species = [f" {name}" for name in columns.species] if columns.several else [""]
@@ -107,37 +69,35 @@ def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]
     return ", ".join(parts)
 
 
-class LiveDisplay:
-    """A progress bar and a table of the worlds, updated on a terminal.
+class RunDisplay(Screen):
+    """Progress of one run: a progress bar and a table of the worlds on a terminal, plain lines elsewhere.
 
     Args:
-        console: A terminal.
+        console: To print on.
         columns: Of the run's tables.
         seeds: One per world.
     """
 
     def __init__(self, console: Console, columns: Columns, seeds: tuple[int, ...]) -> None:
+        self._seconds = 0.0
+        super().__init__(console, LINE_SECONDS, lambda: self._seconds)
+        self._due = 0.0 if console.is_terminal else FIRST_LINE_SECONDS
         self._weights = columns.shown_names
         self._labels = _labels(columns, seeds)
         self._speed = _Speed()
-        self._live = Live(console=console, auto_refresh=False, transient=True)
-        self._due = 0.0
-
-    def __enter__(self) -> "LiveDisplay":
-        self._live.__enter__()
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        self._live.__exit__(*error)
 
     def update(self, moment: Moment) -> None:
-        """Draws the moment, at most five times a second."""
+        """Shows the moment, if enough time has passed or the run is at its end."""
+        self._seconds = moment.seconds
         speed = self._speed.update(moment)
-        now = time.monotonic()
-        if now < self._due and moment.step < moment.steps:
-            return
-        self._due = now + 0.2
-        self._live.update(self._draw(moment, speed), refresh=True)
+        if self.is_due() or moment.step >= moment.steps:
+            self.show(lambda: self._lines(moment, speed), lambda: self._draw(moment, speed))
+
+    def _lines(self, moment: Moment, speed: float | None) -> str:
+        """A line for each world."""
+        head = _head(moment, speed, "  ")
+        worlds = zip(self._labels, moment.rows, moment.extinct, strict=True)
+        return "\n".join(f"{head}  seed {label}: {_describe(*world, self._weights)}" for label, *world in worlds)
 
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
@@ -166,16 +126,3 @@ class LiveDisplay:
         cells.append(f"{eaten:,}")
         means = [row[f"{name}_mean"] for name in self._weights]
         return cells + ["" if math.isnan(mean) else f"{mean:+.3f}" for mean in means]
-
-
-def make_display(console: Console, columns: Columns, seeds: tuple[int, ...]) -> LiveDisplay | LineDisplay:
-    """The display that fits the output: a terminal or not.
-
-    Args:
-        console: Where it shows the run.
-        columns: Of the run's tables.
-        seeds: One per world.
-    """
-    if console.is_terminal:
-        return LiveDisplay(console, columns, seeds)
-    return LineDisplay(console.file, columns, seeds)

@@ -6,21 +6,28 @@ from typing import Any, Self
 
 from rich.console import Console, RenderableType
 from rich.live import Live
+from rich.text import Text
 
 TERMINAL_SECONDS = 0.2
 LINE_SECONDS = 30.0
 
 
 class Screen:
-    """What displays of many runs have in common. Use it as a context manager.
+    """What all displays of progress have in common. Use it as a context manager.
 
     Args:
         console: to print on.
+        line_seconds: between two lines, where there is no terminal [s].
+        clock: the time now [s].
     """
 
-    def __init__(self, console: Console) -> None:
+    def __init__(
+        self, console: Console, line_seconds: float = LINE_SECONDS, clock: Callable[[], float] = time.monotonic
+    ) -> None:
         self._console = console
         self._live = Live(console=console, auto_refresh=False, transient=True) if console.is_terminal else None
+        self._gap = line_seconds if self._live is None else TERMINAL_SECONDS
+        self._clock = clock
         self._due = 0.0
 
     def __enter__(self) -> Self:
@@ -34,17 +41,17 @@ class Screen:
 
     def is_due(self) -> bool:
         """Whether enough time has passed to show something again."""
-        return time.monotonic() >= self._due
+        return self._clock() >= self._due
 
-    def show(self, line: Callable[[], str], picture: Callable[[], RenderableType]) -> None:
+    def show(self, line: Callable[[], str], picture: Callable[[], RenderableType] | None = None) -> None:
         """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made.
 
         Args:
-            line: Makes the line.
-            picture: Makes the picture.
+            line: Makes the line, or several.
+            picture: Makes the picture; by default the line.
         """
-        self._due = time.monotonic() + (LINE_SECONDS if self._live is None else TERMINAL_SECONDS)
+        self._due = self._clock() + self._gap
         if self._live is None:
-            self._console.print(line(), soft_wrap=True)
+            self._console.print(Text(line()), soft_wrap=True)
         else:
-            self._live.update(picture(), refresh=True)
+            self._live.update(Text(line()) if picture is None else picture(), refresh=True)

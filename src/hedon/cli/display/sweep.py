@@ -3,7 +3,6 @@
 import time
 
 from rich.console import Console
-from rich.text import Text
 
 from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
@@ -39,7 +38,7 @@ class SweepDisplay(Screen):
         worlds = len(job.batch.seeds)
         self._current[job.batch.name] = (moment.step * worlds, (moment.step - moment.first) * worlds)
         if self.is_due():
-            self._show()
+            self.show(self._line)
 
     def end(self, job: Task, outcome: Outcome) -> None:
         """Notes the end of a batch; says why one failed.
@@ -57,10 +56,7 @@ class SweepDisplay(Screen):
         if outcome.status == "failed":
             self._console.print(f"  {job.batch.name} failed: {printable(outcome.fault)}", soft_wrap=True)
         if self.is_due() or self._ended == self._batches:
-            self._show()
-
-    def _show(self) -> None:
-        self.show(self._line, lambda: Text(self._line()))
+            self.show(self._line)
 
     def _line(self) -> str:
         done = self._done + sum(at for at, _ in self._current.values())
