@@ -187,21 +187,6 @@ def run_lines(run: Run, groups: tuple[str, str], species: str) -> tuple[list[Lin
     return [_lines(world, founders, groups, steps) for world in worlds], worlds[0].config
 
 
-def measure_contest(run: Run, groups: tuple[str, str], species: str) -> Contest:
-    """Reads a finished run of two groups.
-
-    Args:
-        run: of the assay; its table of founders has the two groups.
-        groups: names of the first and the second.
-        species: whose groups they are.
-
-    Raises:
-        AssayError: The run has no table of founders, or its groups cannot be told apart.
-    """
-    lines, config = run_lines(run, groups, species)
-    return estimate(groups, lines, config, max(run.manifest.steps_done))
-
-
 def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, steps: int) -> Contest:
     """Estimates what the numbers of two groups in some worlds tell; see `Contest`.
 

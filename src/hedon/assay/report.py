@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,31 +21,42 @@ from hedon.report.summary import plain
 from hedon.report.table import cells
 
 
-def write_assay(
-    folder: Path,
-    kind: str,
-    runs: Sequence[Run],
-    config: Config,
-    content: Mapping[str, Any],
-    tables: Sequence[ResultTable],
-    intro: str,
-    figure: Figure,
-) -> list[Path]:
-    """Writes the files of an assay over what is there, and returns their paths.
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What an assay found, as it is printed and written.
 
-    Args:
-        folder: of the assay.
+    Attributes:
         kind: of the assay; names the files.
         runs: that it was read from.
         config: of its condition.
         content: what the summary holds besides its head and the tables.
-        tables: for the summary and the page.
+        tables: for the terminal, the summary and the page.
         intro: first lines of the page, in Markdown.
         figure: its picture.
+        files: further files, by name.
+    """
+
+    kind: str
+    runs: Sequence[Run]
+    config: Config
+    content: Mapping[str, Any]
+    tables: Sequence[ResultTable]
+    intro: str
+    figure: Figure
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+def write_assay(folder: Path, answer: Answer) -> list[Path]:
+    """Writes the files of an assay over what is there, and returns their paths.
+
+    Args:
+        folder: of the assay.
+        answer: what it found.
 
     Raises:
         RecordError: A file cannot be written.
     """
+    kind, config, tables = answer.kind, answer.config, answer.tables
     head = {
         "assay": kind,
         "condition": config.name,
@@ -60,20 +72,22 @@ def write_assay(
                 "world_digests": run.manifest.world_digests,
                 "hedon_version": run.manifest.hedon_version,
             }
-            for run in runs
+            for run in answer.runs
         ],
     }
     shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
-    summary = json.dumps(plain({**head, **content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
+    summary = json.dumps(
+        plain({**head, **answer.content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False
+    )
     title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
-    lines = [f"# {title}", "", intro, "", f"![{title}]({kind}.png)", ""]
+    lines = [f"# {title}", "", answer.intro, "", f"![{title}]({kind}.png)", ""]
     for each in (table for table in tables if table.shown):
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
-    files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n"}
+    files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
     try:
         for name, text in files.items():
             write_atomically(folder / name, lambda file, text=text: file.write(text.encode()))
-        return [*(folder / name for name in files), save_figure(figure, folder / f"{kind}.png")]
+        return [*(folder / name for name in files), save_figure(answer.figure, folder / f"{kind}.png")]
     except OSError as error:
         raise RecordError(f"cannot write the assay into {folder}: {error}") from error
 

@@ -1,16 +1,37 @@
 """The tables, the JSON summary, the figure and the page of a contest of two groups."""
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.contest import Contest
-from hedon.assay.report import estimate_row
+from hedon.assay.contest import Contest, estimate, run_lines
+from hedon.assay.report import Answer, estimate_row, world_line
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
+from hedon.record.reader import Run
 
 _SHOWN_TIMES = 10
+
+
+def contest_answer(kind: str, groups: tuple[str, str], species: str, runs: Sequence[Run]) -> Answer:
+    """What a finished run of two groups tells.
+
+    Args:
+        kind: of the assay.
+        groups: names of the first and the second.
+        species: whose groups they are.
+        runs: one; its table of founders has the two groups.
+
+    Raises:
+        AssayError: The run has no table of founders, or its groups cannot be told apart.
+    """
+    lines, config = run_lines(runs[0], groups, species)
+    found = estimate(groups, lines, config, max(runs[0].manifest.steps_done))
+    content = {"groups": list(groups), "selection": vars(found.selection), "share": vars(found.share)}
+    content |= {name: getattr(found, name) for name in ("start", "p", "fixed", "lost", "generations")}
+    intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(runs)}"
+    return Answer(kind, runs, config, content, contest_tables(found), intro, draw_contest(found))
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:
@@ -50,20 +71,6 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
         make_table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
         make_table("contest_world", "Living at the end, by world", worlds, shown=False),
     ]
-
-
-def contest_json(contest: Contest) -> dict[str, Any]:
-    """What the summary holds besides the tables."""
-    return {
-        "groups": list(contest.groups),
-        "selection": vars(contest.selection),
-        "share": vars(contest.share),
-        "start": contest.start,
-        "p": contest.p,
-        "fixed": contest.fixed,
-        "lost": contest.lost,
-        "generations": contest.generations,
-    }
 
 
 def draw_contest(contest: Contest) -> Figure:

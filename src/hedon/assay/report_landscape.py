@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,53 +9,33 @@ import numpy as np
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
-from hedon.assay.landscape import Landscape
+from hedon.assay.landscape import Landscape, measure_landscape
 from hedon.assay.outcome import MEASURES
-from hedon.assay.report import estimate_row, world_line, write_assay
-from hedon.record.atomic import write_atomically
+from hedon.assay.report import Answer, estimate_row, world_line
 from hedon.record.reader import Run
 
 OUTCOMES = "founders-outcome.csv"
 
 
-def landscape_tables(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
-    """What is printed: the surfaces, each gene by itself, and fitness at the ends of runs.
+def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], runs: Sequence[Run]) -> Answer:
+    """What a finished run of spread founders tells: the surfaces, each gene by itself, fitness at the ends of runs.
 
     Args:
-        landscape: what was measured.
+        genes: the two columns of the surface.
+        species: whose.
         ends: mean weights at the ends of runs.
-    """
-    return [_surfaces(landscape), _effects(landscape), *_ends(landscape, ends)]
-
-
-def write_landscape(landscape: Landscape, run: Run, ends: Sequence[End], folder: Path) -> list[Path]:
-    """Writes the summary, the page, the figure and the founders' outcomes into a folder.
-
-    Args:
-        landscape: what was measured.
-        run: that it was measured in.
-        ends: mean weights at the ends of runs.
-        folder: is made if it is missing.
-
-    Returns:
-        The files.
+        runs: one, of the assay.
 
     Raises:
-        RecordError: A file cannot be written.
+        AssayError: all worlds died out before anything could be measured.
     """
-    tables = landscape_tables(landscape, ends)
-    intro = "\n".join(
-        [
-            f"{landscape.founders} founders in each world, no mutation. {world_line([run])}",
-            "",
-            *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items()),
-        ]
-    )
-    figure = draw_landscape(landscape, ends)
-    files = write_assay(folder, "landscape", [run], landscape.config, _landscape_json(landscape), tables, intro, figure)
-    rows = landscape.outcomes.write_csv().encode()
-    write_atomically(folder / OUTCOMES, lambda file: file.write(rows))
-    return [*files, folder / OUTCOMES]
+    found = measure_landscape(runs[0], genes, species)
+    tables = [_surfaces(found), _effects(found), *_ends(found, ends)]
+    first = f"{found.founders} founders in each world, no mutation. {world_line(runs)}"
+    intro = "\n".join([first, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
+    files = {OUTCOMES: found.outcomes.write_csv()}
+    figure = draw_landscape(found, ends)
+    return Answer("landscape", runs, found.config, _landscape_json(found), tables, intro, figure, files)
 
 
 def _landscape_json(landscape: Landscape) -> dict[str, Any]:

@@ -1,16 +1,44 @@
 """The tables, the summary and the figure of starts at chosen points."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.stability import VERDICTS, Stability
+from hedon.assay.report import Answer, world_line
+from hedon.assay.stability import VERDICTS, Stability, measure_stability
+from hedon.config.load import parse_config
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
+from hedon.record.reader import Run
 
 _COLORS = (BLUE, ORANGE)
+
+
+def stability_answer(points: Sequence[str], runs: Sequence[Run]) -> Answer:
+    """What finished runs tell of the points at which they began.
+
+    Args:
+        points: of the runs, as the user gave them.
+        runs: of the assay.
+    """
+    starts = [measure_stability(run) for run in runs]
+    content = [
+        {
+            "run": start.name,
+            "point": dict(start.point),
+            "worlds": start.worlds,
+            "extinct": start.extinct,
+            "generations": start.generations,
+            "verdicts": {name: start.courses[name].verdict for name in start.point},
+        }
+        for start in starts
+    ]
+    lines = [f"- `{each.name}`: {each.generations:.0f} generations, {each.extinct} worlds died out" for each in starts]
+    intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(runs)}", "", *lines])
+    config = parse_config(runs[0].config_text, str(runs[0].path))
+    figure = draw_stability(starts)
+    return Answer("stability", runs, config, {"starts": content}, stability_tables(starts), intro, figure)
 
 
 def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
@@ -70,23 +98,6 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
         make_table("start", "Where the weights went", rows, note),
         make_table("course", "Mean weights over time", courses, shown=False),
     ]
-
-
-def stability_json(starts: Sequence[Stability]) -> dict[str, Any]:
-    """What the summary holds besides the tables."""
-    return {
-        "starts": [
-            {
-                "run": start.name,
-                "point": dict(start.point),
-                "worlds": start.worlds,
-                "extinct": start.extinct,
-                "generations": start.generations,
-                "verdicts": {name: start.courses[name].verdict for name in start.point},
-            }
-            for start in starts
-        ]
-    }
 
 
 def draw_stability(starts: Sequence[Stability]) -> Figure:

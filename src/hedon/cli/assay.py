@@ -1,23 +1,18 @@
 """`hedon assay`: measure fitness directly, with founders of chosen genes."""
 
-from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hedon.cli.console import make_console
-from hedon.cli.run import Checkpoint, Threads, parse_seeds
-from hedon.experiment.argument import MAX_STEPS
-from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.text import printable
+from hedon.cli.assay_option import SOURCES, AssayOptions, ContestOptions, Source, Species, StabilityOptions, answer
+from hedon.cli.option import with_options
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
-    from hedon.analysis.result import ResultTable
-    from hedon.experiment.plan import RunPlan
-    from hedon.record.reader import Run
+    from hedon.config.config import Config
+    from hedon.record.founder import Founders
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -25,25 +20,15 @@ app = typer.Typer(
     help="Measure fitness directly: founders with chosen genes compete. docs/guide/fitness.md explains each assay.",
 )
 
-Source = Annotated[str, typer.Argument(metavar="CONDITION", help="A preset's name or a config file (.toml).")]
-Seeds = Annotated[str, typer.Option(help="One world per seed: 7, or 1-5, or 1,4,7-9.")]
-Steps = Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)]
-Fidelity = Annotated[str | None, typer.Option(help="corrected (default), released or text.")]
-Overrides = Annotated[
-    list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
-]
-Species = Annotated[
-    str | None, typer.Option(help="Whose genes, where there are several species; by default the first.")
-]
-Out = Annotated[Path | None, typer.Option(help="Folder of the assay; by default one under assays/ for these settings.")]
-STEPS = 204_800
+SHARES = "0.05,0.25,0.5,0.75,0.95"
+First = Annotated[str, typer.Argument(metavar="A", help=f"Genomes: {SOURCES}.")]
+Second = Annotated[str, typer.Argument(metavar="B", help="Genomes likewise.")]
 
 
 @app.command()
+@with_options(AssayOptions)
 def landscape(
     source: Source,
-    seeds: Seeds = "1-10",
-    steps: Steps = STEPS,
     spread: Annotated[
         str, typer.Option("--range", metavar="LOW:HIGH", help="Founders' genes lie evenly between these.")
     ] = "-8:8",
@@ -56,11 +41,8 @@ def landscape(
         list[Path] | None,
         typer.Option(metavar="RUN|FILE", help="Show where these runs, summary.json or study.json ended."),
     ] = None,
-    fidelity: Fidelity = None,
-    overrides: Overrides = None,
-    out: Out = None,
-    threads: Threads = 0,
-    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    *,
+    options: AssayOptions,
 ) -> None:
     """Fitness as a surface over two genes.
 
@@ -78,71 +60,161 @@ def landscape(
       hedon assay landscape baseline --set population.initial_count=100 --ends runs/baseline-corrected-s1-5
     """
     from hedon.assay.end import read_ends, reported_ends
-    from hedon.assay.landscape import assay_config, measure_landscape, spread_founders
-    from hedon.assay.option import assay_plan, choose_genes, parse_spread
-    from hedon.assay.report_landscape import landscape_tables, write_landscape
+    from hedon.assay.landscape import assay_config, spread_founders
+    from hedon.assay.option import choose_genes, parse_spread
+    from hedon.assay.report_landscape import landscape_answer
     from hedon.config.layout import choose_species
-    from hedon.config.load import load_config
 
-    config = assay_config(load_config(source, fidelity, overrides or ()))
+    config = assay_config(options.config(source))
     own = choose_species(species, config)
     pair = choose_genes(genes, config, own)
     found = [] if len(config.species) > 1 else reported_ends(config)
     found += [end for path in ends or () for end in read_ends(path, config, own)]
     founders = spread_founders(config, parse_spread(spread, sd, config.species[own].genome), own)
-    plan = assay_plan("landscape", config, parse_seeds(seeds), steps, out, threads, checkpoint, founders)
-    console = make_console()
-    runs = make([plan], console)
-    if runs is None:
-        return
-    measured = measure_landscape(runs[0], pair, own)
-    finish(landscape_tables(measured, found), write_landscape(measured, runs[0], found, plan.out.parent), console)
+    plan = options.plan("landscape", config, founders)
+    answer([plan], partial(landscape_answer, pair, own, found))
 
 
-def make(plans: "Sequence[RunPlan]", console: "Console") -> "tuple[Run, ...] | None":
-    """The runs of an assay, made or read; None if one was interrupted, which it prints.
+@app.command()
+@with_options(ContestOptions)
+def compete(a: First, b: Second, *, options: ContestOptions) -> None:
+    """Two groups in one world, in equal numbers: which one grows?
 
-    Args:
-        plans: Of the runs.
-        console: To print on.
+    Half of the founders come from A and half from B; nothing mutates. Prints the selection coefficient of A per
+    generation with an interval over worlds, and the log ratio of the numbers over time. Ctrl-C ends it, and the same
+    command goes on.
 
-    Raises:
-        RecordError: A folder holds a run with other settings, founders or seeds.
-        JobError: A run failed.
+    \b
+    Examples:
+      hedon assay compete food=5,action=5 food=0.5,action=0
+      hedon assay compete runs/a@1000000 runs/b@1000000 --in baseline --seeds 1-20
+      hedon assay compete food=1 food=0 --set population.initial_count=100
+      hedon assay compete see_predator=-5 see_predator=0 --in predator --species prey
     """
-    from hedon.cli.display.job import JobDisplay
-    from hedon.jobs.error import JobError
-    from hedon.jobs.make import make_jobs
-    from hedon.jobs.run import RunJob, unfinished
-    from hedon.record.reader import open_run
+    from hedon.assay.option import competitors
 
-    jobs = [RunJob(plan, plan.steps * len(plan.seeds)) for plan in unfinished(plans)]
-    for job in jobs:
-        config, plan = job.plan.config, job.plan
-        console.print(
-            f"hedon: {config.name} ({config.fidelity}), {len(plan.seeds)} worlds, {plan.steps:,} steps, "
-            f"into {printable(str(plan.out))}",
-            soft_wrap=True,
-        )
-    with JobDisplay(console, jobs) as display:
-        outcomes = make_jobs(jobs, display, plans[0].threads)
-    if faults := [outcome.fault for outcome in outcomes.values() if outcome.status == "failed"]:
-        raise JobError(faults[0])
-    if all(folder in outcomes and outcomes[folder].status == "finished" for folder in (job.folder for job in jobs)):
-        return tuple(open_run(plan.out) for plan in plans)
-    console.print("Interrupted; all results so far are kept. The same command goes on.")
-    return None
+    config, own = options.setting(a, b)
+    _contest("compete", config, own, *competitors((a, b), (0.5, 0.5), config, own), options)
 
 
-def finish(tables: "Sequence[ResultTable]", files: Sequence[Path], console: "Console") -> None:
-    """Prints the tables, and where they were written.
+@app.command()
+@with_options(ContestOptions)
+def invade(
+    resident: Annotated[str, typer.Argument(metavar="RESIDENT", help=f"Genomes: {SOURCES}.")],
+    mutant: Annotated[str, typer.Argument(metavar="MUTANT", help="Genomes likewise.")],
+    share: Annotated[float, typer.Option(help="Of the mutant among the founders.", min=0.001, max=0.999)] = 0.1,
+    *,
+    options: ContestOptions,
+) -> None:
+    """A few mutants among many residents: do they spread?
 
-    Args:
-        tables: Of the assay.
-        files: That were written.
-        console: Where it prints.
+    As compete, but the mutant begins with a small share. Numbers are those of the mutant against the resident.
+
+    \b
+    Example:
+      hedon assay invade food=0.5,action=0 food=5,action=5 --share 0.06
     """
-    from hedon.cli.display.analysis import analysis_group
+    from hedon.assay.option import competitors
 
-    console.print(analysis_group({table.name: table for table in tables}))
-    console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
+    config, own = options.setting(resident, mutant)
+    _contest("invade", config, own, *competitors((mutant, resident), (share, 1.0 - share), config, own), options)
+
+
+@app.command()
+@with_options(ContestOptions)
+def knockout(
+    run: Annotated[str, typer.Argument(metavar="RUN[@STEP]", help="A run; its living, at the end or at a step.")],
+    gene: Annotated[str, typer.Argument(metavar="GENE", help="The gene to set to 0, such as food or action.")],
+    *,
+    options: ContestOptions,
+) -> None:
+    """The living of a run against themselves with one gene at 0: what is the gene worth?
+
+    As compete. Below 0, the gene is worth having.
+
+    \b
+    Example:
+      hedon assay knockout runs/baseline-corrected-s1-5 action --seeds 1-20
+    """
+    from hedon.assay.option import knocked_out
+
+    config, own = options.setting(run)
+    _contest("knockout", config, own, *knocked_out(run, gene, config, own), options)
+
+
+def _contest(
+    kind: str, config: "Config", species: str, founders: "Founders", groups: tuple[str, str], options: ContestOptions
+) -> None:
+    from hedon.assay.report_contest import contest_answer
+
+    answer([options.plan(kind, config, founders)], partial(contest_answer, kind, groups, species))
+
+
+@app.command()
+@with_options(ContestOptions)
+def frequency(
+    a: First,
+    b: Second,
+    shares: Annotated[
+        str, typer.Option(metavar="SHARE,…", help="Of A among the founders, one run for each; two or more.")
+    ] = SHARES,
+    *,
+    options: ContestOptions,
+) -> None:
+    """Fitness against frequency: is the rarer of two groups the fitter one?
+
+    As compete, from several shares of A. Prints the selection coefficient of A per generation at each share, its slope
+    over the share, and the share at which neither grows, all with intervals over seeds. If each group grows where it is
+    rare, the two can live together. Ctrl-C ends it, and the same command goes on; further shares are added to those
+    that are there if the first is the same or --out is given.
+
+    \b
+    Examples:
+      hedon assay frequency food=5,action=0 food=0,action=5
+      hedon assay frequency runs/a@1000000 runs/b@1000000 --shares 0.1,0.5,0.9 --seeds 1-30
+      hedon assay frequency see_prey=2 see_prey=-2 --in predator --species prey
+    """
+    from hedon.assay.option import competitors, parse_shares
+    from hedon.assay.report_frequency import frequency_answer
+
+    config, own = options.setting(a, b)
+    parts, plans, groups = parse_shares(shares, config, own), [], (a, b)
+    for share in parts:
+        founders, groups = competitors((a, b), (share, 1.0 - share), config, own)
+        plans.append(options.plan("frequency", config, founders, f"share-{share:g}"))
+        options = replace(options, out=plans[0].out.parent)
+    answer(plans, partial(frequency_answer, groups, own, parts))
+
+
+@app.command()
+@with_options(StabilityOptions)
+def stability(
+    source: Source,
+    at: Annotated[str, typer.Option("--at", metavar="GENE=VALUE,…", help="Where founders begin: food=5,action=5.")],
+    beside: Annotated[
+        str | None, typer.Option(metavar="GENE=VALUE,…", help="Another start to compare with: food=0,action=0.")
+    ] = None,
+    *,
+    options: StabilityOptions,
+) -> None:
+    """Begin evolution at a claimed end point, and see whether it stays.
+
+    Founders have the condition's own spread around the point, and mutation is on. Prints where each weight went
+    beside neutral genes that begin likewise and mutate along the same pedigrees. Ctrl-C ends it, and the same command
+    goes on.
+
+    \b
+    Examples:
+      hedon assay stability baseline --at food=5,action=5
+      hedon assay stability baseline --at food=5,action=-5 --beside food=0,action=0 --steps 1024000
+    """
+    from hedon.assay.option import stability_config
+    from hedon.assay.report_stability import stability_answer
+    from hedon.record.founder_source import parse_point
+
+    config = options.config(source)
+    points = {"start": at} | ({} if beside is None else {"beside": beside})
+    configs = {part: stability_config(config, parse_point(point, config)) for part, point in points.items()}
+    options = replace(options, out=options.plan("stability", configs["start"], None).out.parent)
+    plans = [options.plan("stability", each, None, part) for part, each in configs.items()]
+    answer(plans, partial(stability_answer, list(points.values())))

@@ -9,7 +9,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, assay_contest, assay_frequency, assay_stability, config, study, sweep
+from hedon.cli import assay, config, study, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
@@ -64,9 +64,6 @@ app.command()(export)
 app.command()(check)
 app.command()(replay_fault)
 app.command()(config.presets)
-assay_contest.add_to(assay.app)
-assay_frequency.add_to(assay.app)
-assay_stability.add_to(assay.app)
 app.add_typer(assay.app, name="assay")
 app.add_typer(sweep.app, name="sweep")
 app.add_typer(study.app, name="study")

@@ -9,7 +9,7 @@ from hedon.assay.contest import Lines
 from hedon.assay.frequency import COEXIST, EXCLUDE, NONE, Frequency, estimate_frequency
 from hedon.assay.landscape import AssayError
 from hedon.assay.option import parse_shares
-from hedon.assay.report_frequency import draw_frequency, frequency_json, frequency_tables
+from hedon.assay.report_frequency import draw_frequency, frequency_tables
 from hedon.assay.resample import Floats
 from hedon.config import ONLY, load_config
 
@@ -61,7 +61,7 @@ def test_without_dependence_the_slope_is_0_and_nothing_crosses() -> None:
     assert all(share.selection.value > 0 for each in found for share in each.shares)
     assert found[-1].verdict == NONE
     assert np.isnan(found[-1].crossing.value)
-    assert frequency_json(found[-1])["verdict"] == NONE
+    assert found[-1].verdict == NONE
 
 
 def test_neutral_groups_cross_nowhere_for_sure() -> None:

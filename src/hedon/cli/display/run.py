@@ -97,7 +97,8 @@ class RunDisplay(Screen):
         """A line for each world."""
         head = _head(moment, speed, "  ")
         worlds = zip(self._labels, moment.rows, moment.extinct, strict=True)
-        return "\n".join(f"{head}  seed {label}: {_describe(*world, self._weights)}" for label, *world in worlds)
+        lines = (f"{head}  seed {label}: {_describe(row, end, self._weights)}" for label, row, end in worlds)
+        return "\n".join(lines)
 
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
