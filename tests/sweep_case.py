@@ -20,7 +20,7 @@ from hedon.record.reader import open_run
 from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
-from hedon.sweep.work import WORK, make_batch, make_task
+from hedon.sweep.work import WORK, make_task
 
 FACTORS = """
 [factor]
@@ -75,7 +75,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     file = sweep_file(folder, steps)
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
-        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     remote, far = planned(file, url)
 
     class Stopping:
@@ -87,7 +87,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
 
     first = remote.batches()[0]
     with pytest.raises(MachineDiedError):
-        make_batch(make_task(url, remote, first, folder / "one machine", 0.0), 1, Stopping())
+        make_task(url, remote, first, folder / "one machine", 0.0).make(1, Stopping())
     assert far.names("state") == [f"{first.name}.zip"]
     assert far.names("results") == []
     begun: list[int] = []
@@ -98,11 +98,11 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
         def update(self, moment: Moment) -> None:
             begun.append(moment.first)
 
-    assert make_batch(make_task(url, remote, first, folder / "another", 1e9), 1, Watching()) == "finished"
+    assert make_task(url, remote, first, folder / "another", 1e9).make(1, Watching()) == "finished"
     assert begun[0] > 0, "it was to go on from the state"
     assert far.names("state") == []
     for batch in remote.batches():
-        assert make_batch(make_task(url, remote, batch, folder / f"rest-{batch.name}", 1e9), 1, None) == "finished"
+        assert make_task(url, remote, batch, folder / f"rest-{batch.name}", 1e9).make(1, None) == "finished"
     assert_same_table(table_of(url), table_of(store.location))
 
 
@@ -112,7 +112,7 @@ def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
-        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     words = ["sweep", "run", str(file), "--out", url, "--workers", "1", "--checkpoint", "0"]
     start = "from hedon.cli.start import main; main()"
     both = [

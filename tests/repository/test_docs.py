@@ -15,7 +15,8 @@ import pytest
 from setting_page import values
 
 from hedon.config import load_config
-from hedon.sweep.read import SweepFile, read_sweep
+from hedon.sweep.plan import SweepFile
+from hedon.sweep.read import read_sweep
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs" / "guide").glob("*.md"))]

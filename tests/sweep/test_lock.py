@@ -12,7 +12,7 @@ from sweep_case import planned, sweep_file
 from hedon.error import HedonError
 from hedon.jobs.lock import lock
 from hedon.jobs.store import Store
-from hedon.sweep.work import WORK, make_batch, make_task
+from hedon.sweep.work import WORK, make_task
 
 START = "from hedon.cli.start import main; main()"
 
@@ -67,5 +67,5 @@ def test_a_batch_waits_for_the_process_that_its_killed_sweep_left(tmp_path):
     left = subprocess.Popen([sys.executable, "-c", holder, str(task.folder)], stdout=subprocess.PIPE)
     assert left.stdout is not None
     left.stdout.readline()
-    assert make_batch(task, 1, None) == "finished"
+    assert task.make(1, None) == "finished"
     assert left.wait() == 0

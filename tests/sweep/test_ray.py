@@ -26,7 +26,7 @@ from hedon.jobs.retry import TRIES
 from hedon.jobs.store import Store
 from hedon.sweep.plan import load_plan
 from hedon.sweep.run import run_sweep
-from hedon.sweep.work import RUNS, make_batch, make_task
+from hedon.sweep.work import RUNS, make_task
 
 pytestmark = pytest.mark.skipif(
     find_spec("ray") is None, reason='needs the optional packages: pip install "hedon[ray]"'
@@ -51,7 +51,7 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("alone")
     plan, store = planned(file_of(folder), str(folder / "whole"))
     for batch in plan.batches():
-        make_batch(make_task(store.location, plan, batch, folder / batch.name, 1e9), 1, None)
+        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     return table_of(store.location)
 
 

@@ -25,7 +25,7 @@ from sweep_case import (
 )
 
 from hedon.jobs.store import PASSING, Store
-from hedon.sweep.work import make_batch, make_task
+from hedon.sweep.work import make_task
 
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
 KEY = "hedon-test-key"
@@ -71,7 +71,7 @@ MAKER = """
 from pathlib import Path
 from hedon.sweep.plan import load_plan
 from hedon.jobs.store import Store
-from hedon.sweep.work import make_batch, make_task
+from hedon.sweep.work import make_task
 
 url, folder = sys.argv[3:]
 write = UrlStore.write
@@ -83,7 +83,7 @@ def told_write(self, name, content):
 
 UrlStore.write = told_write
 plan = load_plan(Store(url))
-make_batch(make_task(url, plan, plan.batches()[0], Path(folder), 0.0), 1, None)
+make_task(url, plan, plan.batches()[0], Path(folder), 0.0).make(1, None)
 """
 
 pytestmark = [
@@ -181,14 +181,14 @@ def test_a_batch_that_is_killed_at_any_place_is_made_by_another(bucket, tmp_path
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(tmp_path / "folder"))
     for batch in plan.batches():
-        make_batch(make_task(store.location, plan, batch, tmp_path / batch.name, 1e9), 1, None)
+        make_task(store.location, plan, batch, tmp_path / batch.name, 1e9).make(1, None)
     remote, far = planned(file, bucket)
     first, second = remote.batches()
-    make_batch(make_task(bucket, remote, second, tmp_path / "second", 1e9), 1, None)
+    make_task(bucket, remote, second, tmp_path / "second", 1e9).make(1, None)
     run_dying(MAKER, place, "0", bucket, tmp_path / "one machine")
     tables = [name for name in far.names("tables/agents") if first.name in name]
     assert (len(far.names("state")), len(tables), len(far.names("results")) - 1) == kept
-    assert make_batch(make_task(bucket, remote, first, tmp_path / "another", 1e9), 1, None) == "finished"
+    assert make_task(bucket, remote, first, tmp_path / "another", 1e9).make(1, None) == "finished"
     assert_same_table(table_of(bucket), table_of(store.location))
     assert_kept_whole(far, remote)
 

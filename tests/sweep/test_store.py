@@ -5,7 +5,7 @@ from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, s
 
 from hedon.error import HedonError
 from hedon.jobs.store import PASSING, Store
-from hedon.sweep.work import STATE, make_batch, make_task
+from hedon.sweep.work import STATE, make_task
 
 
 @pytest.fixture(params=["folder", "file", "memory"])
@@ -74,7 +74,7 @@ def test_a_state_that_is_damaged_is_as_none(tmp_path):
     plan, store = planned(sweep_file(tmp_path, 128, seeds=1), url)
     (batch, *_) = plan.batches()
     store.write(f"{STATE}/{batch.name}.zip", b"PK but no archive")
-    assert make_batch(make_task(url, plan, batch, tmp_path / "run", 1e9), 1, None) == "finished"
+    assert make_task(url, plan, batch, tmp_path / "run", 1e9).make(1, None) == "finished"
     assert store.names(STATE) == []
 
 

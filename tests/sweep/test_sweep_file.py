@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hedon.config import ConfigError
-from hedon.sweep.plan import plan_sweep
-from hedon.sweep.read import SweepFile, read_sweep
+from hedon.sweep.plan import SweepFile
+from hedon.sweep.read import read_sweep
 
 
 def read(folder: Path, text: str) -> SweepFile:
@@ -32,7 +32,7 @@ def test_factors_are_crossed_and_reach_the_configs(tmp_path):
     assert [c.config.species["agent"].energy.initial for c in found.conditions] == [5.0, 5.0, 7.0, 7.0]
     assert ["poison" in c.config.food for c in found.conditions] == [False, True, False, True]
     assert {c.config.species["agent"].birth.kappa for c in found.conditions} == {0.01}
-    assert found.seeds == (1, 2, 3)
+    assert found.plan.seeds == (1, 2, 3)
 
 
 def test_a_fidelity_can_be_a_factor(tmp_path):
@@ -81,10 +81,8 @@ def test_drawn_values_fill_their_ranges(draw, tmp_path):
 
 
 def test_conditions_take_turns(tmp_path):
-    plan = plan_sweep(
-        read(tmp_path, 'steps = 64\nseeds = 5\nworlds = 2\n[factor]\n"energy.initial" = [1.0, 2.0, 3.0]\n')
-    )
-    batches = plan.batches()
+    text = 'steps = 64\nseeds = 5\nworlds = 2\n[factor]\n"energy.initial" = [1.0, 2.0, 3.0]\n'
+    batches = read(tmp_path, text).plan.batches()
     for begin in (0, 3, 6):
         assert {batch.condition for batch in batches[begin : begin + 3]} == {0, 1, 2}
     assert {batch.seeds for batch in batches[:3]} == {(1, 2)}

@@ -9,7 +9,7 @@ from hedon.config.problem import ConfigError
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_condition, load_rules
 from hedon.sweep.read import read_sweep
-from hedon.sweep.work import make_batch, make_task
+from hedon.sweep.work import make_task
 
 pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
 
@@ -43,7 +43,7 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
             shutil.rmtree(home)
         for batch in plan.batches():
             task = make_task(store.location, plan, batch, tmp_path / name / "work" / batch.name, 1e9)
-            assert make_batch(task, 1, None) == "finished"
+            assert task.make(1, None) == "finished"
         tables.append(table_of(store.location))
     assert_same_table(*tables)
     assert tables[0]["digest"].n_unique() == 4  # two rules, two seeds

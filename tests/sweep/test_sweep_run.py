@@ -19,11 +19,11 @@ from hedon.jobs.part import parse_part
 from hedon.jobs.process import Silent
 from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
-from hedon.sweep.plan import load_plan, plan_sweep
+from hedon.sweep.plan import load_plan
 from hedon.sweep.read import read_sweep
 from hedon.sweep.run import open_batches, run_sweep
 from hedon.sweep.status import sweep_status
-from hedon.sweep.work import RESULTS, WORK, make_batch, make_task
+from hedon.sweep.work import RESULTS, WORK, make_task
 
 START = "from hedon.cli.start import main; main()"
 STEPS = 6_400
@@ -35,9 +35,7 @@ def make_all(location: str, file: Path) -> pl.DataFrame:
     plan, store = planned(file, location)
     assert store.folder is not None
     for batch in plan.batches():
-        assert (
-            make_batch(make_task(location, plan, batch, store.folder / WORK / batch.name, 1e9), 1, None) == "finished"
-        )
+        assert make_task(location, plan, batch, store.folder / WORK / batch.name, 1e9).make(1, None) == "finished"
     return table_of(location)
 
 
@@ -134,7 +132,7 @@ def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
     sizes = []
     for name, rest in (("few", FACTORS), ("many", many)):
         (tmp_path / name).mkdir()
-        plan = plan_sweep(read_sweep(sweep_file(tmp_path / name, rest=rest)))
+        plan = read_sweep(sweep_file(tmp_path / name, rest=rest)).plan
         sizes.append(len(pickle.dumps(make_task("place", plan, plan.batches()[0], tmp_path, 1.0))))
     assert max(sizes) < min(sizes) + 20
 

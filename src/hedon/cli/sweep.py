@@ -40,10 +40,9 @@ def plan(file: File) -> None:
       hedon sweep plan cost.toml
     """
     from hedon.config.problem import format_value
-    from hedon.sweep.plan import plan_sweep
     from hedon.sweep.read import read_sweep
 
-    made, console = plan_sweep(read_sweep(file)), make_console()
+    made, console = read_sweep(file).plan, make_console()
     _say_size(made, console)
     for name in made.factors:
         values = list(dict.fromkeys(format_value(settings[name]) for settings in made.settings))
@@ -75,7 +74,7 @@ def run(
     from hedon.sweep.read import read_sweep
 
     asked = read_sweep(file)
-    store = Store(out or str(Path("sweeps") / asked.name))
+    store = Store(out or str(Path("sweeps") / asked.plan.name))
     _run_and_report(write_plan(asked, store), store, workers, ray, part, checkpoint)
 
 
@@ -204,9 +203,9 @@ def script(
     if not slurm:
         raise SweepError("say for which system: --slurm is the only one")
     asked = read_sweep(file)
-    store = Store(out or str(Path("sweeps") / asked.name))
+    store = Store(out or str(Path("sweeps") / asked.plan.name))
     made = write_plan(asked, store)
-    path = Path(f"{asked.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
+    path = Path(f"{made.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
     place = store.location if store.folder is None else str(store.folder.absolute())
     words = ["sweep", "resume", place, "--workers", str(workers), "--checkpoint", f"{checkpoint:g}"]
     text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(made.batches())), workers, hours).encode()

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from hedon.config.config import Config
-from hedon.config.dump import digest, dump_toml
+from hedon.config.dump import dump_toml
 from hedon.config.load import parse_config
 from hedon.config.rule_path import RULE_PATTERN, rule_places
 from hedon.jobs.store import Store
 from hedon.record.manifest import RuleSource
 from hedon.sweep.design import Settings
 from hedon.sweep.error import SweepError
-from hedon.sweep.read import SweepFile
 
 PLAN = "plan.json"
 FORMAT = 1
@@ -92,20 +91,21 @@ class SweepPlan:
         return json.dumps({"format": FORMAT, **asdict(self)}, indent=1, ensure_ascii=False) + "\n"
 
 
-def plan_sweep(file: SweepFile) -> SweepPlan:
-    """The plan of what a file asks for."""
-    return SweepPlan(
-        name=file.name,
-        steps=file.steps,
-        seeds=file.seeds,
-        worlds=min(file.worlds, len(file.seeds)),
-        keep=file.keep,
-        order_seed=file.design.seed,
-        factors=tuple(factor.name for factor in file.factors),
-        ranged=tuple(factor.name for factor in file.factors if factor.drawn),
-        settings=tuple(condition.settings for condition in file.conditions),
-        digests=tuple(digest(condition.config) for condition in file.conditions),
-    )
+@dataclass(frozen=True)
+class Condition:
+    """One setting of a sweep: the values of its factors, the config that follows, and the texts of its rules."""
+
+    settings: Settings
+    config: Config
+    rules: tuple[RuleSource, ...]
+
+
+@dataclass(frozen=True)
+class SweepFile:
+    """What the file of a sweep asks for: its plan, and every condition in the order of the plan."""
+
+    plan: SweepPlan
+    conditions: tuple[Condition, ...]
 
 
 def write_plan(file: SweepFile, store: Store) -> SweepPlan:
@@ -120,12 +120,12 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     Raises:
         SweepError: another sweep lives there, or it cannot be written.
     """
-    plan = plan_sweep(file)
+    plan = file.plan
     before = store.read(PLAN)
     if before is not None:
         if before != plan.text().encode():
             raise SweepError(
-                f"{store.location} holds another sweep than that of {file.name}.toml: give another place with --out, "
+                f"{store.location} holds another sweep than that of {plan.name}.toml: give another place with --out, "
                 f"or go on with that one by `hedon sweep resume {store.location}`"
             )
         return plan

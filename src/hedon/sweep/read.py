@@ -1,11 +1,10 @@
 """Reads the file of a sweep, and says all that is wrong with it."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.config.config import Config
+from hedon.config.dump import digest
 from hedon.config.load import DEFAULT_PRESET, FIDELITIES, load_config
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
 from hedon.config.rule_path import absolute_rule
@@ -14,9 +13,9 @@ from hedon.error import HedonError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.rule import rules_beside
-from hedon.record.manifest import RuleSource
 from hedon.sweep.design import DRAWS, Design, Settings, all_settings
 from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
+from hedon.sweep.plan import Condition, SweepFile, SweepPlan
 
 KEYS = ("base", "fidelity", "steps", "seeds", "worlds", "keep", "set", "factor", "design")
 DESIGN = ("draw", "points", "seed", "zip")
@@ -25,40 +24,6 @@ KEEP = ("agents", "population", "run")
 MOST_CONDITIONS = 100_000
 WORLDS = 4
 """Default worlds of a batch."""
-
-
-@dataclass(frozen=True)
-class Condition:
-    """One setting of a sweep: the values of its factors, the config that follows, and the texts of its rules."""
-
-    settings: Settings
-    config: Config
-    rules: tuple[RuleSource, ...]
-
-
-@dataclass(frozen=True)
-class SweepFile:
-    """What a file asks for.
-
-    Attributes:
-        name: the file's name without its ending.
-        steps: of each world [step].
-        seeds: of each condition, one world for each.
-        worlds: most worlds of a batch, which share a process.
-        keep: what is kept beside the table.
-        factors: in the order of the file.
-        design: how they are put together.
-        conditions: every setting.
-    """
-
-    name: str
-    steps: int
-    seeds: tuple[int, ...]
-    worlds: int
-    keep: tuple[str, ...]
-    factors: tuple[Factor, ...]
-    design: Design
-    conditions: tuple[Condition, ...]
 
 
 def read_sweep(path: Path | str) -> SweepFile:
@@ -97,7 +62,19 @@ def read_sweep(path: Path | str) -> SweepFile:
         many = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
         raise ConfigError(origin, [many])
     conditions = [_condition(path, base, tables.get("fidelity"), fixed, each, seeds, steps) for each in settings]
-    return SweepFile(path.stem, steps, seeds, worlds, keep, factors, design, tuple(conditions))
+    plan = SweepPlan(
+        name=path.stem,
+        steps=steps,
+        seeds=seeds,
+        worlds=min(worlds, len(seeds)),
+        keep=keep,
+        order_seed=design.seed,
+        factors=tuple(factor.name for factor in factors),
+        ranged=tuple(factor.name for factor in factors if factor.drawn),
+        settings=tuple(settings),
+        digests=tuple(digest(condition.config) for condition in conditions),
+    )
+    return SweepFile(plan, tuple(conditions))
 
 
 def _condition(

@@ -65,7 +65,14 @@ class Task:
 
     def newest(self) -> str:
         """The name of the last checkpoint from which the batch would go on; empty where there is none."""
-        return newest_checkpoint(Store(self.location), self)
+        store = Store(self.location)
+        if store.folder is not None:
+            return _newest(self.folder)
+        with suppress(JobError, zipfile.BadZipFile):
+            content = store.read(_state_name(self)) or b""
+            with zipfile.ZipFile(io.BytesIO(content)) as state:
+                return max((path.name for path in map(Path, state.namelist()) if path.suffix == ".npz"), default="")
+        return ""
 
     def describe(self) -> str:
         """The values of its factors, and its seeds."""
@@ -73,13 +80,43 @@ class Task:
         return f"{settings or 'all settings'}, seed {', '.join(map(str, self.batch.seeds))}"
 
     def make(self, threads: int, display: Display | None) -> str:
-        """Makes the batch; see `make_batch`.
+        """Makes the batch, from where it is, and writes its result.
 
         Args:
             threads: That the process may use.
             display: Shows progress.
+
+        Returns:
+            "finished", or "interrupted".
+
+        Raises:
+            HedonError: As `hedon.experiment.run.run`, or what is written cannot be.
         """
-        return make_batch(self, threads, display)
+        store, batch = Store(self.location), self.batch
+        name = f"{RESULTS}/{batch.name}.json"
+        _wait_for_folder(self.folder)
+        if store.read(name) is not None:
+            return "finished"
+        config = load_condition(store, batch.condition)
+        rules, seconds = load_rules(store, config), self.checkpoint_seconds
+        plan = RunPlan(config, batch.seeds, self.steps, self.folder, threads, 0, seconds, rules=rules)
+        _fetch_state(store, self)
+        manifest = _make(plan, _Carrying(store, self, display) if store.folder is None else display)
+        if manifest.status != "finished":
+            _send_state(store, self)
+            return manifest.status
+        run = open_run(self.folder)
+        _keep(store, self, run)
+        result = {
+            "batch": batch.name,
+            "seconds": manifest.run_seconds,
+            "steps": sum(manifest.steps_done),
+            "worlds": world_rows(batch, self.settings, summarize(run), manifest.world_digests),
+        }
+        store.write(name, (json.dumps(result, ensure_ascii=False, allow_nan=False) + "\n").encode())
+        store.remove(_state_name(self))
+        shutil.rmtree(self.folder, ignore_errors=True)
+        return "finished"
 
 
 def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
@@ -94,51 +131,6 @@ def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
     """
     settings = plan.settings[batch.condition]
     return Task(location, batch, settings, plan.steps, plan.keep, folder, checkpoint_seconds)
-
-
-def result_name(batch: Batch) -> str:
-    """Where a batch's result is."""
-    return f"{RESULTS}/{batch.name}.json"
-
-
-def make_batch(task: Task, threads: int, display: Display | None) -> str:
-    """Makes a batch, from where it is, and writes its result.
-
-    Args:
-        task: What to make.
-        threads: That the process may use.
-        display: Shows progress.
-
-    Returns:
-        "finished", or "interrupted".
-
-    Raises:
-        HedonError: as `hedon.experiment.run.run`, or what is written cannot be.
-    """
-    store, batch = Store(task.location), task.batch
-    _wait_for_folder(task.folder)
-    if store.read(result_name(batch)) is not None:
-        return "finished"
-    config = load_condition(store, batch.condition)
-    rules, seconds = load_rules(store, config), task.checkpoint_seconds
-    plan = RunPlan(config, batch.seeds, task.steps, task.folder, threads, 0, seconds, rules=rules)
-    _fetch_state(store, task)
-    manifest = _make(plan, _Carrying(store, task, display) if store.folder is None else display)
-    if manifest.status != "finished":
-        _send_state(store, task)
-        return manifest.status
-    run = open_run(task.folder)
-    _keep(store, task, run)
-    result = {
-        "batch": batch.name,
-        "seconds": manifest.run_seconds,
-        "steps": sum(manifest.steps_done),
-        "worlds": world_rows(batch, task.settings, summarize(run), manifest.world_digests),
-    }
-    store.write(result_name(batch), (json.dumps(result, ensure_ascii=False, allow_nan=False) + "\n").encode())
-    store.remove(_state_name(task))
-    shutil.rmtree(task.folder, ignore_errors=True)
-    return "finished"
 
 
 def _make(plan: RunPlan, display: Display | None) -> Manifest:
@@ -182,22 +174,6 @@ class _Carrying:
             _send_state(self._store, self._task)
         if self._display is not None:
             self._display.update(moment)
-
-
-def newest_checkpoint(store: Store, task: Task) -> str:
-    """The name of the last checkpoint from which a batch would go on; empty where there is none.
-
-    Args:
-        store: Where the sweep lives.
-        task: Of the batch.
-    """
-    if store.folder is not None:
-        return _newest(task.folder)
-    with suppress(JobError, zipfile.BadZipFile):
-        content = store.read(_state_name(task)) or b""
-        with zipfile.ZipFile(io.BytesIO(content)) as state:
-            return max((path.name for path in map(Path, state.namelist()) if path.suffix == ".npz"), default="")
-    return ""
 
 
 def _wait_for_folder(folder: Path) -> None:
