@@ -35,6 +35,7 @@ class ScoreTest:
         low, high: bounds of the effect's 95 % interval: Student's t over worlds for "direction", else from the
             chi-squared law of normal scores; NaN with fewer than two worlds.
         p: two-sided for "direction"; the chance of a larger effect for "distance", of a smaller one for "held".
+        p_holm: p corrected for other tests; NaN where it is not.
         drift_low, drift_high: for "direction", bounds of the effect's 95 % interval by the spread that scores have
             under drift, 1, as p takes it, and not by that between these worlds; NaN for other tests.
     """
@@ -45,6 +46,7 @@ class ScoreTest:
     low: float
     high: float
     p: float
+    p_holm: float = NAN
     drift_low: float = NAN
     drift_high: float = NAN
 
@@ -76,7 +78,7 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     distance, low, high = distance_interval(scores)
     wide = (low, high) if n > 1 else (NAN, NAN)
     return [
-        ScoreTest("direction", n, effect, t_low, t_high, p, effect - half, effect + half),
+        ScoreTest("direction", n, effect, t_low, t_high, p, NAN, effect - half, effect + half),
         ScoreTest("distance", n, distance, *wide, float(stats.chi2.sf(square, n))),
         ScoreTest("held", n, distance, *wide, float(stats.chi2.cdf(square, n))),
     ]

@@ -1,16 +1,13 @@
 """Did a weight go further, or more in one direction, than drift alone would have carried it?
 
 Two controls. The *walk*: in each world, the mean weight of the agents born last is compared with neutral genes that
-mutate along the same pedigree (`descent.walk`). Its rank among them becomes a standard normal *score*; over worlds,
-scores that lean to one side say that the weight was pushed in a *direction* (Stouffer), scores that are large,
-whatever their sign, that it was carried a *distance* (chi-squared): a weight with two modes shows in the second
-alone. Scores that are all too small say that it was *held* (the lower tail). The *marker*: whether a weight strays
-further from its start than the recorded neutral markers of the same worlds do.
+mutate along the same pedigree (`descent.walk`), and its score among them is tested as `statistic.drift` says. The
+*marker*: whether a weight strays further from its start than the recorded neutral markers of the same worlds do.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -21,7 +18,7 @@ from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
 from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.world.record import WorldRecord, generator, shares_noise
 from hedon.statistic.correction import holm
-from hedon.statistic.drift import rank_score, score_tests, sign_flip_p
+from hedon.statistic.drift import ScoreTest, rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
 
 NAN = math.nan
@@ -54,36 +51,19 @@ _KNOWN: WeakKeyDictionary[WorldRecord, list[WorldDrift]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
-class DriftTest:
-    """One weight of one condition against one control.
+class DriftTest(ScoreTest):
+    """One weight of one condition against one control: walks, as its scores tell, or "marker".
+
+    For "marker" the effect is the mean of |displacement of the weight| − |displacement of the markers|, in units of the
+    weight, with Student's t interval, and p is from all sign flips of the differences. p_holm is corrected for all
+    reward weights and all tests against walks, or for all reward weights against the marker; NaN for neutral markers,
+    which are shown as a check of the method.
 
     Attributes:
         weight: genome column.
-        test: "direction", "distance" or "held" (against walks), or "marker".
-        worlds: that enter it.
-        effect: for "direction" the mean score, in standard deviations of drift; for "distance" and "held" the
-            root mean square score, 1 under drift; for "marker" the mean of |displacement of the weight| −
-            |displacement of the markers|, in units of the weight.
-        low, high: bounds of the effect's 95 % interval: Student's t over worlds; for "distance" and "held" from
-            the chi-squared law of normal scores; NaN with fewer than two worlds.
-        p: two-sided for "direction"; the chance of a larger effect for "distance", of a smaller one for "held";
-            for "marker" from all sign flips of the differences.
-        p_holm: corrected for all reward weights and all tests against walks, or for all reward weights
-            against the marker; NaN for neutral markers, which are shown as a check of the method.
-        drift_low, drift_high: for "direction", bounds of the effect's 95 % interval by the spread that scores have
-            under drift, 1, as p takes it, and not by that between these worlds; NaN for other tests.
     """
 
-    weight: str
-    test: str
-    worlds: int
-    effect: float
-    low: float
-    high: float
-    p: float
-    p_holm: float = NAN
-    drift_low: float = NAN
-    drift_high: float = NAN
+    weight: str = ""
 
 
 def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
@@ -157,7 +137,7 @@ def _against_markers(
         [_displacement(w[name]) - np.mean([_displacement(w[m]) for m in markers]) for w in worlds], np.float64
     )
     p = sign_flip_p(excess, rng) if len(excess) else NAN
-    return DriftTest(name, "marker", len(excess), *mean_bounds(excess), p)
+    return DriftTest("marker", len(excess), *mean_bounds(excess), p, weight=name)
 
 
 def _displacement(result: WorldDrift) -> float:
@@ -166,4 +146,4 @@ def _displacement(result: WorldDrift) -> float:
 
 def _corrected(tests: Sequence[DriftTest], neutral_names: Sequence[str]) -> list[DriftTest]:
     corrected = holm([NAN if test.weight in neutral_names else test.p for test in tests])
-    return [DriftTest(**{**vars(test), "p_holm": p}) for test, p in zip(tests, corrected, strict=True)]
+    return [replace(test, p_holm=p) for test, p in zip(tests, corrected, strict=True)]

@@ -27,7 +27,7 @@ def drift(conditions: Conditions) -> list[ResultTable]:
             world_rows += [labels(world) | asdict(result) for result in results]
         names = worlds[0].reward_names, worlds[0].neutral_names
         tests = drift_tests(found, *names, np.random.default_rng(SEED))
-        rows += [{"condition": condition} | asdict(test) for test in tests]
+        rows += [{"condition": condition, "weight": test.weight} | asdict(test) for test in tests]
     note = (
         "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
         "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
