@@ -148,7 +148,7 @@ def test_a_world_knows_what_its_species_eat_and_inherit(different: Run) -> None:
     assert worlds["late"].extinct_step == 0, "it was never there"
     assert all(worlds[name].apart_step == 0 for name in ("prey", "hunter", "idle"))
     regime = regimes(worlds["hunter"].population, worlds["hunter"].config, species="hunter")
-    assert np.isnan([each.uptake for each in regime]).all(), "who eats no food takes up none"
+    assert np.isnan([each["uptake"] for each in regime]).all(), "who eats no food takes up none"
 
 
 def test_a_sweep_has_columns_per_species(different: Run) -> None:

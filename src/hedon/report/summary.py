@@ -15,7 +15,7 @@ import polars as pl
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import LAST_AGENTS, world_weights
-from hedon.analysis.world.ledger import Ledger, world_ledger
+from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
@@ -202,14 +202,8 @@ def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> F
         "weights": {
             name: asdict(weights[name]) if name in weights else {"mean": None, "sd": None} for name in part.kind.genes
         },
-        "ledger": _ledger(world_ledger(population, agents)),
+        "ledger": world_ledger(population, agents),
     }
-
-
-def _ledger(ledger: Ledger) -> dict[str, float | None]:
-    """A ledger without the flows that its world does not have."""
-    absent = [name for name in ("hunted", "damage") if getattr(ledger, name) is None]
-    return {name: value for name, value in asdict(ledger).items() if name not in absent}
 
 
 def _sum(values: Iterable[float | None]) -> float | None:

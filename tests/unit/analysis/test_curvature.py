@@ -32,8 +32,8 @@ def rejected(bend: float, trials: int, *, heavy: bool) -> tuple[np.ndarray, np.n
     """How often the interval leaves out 0, and the mean curvature, of each weight."""
     rng = np.random.default_rng(1)
     found = [curvature(cohort(rng, 500, bend, heavy=heavy), NAMES, 10**6, rng, 200)[:3] for _ in range(trials)]
-    out = np.mean([[not row.low <= 0 <= row.high for row in rows] for rows in found], axis=0)
-    return out, np.mean([[row.curvature for row in rows] for rows in found], axis=0)
+    out = np.mean([[not row["low"] <= 0 <= row["high"] for row in rows] for rows in found], axis=0)
+    return out, np.mean([[row["curvature"] for row in rows] for rows in found], axis=0)
 
 
 def test_it_is_the_coefficient_of_a_regression() -> None:
@@ -45,8 +45,11 @@ def test_it_is_the_coefficient_of_a_regression() -> None:
     rows = curvature(agents, NAMES, 10**6, rng, 20)
     for i, row in enumerate(rows[:3]):
         design = np.column_stack([np.ones(len(z)), z, 0.5 * (z[:, i] / z[:, i].std()) ** 2])
-        assert row.curvature == pytest.approx(np.linalg.lstsq(design, omega, rcond=None)[0][-1], rel=1e-6)
-    assert [(row.fitness, row.weight) for row in rows[::3]] == [("children", "w_normal"), ("lifespan", "w_normal")]
+        assert row["curvature"] == pytest.approx(np.linalg.lstsq(design, omega, rcond=None)[0][-1], rel=1e-6)
+    assert [(row["fitness"], row["weight"]) for row in rows[::3]] == [
+        ("children", "w_normal"),
+        ("lifespan", "w_normal"),
+    ]
 
 
 @pytest.mark.parametrize("heavy", [False, True])
@@ -67,11 +70,11 @@ def test_stabilizing_and_disruptive_selection_are_found(bend: float, heavy: bool
 
 def test_few_agents_and_weights_that_do_not_vary_give_nothing() -> None:
     rng = np.random.default_rng(3)
-    assert np.isnan([row.curvature for row in curvature(cohort(rng, 40, 0.0, heavy=False), NAMES, 10**6, rng)]).all()
+    assert np.isnan([row["curvature"] for row in curvature(cohort(rng, 40, 0.0, heavy=False), NAMES, 10**6, rng)]).all()
     still = cohort(rng, 300, 0.0, heavy=False).with_columns(w_action=pl.lit(0.5, pl.Float32))
     rows = curvature(still, NAMES, 10**6, rng, 50)
-    assert np.isnan(rows[1].curvature)
-    assert np.isfinite([rows[0].low, rows[2].high]).all()
+    assert np.isnan(rows[1]["curvature"])
+    assert np.isfinite([rows[0]["low"], rows[2]["high"]]).all()
 
 
 def test_the_topic_averages_over_whole_cohorts_and_worlds(tmp_path) -> None:

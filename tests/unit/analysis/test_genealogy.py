@@ -80,11 +80,11 @@ def test_a_parent_without_a_record_is_a_gap() -> None:
 def test_generation_time_by_both_measures() -> None:
     found = generation_time(AGENTS, 100)
     ages = [5, 5, 15, 15, 30]
-    assert (found.births, found.parent_age, found.reached) == (5, np.mean(ages), 2.5)
-    assert found.parent_age_sd == pytest.approx(np.std(ages, ddof=1))
-    assert found.line_time == 40
+    assert (found["births"], found["parent_age"], found["reached"]) == (5, np.mean(ages), 2.5)
+    assert found["parent_age_sd"] == pytest.approx(np.std(ages, ddof=1))
+    assert found["line_time"] == 40
     nobody = generation_time(AGENTS.head(2).with_columns(death_step=pl.lit(9, pl.Int64)), 9)
-    assert (nobody.parent_age, nobody.reached, nobody.line_time) == (None, 0, None)
+    assert (nobody["parent_age"], nobody["reached"], nobody["line_time"]) == (None, 0, None)
 
 
 def test_price_on_the_small_pedigree() -> None:
@@ -92,12 +92,12 @@ def test_price_on_the_small_pedigree() -> None:
     cohort = np.array([True, True, True, False, False, False, False])
     terms = price(weight, parent, cohort)
     # Parents 1, 2, 1.5 have 1, 1, 2 children, with weights 1.5; 2; 1.25 and 2.5.
-    assert (terms.parents, terms.offspring) == (3, 4)
-    assert terms.change == pytest.approx(7.25 / 4 - 1.5)
-    assert terms.selection == pytest.approx(np.cov([1, 1, 2], [1, 2, 1.5], ddof=0)[0, 1] / (4 / 3))
-    assert terms.transmission == pytest.approx((1 * 0.5 + 1 * 0.0 + 2 * 0.375) / 3 / (4 / 3))
+    assert (terms["parents"], terms["offspring"]) == (3, 4)
+    assert terms["change"] == pytest.approx(7.25 / 4 - 1.5)
+    assert terms["selection"] == pytest.approx(np.cov([1, 1, 2], [1, 2, 1.5], ddof=0)[0, 1] / (4 / 3))
+    assert terms["transmission"] == pytest.approx((1 * 0.5 + 1 * 0.0 + 2 * 0.375) / 3 / (4 / 3))
     childless = price(weight, parent, np.arange(7) == 5)
-    assert np.isnan(childless.change)
+    assert np.isnan(childless["change"])
 
 
 def test_price_closes_on_records(tmp_path: Path) -> None:
@@ -107,11 +107,11 @@ def test_price_closes_on_records(tmp_path: Path) -> None:
         cohort = tree.birth < 20_000
         for name in world.weight_names:
             terms = price(world.agents[name].to_numpy().astype(np.float64), tree.parent, cohort)
-            assert abs(terms.residual) < 1e-14
-            assert terms.offspring == world.agents.filter(cohort)["children"].sum()
-            assert terms.selection != 0
+            assert abs(terms["residual"]) < 1e-14
+            assert terms["offspring"] == world.agents.filter(cohort)["children"].sum()
+            assert terms["selection"] != 0
         food = price(world.agents["w_normal"].to_numpy().astype(np.float64), tree.parent, cohort)
-        assert food.selection > 0  # the synthetic worlds select on it
+        assert food["selection"] > 0  # the synthetic worlds select on it
 
 
 def test_births_are_numbered_within_their_window() -> None:

@@ -45,11 +45,11 @@ def test_lines_agree_with_a_count_one_by_one() -> None:
 def test_coalescence() -> None:
     tree = Genealogy(np.array([-1, -1, 0, 2, 2]), np.array([0, 0, 5, 10, 20]), np.array([30, 15, 40, ALIVE, ALIVE]), 0)
     early, late = coalescence(tree, 12), coalescence(tree, 50)
-    assert (early.alive, early.families, early.largest) == (4, 2, 0.75)
-    assert np.isnan(early.depth)
-    assert (late.alive, late.families, late.ancestor_birth, late.depth) == (2, 1, 5, 45)
+    assert (early["alive"], early["families"], early["largest"]) == (4, 2, 0.75)
+    assert np.isnan(early["depth"])
+    assert (late["alive"], late["families"], late["ancestor_birth"], late["depth"]) == (2, 1, 5, 45)
     dead = Genealogy(tree.parent, tree.birth, np.array([30, 15, 40, 45, 46]), 0)
-    assert coalescence(dead, 50).alive == 0
+    assert coalescence(dead, 50)["alive"] == 0
     assert survivors(dead).tolist() == [4]
     nobody = np.empty(0, np.int64)
     assert survivors(Genealogy(nobody, nobody, nobody, 0)).tolist() == []

@@ -26,12 +26,12 @@ def births(rng: np.random.Generator, effect: float = 0.0, parents: int = 150) ->
 
 def test_a_known_effect_is_found_with_an_interval_that_covers() -> None:
     found = mutation_effects(births(np.random.default_rng(4), 0.8, 20_000), NAMES, np.random.default_rng(1), 300)
-    clipped = {(each.outcome, each.weight): each for each in found if each.scale == "clipped"}
+    clipped = {(each["outcome"], each["weight"]): each for each in found if each["scale"] == "clipped"}
     for outcome in ("food", "lifespan", "children"):
         each = clipped[outcome, "w_normal"]
-        assert each.low <= 0.8 <= each.high
-        assert each.p < 1e-3
-        assert clipped[outcome, "neutral_1"].p > 0.001
+        assert each["low"] <= 0.8 <= each["high"]
+        assert each["p"] < 1e-3
+        assert clipped[outcome, "neutral_1"]["p"] > 0.001
     assert len(found) == 2 * 2 * 3
 
 
@@ -43,7 +43,7 @@ def test_what_parents_do_is_no_effect() -> None:
     found = mutation_effects(data, NAMES, np.random.default_rng(1), 300)
     assert len(found) == 2 * 2 * 3
     for each in found:
-        assert each.p > 0.001
+        assert each["p"] > 0.001
 
 
 def test_mutations_that_do_nothing_are_found_once_in_twenty() -> None:
@@ -51,8 +51,8 @@ def test_mutations_that_do_nothing_are_found_once_in_twenty() -> None:
     for trial in range(trials):
         rng = np.random.default_rng([9, trial])
         for each in mutation_effects(births(rng, parents=800), NAMES[:1] * 2, rng, 200):
-            if each.outcome == "food" and each.weight == "w_normal":
-                found[each.scale] += each.p < 0.05
+            if each["outcome"] == "food" and each["weight"] == "w_normal":
+                found[each["scale"]] += each["p"] < 0.05
     print(f"size: {found} of {2 * trials}")
     low, high = stats.binom.interval(0.99, 2 * trials, 0.05)
     assert low <= found["rank"] <= high
@@ -83,4 +83,4 @@ def test_too_few_families_tell_nothing() -> None:
     assert mutation_effects(alone, NAMES, np.random.default_rng(1)) == []
     still = Births(np.zeros_like(few.change), few.outcome, few.parent)
     big = pool([still, still])
-    assert all(np.isnan(each.effect) for each in mutation_effects(big, NAMES, np.random.default_rng(1), 50))
+    assert all(np.isnan(each["effect"]) for each in mutation_effects(big, NAMES, np.random.default_rng(1), 50))

@@ -99,23 +99,23 @@ def test_last_agents_are_counted_per_world() -> None:
 
 def test_ledger_closes_on_the_hand_example() -> None:
     ledger = world_ledger(POPULATION, AGENTS)
-    assert ledger.initial == 80
-    assert ledger.final == 0
-    assert ledger.eaten == pytest.approx(20.8)
-    assert ledger.shared == 6
-    assert ledger.residual == pytest.approx(0, abs=1e-12)
+    assert ledger["initial"] == 80
+    assert ledger["final"] == 0
+    assert ledger["eaten"] == pytest.approx(20.8)
+    assert ledger["shared"] == 6
+    assert ledger["residual"] == pytest.approx(0, abs=1e-12)
 
 
 def test_ledger_finds_a_leak() -> None:
     leaky = POPULATION.with_columns(energy_total=pl.Series([80.0, 80.5, 70.5, 0.5]))
-    assert world_ledger(leaky, AGENTS).residual == pytest.approx(0.5)
+    assert world_ledger(leaky, AGENTS)["residual"] == pytest.approx(0.5)
     founders_early = AGENTS.with_columns(birth_energy=pl.lit(39.0))
-    assert world_ledger(POPULATION, founders_early).residual == pytest.approx(2.0)
+    assert world_ledger(POPULATION, founders_early)["residual"] == pytest.approx(2.0)
 
 
 def test_ledger_without_rows() -> None:
     ledger = world_ledger(POPULATION.head(0), AGENTS.head(0))
-    assert (ledger.initial, ledger.final, ledger.residual) == (None, None, None)
+    assert (ledger["initial"], ledger["final"], ledger["residual"]) == (None, None, None)
 
 
 def test_state_of_a_world() -> None:

@@ -45,39 +45,39 @@ ROW = {
     ],
 )
 def test_each_rule(changes: dict, regime: str) -> None:
-    assert interval_regime(pl.DataFrame([ROW | changes]), BASELINE, "agent").regime == regime
+    assert interval_regime(pl.DataFrame([ROW | changes]), BASELINE, "agent")["regime"] == regime
 
 
 def test_the_rates() -> None:
     rows = pl.DataFrame([ROW | {"births_failed_space": 5, "energy_forgiven": 30.0}])
     found = interval_regime(rows, BASELINE, "agent")
-    assert (found.hunger, found.refusal, found.crowding) == (0.1, 0.2, 0.75)
-    assert found.uptake == pytest.approx(100 / 204.8)
-    assert found.turnover == pytest.approx(20 / (150 * 1024 * 1.963e-4), rel=1e-3)
+    assert (found["hunger"], found["refusal"], found["crowding"]) == (0.1, 0.2, 0.75)
+    assert found["uptake"] == pytest.approx(100 / 204.8)
+    assert found["turnover"] == pytest.approx(20 / (150 * 1024 * 1.963e-4), rel=1e-3)
 
 
 def test_poison_is_no_supply() -> None:
     config = load_config("poison")
     row = ROW | {"eaten_poison": 1000}
-    assert interval_regime(pl.DataFrame([row]), config, "agent").uptake == pytest.approx(100 / 204.8)
+    assert interval_regime(pl.DataFrame([row]), config, "agent")["uptake"] == pytest.approx(100 / 204.8)
 
 
 def test_what_is_not_defined_names_nothing() -> None:
     nothing = {"births": 0, "deaths": 0, "energy_basic": 0.0, "energy_action": 0.0}
     config = load_config("baseline", overrides=["food.normal.growth_rate=0.0"])
     found = interval_regime(pl.DataFrame([ROW | nothing]), config, "agent")
-    assert found.regime == BETWEEN
-    assert np.isnan([found.hunger, found.refusal, found.uptake]).all()
+    assert found["regime"] == BETWEEN
+    assert np.isnan([found["hunger"], found["refusal"], found["uptake"]]).all()
 
 
 def test_over_time(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", worlds=2, intervals=60, extinct=1, snapshot=False))
     population = run.population()
     found = regimes(population.filter(pl.col("world") == 0), BASELINE, intervals=7)
-    assert [r.step for r in found] == sorted({r.step for r in found})
-    assert found[-1].step == 60 * 1024
-    assert sum(r.steps for r in found) == 60 * 1024
-    assert regimes(population.filter(pl.col("world") == 1), BASELINE)[-1].regime == EXTINCT
+    assert [r["step"] for r in found] == sorted({r["step"] for r in found})
+    assert found[-1]["step"] == 60 * 1024
+    assert sum(r["steps"] for r in found) == 60 * 1024
+    assert regimes(population.filter(pl.col("world") == 1), BASELINE)[-1]["regime"] == EXTINCT
     assert regimes(population.head(0), BASELINE) == []
     assert len(regimes(population.head(3), BASELINE)) == 3
 
@@ -86,11 +86,11 @@ def test_a_part_of_a_window_is_no_interval_of_its_own() -> None:
     part = {"step": 3 * 1024 + 16, "steps": 16, "agent_steps": 150 * 16, "births": 0, "deaths": 0, "eaten_normal": 3}
     rows = [ROW | {"step": 1024 * i} for i in (1, 2, 3)]
     found = regimes(pl.DataFrame([*rows, ROW | part]), BASELINE)
-    assert [(r.step, r.steps, r.regime) for r in found] == [
+    assert [(r["step"], r["steps"], r["regime"]) for r in found] == [
         (1024, 1024, BETWEEN),
         (2048, 1024, BETWEEN),
         (3088, 1040, BETWEEN),
     ]
     dies_out = regimes(pl.DataFrame([*rows, ROW | part | {"alive": 0}]), BASELINE)
-    assert [(r.steps, r.regime) for r in dies_out[2:]] == [(1024, BETWEEN), (16, EXTINCT)]
-    assert [r.steps for r in regimes(pl.DataFrame([ROW | part]), BASELINE)] == [16]
+    assert [(r["steps"], r["regime"]) for r in dies_out[2:]] == [(1024, BETWEEN), (16, EXTINCT)]
+    assert [r["steps"] for r in regimes(pl.DataFrame([ROW | part]), BASELINE)] == [16]

@@ -1,7 +1,7 @@
 """Whose descendants are left? Coalescence, the lines of the survivors, and the weights along them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -10,28 +10,7 @@ from numpy.typing import NDArray
 from hedon.analysis.descent.genealogy import Genealogy, ancestry, common_ancestor, families, founder, living_at
 
 
-@dataclass(frozen=True)
-class Coalescence:
-    """The common descent of those alive at one time.
-
-    Attributes:
-        step: when [step].
-        alive: agents alive.
-        families: founders with living descendants, or alive themselves.
-        largest: share of the living in the largest family; NaN where nobody lives.
-        ancestor_birth: birth of the most recent common ancestor [step]; NaN while several families are left.
-        depth: time since then [step]; NaN likewise: it is then longer than the run.
-    """
-
-    step: int
-    alive: int
-    families: int
-    largest: float
-    ancestor_birth: float
-    depth: float
-
-
-def coalescence(tree: Genealogy, step: int) -> Coalescence:
+def coalescence(tree: Genealogy, step: int) -> dict[str, Any]:
     """Common descent of those alive after a step.
 
     Args:
@@ -39,16 +18,22 @@ def coalescence(tree: Genealogy, step: int) -> Coalescence:
         step: after which the living are taken [step].
 
     Returns:
-        Numbers of agents and of their founders, and their common ancestor; NaN where there is none.
+        step; alive, agents alive; families, founders with living descendants, or alive themselves; largest, the share
+        of the living in the largest family; ancestor_birth, birth of the most recent common ancestor [step], NaN while
+        several families are left; depth, time since then [step], which then is longer than the run. NaN likewise where
+        nobody lives.
     """
     alive = living_at(tree, step)
-    if not len(alive):
-        return Coalescence(step, 0, 0, np.nan, np.nan, np.nan)
-    sizes = np.bincount(founder(tree)[alive])
     ancestor = common_ancestor(tree, alive)
     birth = np.nan if ancestor is None else float(tree.birth[ancestor])
-    count = int(families(tree, np.array([step]))[0])
-    return Coalescence(step, len(alive), count, float(sizes.max() / len(alive)), birth, step - birth)
+    return {
+        "step": step,
+        "alive": len(alive),
+        "families": int(families(tree, np.array([step]))[0]),
+        "largest": float(np.bincount(founder(tree)[alive]).max() / len(alive)) if len(alive) else np.nan,
+        "ancestor_birth": birth,
+        "depth": step - birth,
+    }
 
 
 def survivors(tree: Genealogy) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ are enormous: they are clipped, or replaced by the normal scores of their ranks.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,31 +50,6 @@ class Births:
     parent: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class MutationEffect:
-    """What a mutation of one gene does to one outcome.
-
-    Attributes:
-        outcome: one of `OUTCOMES`.
-        weight: genome column.
-        scale: one of `SCALES`.
-        births, parents: that enter: children of parents with several.
-        effect: change of the outcome over its mean, per unit of the weight, or per standard deviation of the rank.
-        low, high: bounds of its 95 % interval, by a bootstrap that draws parents as wholes.
-        p: two-sided, by the bootstrap's standard error.
-    """
-
-    outcome: str
-    weight: str
-    scale: str
-    births: int
-    parents: int
-    effect: float
-    low: float
-    high: float
-    p: float
-
-
 def births_of(world: WorldRecord) -> Births:
     """The children of one world whose parents are recorded, born in the first `KNOWN` of the run."""
     agents = world.agents
@@ -100,7 +76,7 @@ def pool(births: Sequence[Births]) -> Births:
 
 def mutation_effects(
     births: Births, names: Sequence[str], rng: np.random.Generator, replicates: int = REPLICATES
-) -> list[MutationEffect]:
+) -> list[dict[str, Any]]:
     """The effects of each gene on each outcome, by both scales.
 
     Args:
@@ -110,7 +86,11 @@ def mutation_effects(
         replicates: bootstrap samples.
 
     Returns:
-        None where too few parents have several children.
+        A row for each scale of `SCALES`, outcome of `OUTCOMES` and weight (genome column): births and parents that
+        enter, children of parents with several; effect, the change of the outcome over its mean, per unit of the
+        weight, or per standard deviation of the rank; low and high, bounds of its 95 % interval, by a bootstrap that
+        draws parents as wholes; p, two-sided, by the bootstrap's standard error. No rows where too few parents have
+        several children.
     """
     _, parent, count = np.unique(births.parent, return_inverse=True, return_counts=True)
     several = count[parent] > 1
@@ -137,8 +117,9 @@ def mutation_effects(
             for g, name in enumerate(names):
                 effect = float(slopes[0, g, k])
                 z = abs(effect) / error[g, k] if error[g, k] > 0 else np.nan
-                row = (effect, float(low[g, k]), float(high[g, k]), float(2.0 * stats.norm.sf(z)))
-                found.append(MutationEffect(outcome, name, scale, len(x), int(parent.max()) + 1, *row))
+                row = {"outcome": outcome, "weight": name, "scale": scale, "births": len(x), "parents": len(features)}
+                row |= {"effect": effect, "low": float(low[g, k]), "high": float(high[g, k])}
+                found.append(row | {"p": float(2.0 * stats.norm.sf(z))})
     return found
 
 

@@ -1,7 +1,7 @@
 """Which weights does selection favor? Differentials, gradients and curvature in a birth cohort, by two fitnesses."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -24,73 +24,13 @@ FITNESS = ("children", "lifespan")
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Selection:
-    """Selection on one weight in one cohort, by one measure of fitness.
-
-    Attributes:
-        fitness: "children" or "lifespan".
-        weight: genome column.
-        agents: in the cohort.
-        complete: share of them that has died: below 1, fitness is cut short by the end of the records.
-        mean_fitness: children, or steps.
-        sd: standard deviation of the weight among contemporaries.
-        differential: s, in units of the weight; NaN where it cannot be estimated, as all below.
-        intensity: s/σ.
-        gradient: β, per unit of the weight.
-        standard_gradient: β·σ.
-        differential_low, …_high: bounds of the bootstrap's 95 % interval of each.
-    """
-
-    fitness: str
-    weight: str
-    agents: int
-    complete: float
-    mean_fitness: float
-    sd: float
-    differential: float
-    differential_low: float
-    differential_high: float
-    intensity: float
-    intensity_low: float
-    intensity_high: float
-    gradient: float
-    gradient_low: float
-    gradient_high: float
-    standard_gradient: float
-    standard_gradient_low: float
-    standard_gradient_high: float
-
-
-@dataclass(frozen=True)
-class Curvature:
-    """The curvature of fitness along one weight in one cohort.
-
-    Attributes:
-        fitness: "children" or "lifespan".
-        weight: genome column.
-        agents: in the cohort.
-        complete: share of them that has died.
-        curvature: γ·σ²; NaN where it cannot be estimated, as its bounds.
-        low, high: bounds of the bootstrap's 95 % interval.
-    """
-
-    fitness: str
-    weight: str
-    agents: int
-    complete: float
-    curvature: float
-    low: float
-    high: float
-
-
 def selection(
     cohort: pl.DataFrame,
     names: Sequence[str],
     last_step: int,
     rng: np.random.Generator,
     replicates: int = REPLICATES,
-) -> list[Selection]:
+) -> list[dict[str, Any]]:
     """Selection on each weight within one birth cohort.
 
     Intervals are percentiles of a bootstrap that draws sibships as wholes. They take sibships as independent; for
@@ -104,7 +44,11 @@ def selection(
         replicates: bootstrap samples.
 
     Returns:
-        By fitness and weight.
+        A row by fitness ("children" or "lifespan") and weight (genome column): agents, in the cohort; complete, the
+        share of them that has died: below 1, fitness is cut short by the end of the records; mean_fitness, children or
+        steps; sd of the weight among contemporaries; differential s, in units of the weight; intensity s/σ; gradient β,
+        per unit of the weight; standard_gradient β·σ; and of these four the bounds of the bootstrap's 95 % interval,
+        as gradient_low and so on. NaN where it cannot be estimated.
     """
     traits = _Traits(cohort, names, last_step)
     tables = np.full((len(FITNESS), 3, len(STATISTICS), len(names)), np.nan)
@@ -112,21 +56,15 @@ def selection(
         tables = linear_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
     sd = traits.z.std(axis=0) if traits.count else np.full(len(names), np.nan)
     return [
-        Selection(
-            fitness,
-            names[i],
-            traits.count,
-            traits.complete,
-            mean,
-            float(sd[i]),
-            **{
-                f"{statistic}{bound}": float(table[b, k, i])
-                for k, statistic in enumerate(STATISTICS)
-                for b, bound in enumerate(("", "_low", "_high"))
-            },
-        )
+        traits.head(fitness, name)
+        | {"mean_fitness": mean, "sd": float(sd[i])}
+        | {
+            f"{statistic}{bound}": float(table[b, k, i])
+            for k, statistic in enumerate(STATISTICS)
+            for b, bound in enumerate(("", "_low", "_high"))
+        }
         for fitness, mean, table in traits.by_fitness(tables)
-        for i in range(len(names))
+        for i, name in enumerate(names)
     ]
 
 
@@ -136,7 +74,7 @@ def curvature(
     last_step: int,
     rng: np.random.Generator,
     replicates: int = REPLICATES,
-) -> list[Curvature]:
+) -> list[dict[str, Any]]:
     """Curvature along each weight within one birth cohort, all other weights held fixed by their linear parts.
 
     Args:
@@ -147,14 +85,15 @@ def curvature(
         replicates: bootstrap samples.
 
     Returns:
-        For each measure of fitness a row per weight; NaN with fewer agents than `FEWEST`.
+        A row by fitness and weight, with agents and complete as for `selection`: curvature γ·σ², and low and high, the
+        bounds of the bootstrap's 95 % interval; NaN with fewer agents than `FEWEST`.
     """
     traits = _Traits(cohort, names, last_step)
     tables = np.full((len(FITNESS), 3, len(names)), np.nan)
     if traits.count >= FEWEST:
         tables = quadratic_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
     return [
-        Curvature(fitness, name, traits.count, traits.complete, *map(float, table[:, i]))
+        traits.head(fitness, name) | dict(zip(("curvature", "low", "high"), map(float, table[:, i]), strict=True))
         for fitness, _, table in traits.by_fitness(tables)
         for i, name in enumerate(names)
     ]
@@ -170,6 +109,10 @@ class _Traits:
         self.count = cohort.height
         self.complete = complete_share(cohort)
         self.z = within_strata(self._cohort.select(names).to_numpy().astype(np.float64))
+
+    def head(self, fitness: str, weight: str) -> dict[str, Any]:
+        """The first columns of a row."""
+        return {"fitness": fitness, "weight": weight, "agents": self.count, "complete": self.complete}
 
     def relative_fitness(self) -> Floats:
         """Against contemporaries, a column per measure of fitness."""

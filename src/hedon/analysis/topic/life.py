@@ -1,10 +1,8 @@
 """Topics about single lives: lifetime, food, reproduction, generation, energy."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 
 import numpy as np
-import polars as pl
 
 from hedon.analysis.agent.cohort import COMPLETE
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
@@ -79,7 +77,7 @@ def food(conditions: Conditions) -> list[ResultTable]:
 
 def reproductive_success(conditions: Conditions) -> list[ResultTable]:
     """Children per life, by birth cohort."""
-    rows = cohort_rows(conditions, lambda _world, cohort, _rng: [_reproduction_row(cohort)])
+    rows = cohort_rows(conditions, lambda _world, cohort, _rng: [reproduction(cohort)])
     worlds_table = make_table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
     quantities = {
         "mean": "children per life",
@@ -101,7 +99,7 @@ def reproductive_success(conditions: Conditions) -> list[ResultTable]:
 def generation(conditions: Conditions) -> list[ResultTable]:
     """Generations and generation time."""
     rows = [
-        labels(world) | asdict(generation_time(world.agents, world.last_step))
+        labels(world) | generation_time(world.agents, world.last_step)
         for worlds in conditions.values()
         for world in worlds
     ]
@@ -123,8 +121,7 @@ def energy(conditions: Conditions) -> list[ResultTable]:
             for part, population in (("whole run", world.population), ("last tenth", run_tail(world.population))):
                 found = energy_budget(population)
                 if found is not None:
-                    flows = {name: value for name, value in asdict(found).items() if value is not None}
-                    rows.append(labels(world) | {"part": part} | flows)
+                    rows.append(labels(world) | {"part": part} | found)
     worlds_table = make_table("energy_world", "Energy budgets, world by world", rows, shown=False)
     names = ["eaten", "basic", "action", "forgiven", "capped", "lost", "shared"]
     names += [name for name in ("hunted", "damage") if name in worlds_table.rows.columns]
@@ -143,13 +140,6 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     note += "".join(said for name, said in further.items() if name in quantities)
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
     return [make_table("energy", title, summary, note), worlds_table]
-
-
-def _reproduction_row(cohort: pl.DataFrame) -> dict:
-    """Children per life in a cohort, and how many agents had each number of children."""
-    found = asdict(reproduction(cohort))
-    counts = found.pop("counts")
-    return found | {f"with_{i}{'_or_more' if i == len(counts) - 1 else ''}": n for i, n in enumerate(counts)}
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:

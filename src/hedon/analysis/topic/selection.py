@@ -1,7 +1,5 @@
 """Topics about genomes and what selects them, by birth cohort: distributions, gradients, curvature, Price's terms."""
 
-from dataclasses import asdict
-
 import numpy as np
 import polars as pl
 
@@ -41,7 +39,7 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
     """Selection differentials and gradients by birth cohort."""
     rows = cohort_rows(
         conditions,
-        lambda world, cohort, rng: map(asdict, selection(cohort, world.weight_names, world.last_step, rng)),
+        lambda world, cohort, rng: selection(cohort, world.weight_names, world.last_step, rng),
     )
     worlds_table = make_table(
         "selection_world",
@@ -74,7 +72,7 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
     """Curvature of fitness along each weight, over birth cohorts and worlds."""
     rows = cohort_rows(
         conditions,
-        lambda world, cohort, rng: map(asdict, curvature(cohort, world.weight_names, world.last_step, rng)),
+        lambda world, cohort, rng: curvature(cohort, world.weight_names, world.last_step, rng),
     )
     worlds_table = make_table(
         "curvature_world",
@@ -111,9 +109,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
             weights = {name: world.agents[name].to_numpy().astype(np.float64) for name in world.weight_names}
             for window in range(windows):
                 rows += [
-                    labels(world)
-                    | {"window": window, "weight": name}
-                    | asdict(price(z, tree.parent, cohorts == window))
+                    labels(world) | {"window": window, "weight": name} | price(z, tree.parent, cohorts == window)
                     for name, z in weights.items()
                 ]
     worlds_table = make_table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)

@@ -1,7 +1,6 @@
 """A topic about causes: mutation as a treatment that births hand out at random."""
 
 import itertools
-from dataclasses import asdict
 
 import numpy as np
 
@@ -16,13 +15,13 @@ def mutation_topic(conditions: Conditions) -> list[ResultTable]:
     for condition, worlds in conditions.items():
         rng = np.random.default_rng([SEED, len(worlds)])
         effects = mutation_effects(pool([births_of(world) for world in worlds]), worlds[0].weight_names, rng)
-        rows += [{"condition": condition} | asdict(effect) for effect in effects]
+        rows += [{"condition": condition} | effect for effect in effects]
         for outcome, scale in itertools.product(OUTCOMES, SCALES):
-            mine = [effect for effect in effects if (effect.outcome, effect.scale) == (outcome, scale)]
-            neutral = [effect for effect in mine if effect.weight.startswith("neutral_")]
-            shown += [{"condition": condition} | asdict(effect) for effect in mine if effect not in neutral]
+            mine = [effect for effect in effects if (effect["outcome"], effect["scale"]) == (outcome, scale)]
+            neutral = [effect for effect in mine if effect["weight"].startswith("neutral_")]
+            shown += [{"condition": condition} | effect for effect in mine if effect not in neutral]
             if neutral:
-                found = sum(effect.p < 0.05 for effect in neutral)
+                found = sum(effect["p"] < 0.05 for effect in neutral)
                 shown.append(
                     {
                         "condition": condition,

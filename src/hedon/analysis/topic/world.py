@@ -1,7 +1,5 @@
 """Topics about whole worlds: genealogy and regimes."""
 
-from dataclasses import asdict
-
 import numpy as np
 import polars as pl
 
@@ -24,7 +22,7 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
             if not tree.size:
                 continue
             times = np.linspace(0, world.last_step, _TIMES + 1).round().astype(np.int64)
-            rows += [labels(world) | asdict(coalescence(tree, int(step))) for step in times]
+            rows += [labels(world) | coalescence(tree, int(step)) for step in times]
             steps = np.linspace(0, world.last_step, _LINE_TIMES + 1).round().astype(np.int64)
             found = lines_through_time(tree, world.agents, world.weight_names, steps)
             lines.append(found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all()))
@@ -60,7 +58,7 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
 def regime(conditions: Conditions) -> list[ResultTable]:
     """Regimes over time."""
     rows = [
-        labels(world) | asdict(found)
+        labels(world) | found
         for worlds in conditions.values()
         for world in worlds
         for found in regimes(world.population, world.config, species=world.species)

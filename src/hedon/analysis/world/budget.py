@@ -1,48 +1,25 @@
 """Where does energy come from, and where does it go?"""
 
-from dataclasses import dataclass
-
 import polars as pl
 
 from hedon.analysis.world.species import require_one_species
 
-
-@dataclass(frozen=True)
-class Budget:
-    """Flows of energy in some intervals of one species of a world, per 1000 steps lived by an agent.
-
-    Attributes:
-        eaten: taken up with food; poison counts negative.
-        basic, action: charged for living and for action.
-        forgiven: charged but not paid, because energy cannot fall below 0.
-        capped: eaten but destroyed at the capacity for energy.
-        lost: held by those who died.
-        shared: given by parents to children; it stays within the world.
-        forgiven_share: of what was charged, the share that could not be paid: how hungry the world is.
-        hunted: gained by eating agents; None in worlds where nobody does.
-        damage: charged for touching obstacles; None in worlds without any.
-    """
-
-    eaten: float
-    basic: float
-    action: float
-    forgiven: float
-    capped: float
-    lost: float
-    shared: float
-    forgiven_share: float
-    hunted: float | None = None
-    damage: float | None = None
-
-
 _FLOWS = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared", "hunted", "damage")
 
 
-def energy_budget(population: pl.DataFrame) -> Budget | None:
-    """The budget over the given intervals; None where nobody lived or nothing was charged.
+def energy_budget(population: pl.DataFrame) -> dict[str, float] | None:
+    """The budget over the given intervals, per 1000 steps lived by an agent.
 
     Args:
         population: rows of the table `population` of one species of one world.
+
+    Returns:
+        eaten, taken up with food, where poison counts negative; basic and action, charged for living and for action;
+        forgiven, charged but not paid, because energy cannot fall below 0; capped, eaten but destroyed at the capacity
+        for energy; lost, held by those who died; shared, given by parents to children, which stays within the world;
+        hunted, gained by eating agents, where some do; damage, charged for touching obstacles, where there are any;
+        forgiven_share, of what was charged, the share that could not be paid: how hungry the world is. None where
+        nobody lived or nothing was charged.
 
     Raises:
         ArgumentError: the rows are of several species.
@@ -54,6 +31,5 @@ def energy_budget(population: pl.DataFrame) -> Budget | None:
     charged = sums["basic"] + sums["action"] + sums.get("damage", 0.0)
     if not lived or not charged:
         return None
-    return Budget(
-        **{name: 1000.0 * value / lived for name, value in sums.items()}, forgiven_share=sums["forgiven"] / charged
-    )
+    flows = {name: 1000.0 * value / lived for name, value in sums.items()}
+    return flows | {"forgiven_share": sums["forgiven"] / charged}

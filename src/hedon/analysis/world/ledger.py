@@ -4,8 +4,6 @@ Each species of a world has a ledger of its own, which closes by itself: what it
 species or its own, enters as `hunted`, and what it loses to those that eat it is part of `lost`.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
@@ -26,34 +24,7 @@ _SIGNS = {
 the columns `hunted` and `damage` only where agents eat agents, and where there are obstacles."""
 
 
-@dataclass(frozen=True)
-class Ledger:
-    """Sums over a run of one species of a world [energy]; energy that parents share with children stays within it.
-
-    Attributes:
-        initial: held by the founders at birth; None where their rows are missing, as in a branch.
-        eaten, forgiven, basic, action, capped, lost, shared: as the columns of the table `population`.
-        hunted, damage: likewise; None in worlds where nobody eats agents, or that have no obstacles.
-        final: held by the living at the end.
-        residual: largest difference over the intervals between the energy held and what the flows say it
-            must be; only rounding where the ledger closes. None where there is nothing to compare.
-    """
-
-    initial: float | None
-    eaten: float
-    forgiven: float
-    basic: float
-    action: float
-    capped: float
-    lost: float
-    shared: float
-    final: float | None
-    residual: float | None
-    hunted: float | None = None
-    damage: float | None = None
-
-
-def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
+def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> dict[str, float | None]:
     """The ledger of one species of one world.
 
     held at the end = held before + eaten + hunted + forgiven − basic − action − damage − capped − lost, in each
@@ -62,19 +33,24 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> Ledger:
     Args:
         population: rows of one species of one world, by step.
         agents: rows of the same species and world.
+
+    Returns:
+        Sums over the run [energy]: initial, held by the founders at birth, None where their rows are missing, as in a
+        branch; each flow that the world has, by the name of its column without `energy_`; shared, given by parents to
+        children, which stays within it; final, held by the living at the end; residual, the largest difference over the
+        intervals between the energy held and what the flows say it must be: only rounding where the ledger closes, and
+        None where there is nothing to compare.
     """
     total = population["energy_total"].to_numpy()
     residuals = interval_residuals(population, agents)
     residuals = residuals[np.isfinite(residuals)]
-    return Ledger(
-        initial=_initial(population, agents),
-        final=float(total[-1]) if len(total) else None,
-        residual=float(residuals.max()) if len(residuals) else None,
-        **{
-            name.removeprefix("energy_"): float(population[name].sum())
-            for name in (*flow_names(population), "energy_shared")
-        },
-    )
+    names = (*flow_names(population), "energy_shared")
+    return {
+        "initial": _initial(population, agents),
+        **{name.removeprefix("energy_"): float(population[name].sum()) for name in names},
+        "final": float(total[-1]) if len(total) else None,
+        "residual": float(residuals.max()) if len(residuals) else None,
+    }
 
 
 def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) -> NDArray[np.float64]:

@@ -30,8 +30,8 @@ would grow by half. A hunger of 0.25 is half of the baseline's. A tenth of the t
 of some 50,000 steps.
 """
 
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -61,30 +61,9 @@ INTERVALS = 40
 """Into which a run is cut; each has its own regime."""
 
 
-@dataclass(frozen=True)
-class Regime:
-    """One interval of one world; rates are NaN where they are not defined.
-
-    Attributes:
-        step: end of the interval [step].
-        steps: its length [step].
-        regime: one of `REGIMES`.
-        hunger, refusal, uptake, turnover, crowding: the rates.
-    """
-
-    step: int
-    steps: int
-    regime: str
-    hunger: float
-    refusal: float
-    uptake: float
-    turnover: float
-    crowding: float
-
-
 def regimes(
     population: pl.DataFrame, config: Config, intervals: int = INTERVALS, species: str | None = None
-) -> list[Regime]:
+) -> list[dict[str, Any]]:
     """The regimes of a world over time.
 
     Args:
@@ -94,6 +73,9 @@ def regimes(
             one shorter than a window belongs to the one before, unless the world dies out in it: it is too short for
             rates.
         species: whose rows they are; by default the first.
+
+    Returns:
+        Of each interval what `interval_regime` gives.
     """
     require_one_species(population)
     if population.is_empty():
@@ -106,13 +88,17 @@ def regimes(
     return [interval_regime(population[a:b], config, own) for a, b in pairwise(edges)]
 
 
-def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> Regime:
+def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[str, Any]:
     """The regime over some rows of the table `population` of one species of a world that follow one another.
 
     Args:
         rows: of the table `population`, in order.
         config: of the world.
         species: whose rows they are.
+
+    Returns:
+        step, the end of the interval, and steps, its length [step]; regime, one of `REGIMES`; and the rates hunger,
+        refusal, uptake, turnover and crowding, NaN where they are not defined.
 
     Raises:
         ArgumentError: The rows are of several species.
@@ -134,14 +120,14 @@ def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> Regime:
     scale = float(factor_at(own.hazard.schedule, "scale", ends) @ lengths) / steps
     starving = scale * float(hazard(own.hazard, 0.0, 0.0))
     damage = float(rows["energy_damage"].sum()) if "energy_damage" in rows.columns else 0.0
-    hunger = _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"] + damage)
-    refusal = _ratio(refused, refused + sums["births"])
-    uptake = _ratio(eaten, grown)
-    turnover = _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving)
-    crowding = lived / steps / own.population.capacity
-    alive = int(rows["alive"][-1])
-    name = _name(alive, hunger, refusal, uptake, turnover, crowding)
-    return Regime(int(rows["step"][-1]), steps, name, hunger, refusal, uptake, turnover, crowding)
+    rates = {
+        "hunger": _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"] + damage),
+        "refusal": _ratio(refused, refused + sums["births"]),
+        "uptake": _ratio(eaten, grown),
+        "turnover": _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving),
+        "crowding": lived / steps / own.population.capacity,
+    }
+    return {"step": int(rows["step"][-1]), "steps": steps, "regime": _name(int(rows["alive"][-1]), **rates)} | rates
 
 
 def _eaten(rows: pl.DataFrame, kind: str) -> float:
