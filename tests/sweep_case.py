@@ -16,6 +16,7 @@ from resumed_run import SMALL
 
 from hedon.experiment.plan import Moment
 from hedon.jobs.store import Store
+from hedon.jobs.work import Job, Outcome
 from hedon.record.reader import open_run
 from hedon.sweep.collect import collect
 from hedon.sweep.plan import SweepPlan, load_plan, write_plan
@@ -26,6 +27,14 @@ FACTORS = """
 [factor]
 "energy.basic_cost" = [0.001, 0.01]
 """
+
+
+class Silent:
+    """A display that shows nothing."""
+
+    def update(self, job: Job, moment: Moment) -> None: ...
+
+    def end(self, job: Job, outcome: Outcome) -> None: ...
 
 
 def sweep_file(folder: Path, steps: int = 320, seeds: int = 2, worlds: int = 2, rest: str = FACTORS) -> Path:

@@ -13,7 +13,7 @@ from hedon.experiment.resume import resume
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import load_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import checkpoint_paths, fault_paths
+from hedon.record.folder import FAULT, checkpoint_paths
 from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 
@@ -34,7 +34,7 @@ def test_the_fault_and_the_worlds_are_kept(failed):
     manifest = load_manifest(folder)
     assert (manifest.status, manifest.fault) == ("failed", said)
     assert checkpoint_paths(folder)
-    kept = load_checkpoint(fault_paths(folder)[0])
+    kept = load_checkpoint(checkpoint_paths(folder, FAULT)[0])
     assert kept.head.step == max(manifest.steps_done)
     assert {"0/params", "1/params"} <= set(kept.arrays)
     verdict = check_run(folder)
@@ -53,7 +53,7 @@ def test_the_same_fault_recurs(failed):
     before = load_manifest(folder)
     with pytest.raises(EngineError, match=said.split(":")[0]):
         resume(folder)
-    assert len(fault_paths(folder)) == 1
+    assert len(checkpoint_paths(folder, FAULT)) == 1
     assert load_manifest(folder).fault == before.fault
 
 
@@ -79,7 +79,7 @@ def test_a_fault_of_the_memory_stops_the_run_and_does_not_recur(tmp_path, monkey
     assert "did not happen again" in answer.output
     assert resume(tmp_path / "run").status == "finished"
     assert load_manifest(tmp_path / "run").fault is None
-    assert not fault_paths(tmp_path / "run")
+    assert not checkpoint_paths(tmp_path / "run", FAULT)
     assert check_run(tmp_path / "run").findings == ()
 
 
@@ -88,7 +88,7 @@ def test_worlds_whose_slots_cannot_be_relied_upon_are_not_read(tmp_path, monkeyp
     deathless = ("hazard.kappa=0", "hazard.alpha_age=0")
     with pytest.raises(EngineError, match=r"slots_inconsistent.*World 1"):
         small_run(tmp_path / "run", 1000, overrides=deathless)
-    kept = load_checkpoint(fault_paths(tmp_path / "run")[0])
+    kept = load_checkpoint(checkpoint_paths(tmp_path / "run", FAULT)[0])
     assert "0/params" in kept.arrays
     assert "1/params" not in kept.arrays
 

@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_case import assert_same_table, planned, sweep_file, table_of, under_way
+from sweep_case import Silent, assert_same_table, planned, sweep_file, table_of, under_way
 
 from hedon.jobs.cluster import LOCAL, import_ray
-from hedon.jobs.process import Silent
 from hedon.jobs.retry import TRIES
 from hedon.jobs.store import Store
 from hedon.sweep.plan import load_plan

@@ -10,13 +10,12 @@ from pathlib import Path
 
 import polars as pl
 import pytest
-from sweep_case import FACTORS, assert_same_table, planned, sweep_file, table_of
+from sweep_case import FACTORS, Silent, assert_same_table, planned, sweep_file, table_of
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
 from hedon.error import HedonError
 from hedon.jobs.part import parse_part
-from hedon.jobs.process import Silent
 from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_plan

@@ -57,7 +57,7 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
         found = world_weights(mine, [gene for gene in run.reward_names if mine[gene].is_not_null().any()])
         seeds = run.manifest.seeds
         ends = [
-            End(f"{path.name}, seed {seeds[world]}", {gene: spread.mean or 0.0 for gene, spread in weights.items()})
+            End(f"{path.name}, seed {seeds[world]}", {gene: spread["mean"] or 0.0 for gene, spread in weights.items()})
             for world, weights in found.items()
         ]
     else:

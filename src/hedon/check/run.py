@@ -21,11 +21,11 @@ from hedon.record.error import RecordError
 from hedon.record.folder import (
     CHECKPOINTS,
     CONFIG,
+    FAULT,
     LIVING,
     MANIFEST,
     TABLE_FOLDERS,
     checkpoint_paths,
-    fault_paths,
     holds_run,
     misplaced_checkpoints,
     part_path,
@@ -176,7 +176,7 @@ def _check_checkpoints(folder: _Folder) -> None:
             folder.findings.append(Finding(name, "its seeds are not those in the manifest"))
         else:
             folder.checkpoints.append(checkpoint)
-    for path in fault_paths(folder.path):
+    for path in checkpoint_paths(folder.path, FAULT):
         try:
             load_checkpoint(path)
         except RecordError as error:

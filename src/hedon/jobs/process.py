@@ -66,26 +66,6 @@ class Display(Protocol[T_contra]):
         ...
 
 
-class Silent:
-    """A display that shows nothing."""
-
-    def update(self, job: Job, moment: Moment) -> None:
-        """Shows nothing.
-
-        Args:
-            job: That goes on.
-            moment: How far it is.
-        """
-
-    def end(self, job: Job, outcome: Outcome) -> None:
-        """Shows nothing.
-
-        Args:
-            job: That ended.
-            outcome: How it ended.
-        """
-
-
 def make_here(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
     """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
 

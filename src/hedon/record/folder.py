@@ -108,29 +108,15 @@ def part_paths(folder: Path, table: str) -> list[Path]:
     return sorted((folder / table).glob("part-*.parquet"))
 
 
-def checkpoint_path(folder: Path, step: int) -> Path:
+def checkpoint_path(folder: Path, step: int, place: str = CHECKPOINTS) -> Path:
     """The path of the checkpoint after this number of steps.
 
     Args:
         folder: of the run.
         step: completed [step].
+        place: `CHECKPOINTS`, or `FAULT` for that of a run that stopped at a fault.
     """
-    return folder / CHECKPOINTS / f"step-{step:010d}.npz"
-
-
-def fault_path(folder: Path, step: int) -> Path:
-    """The path of the checkpoint of a run that stopped at a fault after this number of steps.
-
-    Args:
-        folder: of the run.
-        step: completed [step].
-    """
-    return folder / FAULT / f"step-{step:010d}.npz"
-
-
-def fault_paths(folder: Path) -> list[Path]:
-    """The checkpoint of a run that stopped at a fault, or an empty list."""
-    return sorted((folder / FAULT).glob("step-??????????.npz"))
+    return folder / place / f"step-{step:010d}.npz"
 
 
 def misplaced_checkpoints(folder: Path) -> list[Path]:
@@ -138,6 +124,11 @@ def misplaced_checkpoints(folder: Path) -> list[Path]:
     return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_dir())
 
 
-def checkpoint_paths(folder: Path) -> list[Path]:
-    """The checkpoints of a run, by step."""
-    return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_file())
+def checkpoint_paths(folder: Path, place: str = CHECKPOINTS) -> list[Path]:
+    """The checkpoints of a run, by step.
+
+    Args:
+        folder: of the run.
+        place: `CHECKPOINTS`, or `FAULT` for the one of a run that stopped at a fault.
+    """
+    return sorted(path for path in (folder / place).glob("step-??????????.npz") if path.is_file())

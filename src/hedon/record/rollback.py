@@ -13,7 +13,6 @@ from hedon.record.folder import (
     TABLE_FOLDERS,
     checkpoint_path,
     checkpoint_paths,
-    fault_paths,
     misplaced_checkpoints,
     part_path,
     part_paths,
@@ -93,7 +92,7 @@ def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> No
         RecordError: a file cannot be removed.
     """
     later = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
-    later += fault_paths(folder)
+    later += checkpoint_paths(folder, FAULT)
     for table in TABLE_FOLDERS:
         last = part_path(folder, table, len(parts.get(table, ())))
         later += [path for path in part_paths(folder, table) if path >= last]

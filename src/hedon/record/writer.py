@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from hedon.record.atomic import write_atomically
 from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, fault_path, require_no_run
+from hedon.record.folder import CONFIG, FAULT, checkpoint_path, require_no_run
 from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
@@ -128,7 +128,7 @@ class Writer:
             RecordError: as `append`.
         """
         self.flush()
-        path = fault_path(self.folder, head.step)
+        path = checkpoint_path(self.folder, head.step, FAULT)
         try:
             write_checkpoint(path, Checkpoint(head, dict(arrays)))
         except OSError as error:

@@ -199,9 +199,7 @@ def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> F
         "eaten": {meal: population[f"eaten_{meal}"].sum() for meal in (*foods, *prey)},
         "mean_energy": mean_energy(tail),
         "generation": last_generation(population),
-        "weights": {
-            name: asdict(weights[name]) if name in weights else {"mean": None, "sd": None} for name in part.kind.genes
-        },
+        "weights": {name: weights.get(name, {"mean": None, "sd": None}) for name in part.kind.genes},
         "ledger": world_ledger(population, agents),
     }
 

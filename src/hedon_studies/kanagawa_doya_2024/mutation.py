@@ -92,5 +92,5 @@ def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> It
             mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
             if mine:
                 found = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
-                found |= vars(compare(mine, comparison))
+                found |= compare(mine, comparison)
                 yield found if worlds >= SHOWN_FROM else found | dict.fromkeys(("low", "high", "p_sign"))

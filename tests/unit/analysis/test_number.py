@@ -86,9 +86,9 @@ def test_food_where_nobody_died_or_lived() -> None:
 def test_weights_of_the_last_born() -> None:
     assert last_agents(AGENTS, 2)["agent_id"].to_list() == [2, 3]
     spread = world_weights(AGENTS, ("w_normal", "w_action"), 2)[0]["w_normal"]
-    assert spread.mean == 4
-    assert spread.sd == pytest.approx(math.sqrt(2))
-    assert world_weights(AGENTS, ("w_normal",), 1)[0]["w_normal"].sd is None
+    assert spread["mean"] == 4
+    assert spread["sd"] == pytest.approx(math.sqrt(2))
+    assert world_weights(AGENTS, ("w_normal",), 1)[0]["w_normal"]["sd"] is None
     assert world_weights(AGENTS.head(0), ("w_normal",)) == {}
 
 

@@ -10,16 +10,16 @@ def test_the_slope_s_interval_covers_as_often_as_promised() -> None:
     for _ in range(1000):
         x = rng.normal(size=8)
         found = prediction(x, 0.7 * x + rng.normal(size=8))
-        covered += found.low <= 0.7 <= found.high
+        covered += found["low"] <= 0.7 <= found["high"]
     assert covered / 1000 == pytest.approx(0.95, abs=0.025)
 
 
 def test_predictions_by_hand() -> None:
     found = prediction([1.0, 2.0, -1.0, np.nan], [2.0, 4.0, -2.0, 5.0])
-    assert (found.pairs, found.same_sign, found.p_sign) == (3, 3, 0.25)
-    assert (found.correlation, found.rank_correlation) == pytest.approx((1.0, 1.0))
-    assert (found.slope, found.low, found.high) == pytest.approx((2.0, 2.0, 2.0))
+    assert (found["pairs"], found["same_sign"], found["p_sign"]) == (3, 3, 0.25)
+    assert (found["correlation"], found["rank_correlation"]) == pytest.approx((1.0, 1.0))
+    assert (found["slope"], found["low"], found["high"]) == pytest.approx((2.0, 2.0, 2.0))
     few = prediction([1.0, -1.0], [1.0, 1.0])
-    assert (few.pairs, few.same_sign, few.p_sign) == (2, 1, 1.0)
-    assert np.isnan(few.slope)
-    assert np.isnan(prediction([], []).p_sign)
+    assert (few["pairs"], few["same_sign"], few["p_sign"]) == (2, 1, 1.0)
+    assert np.isnan(few["slope"])
+    assert np.isnan(prediction([], [])["p_sign"])

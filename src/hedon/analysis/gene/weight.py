@@ -1,7 +1,6 @@
 """Which rewards evolved? The neutral markers tell how much of it is drift."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import polars as pl
 
@@ -10,18 +9,8 @@ from hedon.analysis.world.species import require_one_species
 
 LAST_AGENTS = 5000  # whose weights the paper shows
 
-
-@dataclass(frozen=True)
-class WeightSpread:
-    """A weight among the agents of one world.
-
-    Attributes:
-        mean: None where there are no agents.
-        sd: standard deviation; None where there are fewer than two.
-    """
-
-    mean: float | None
-    sd: float | None
+Spread = dict[str, float | None]
+"""Mean and standard deviation of a weight among some agents."""
 
 
 def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
@@ -49,9 +38,7 @@ def last_mean(weight: str, world: WorldRecord) -> float | None:
     return float(values.mean(dtype=float)) if len(values) else None
 
 
-def world_weights(
-    agents: pl.DataFrame, names: Sequence[str], count: int = LAST_AGENTS
-) -> dict[int, dict[str, WeightSpread]]:
+def world_weights(agents: pl.DataFrame, names: Sequence[str], count: int = LAST_AGENTS) -> dict[int, dict[str, Spread]]:
     """Weights of the agents born last, per world.
 
     Args:
@@ -60,14 +47,14 @@ def world_weights(
         count: agents per world.
 
     Returns:
-        By world and name. A world without agents is missing.
+        By world and name: mean, None where there are no agents, and sd, None where there are fewer than two. A world
+        without agents is missing.
     """
     groups = last_agents(agents, count).partition_by("world", as_dict=True)
     return {int(world): {name: _spread(group[name]) for name in names} for (world,), group in groups.items()}
 
 
-def _spread(values: pl.Series) -> WeightSpread:
+def _spread(values: pl.Series) -> Spread:
     known = values.drop_nulls().cast(pl.Float64).to_numpy()
-    return WeightSpread(
-        float(known.mean()) if len(known) else None, float(known.std(ddof=1)) if len(known) > 1 else None
-    )
+    sd = float(known.std(ddof=1)) if len(known) > 1 else None
+    return {"mean": float(known.mean()) if len(known) else None, "sd": sd}

@@ -13,6 +13,7 @@ weight of those born last; the bias of the first half of a run with that of the 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 from hedon.analysis import WorldRecord, last_agents
 from hedon.statistic import LEVEL
 from hedon_studies.kanagawa_doya_2024.analysis.noise import Mutations, NoiseTable, mutations, noise_table
-from hedon_studies.kanagawa_doya_2024.analysis.prediction import Prediction, prediction
+from hedon_studies.kanagawa_doya_2024.analysis.prediction import prediction
 
 NAN = math.nan
 _LINES = 4000
@@ -121,12 +122,15 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
     )
 
 
-def compare(drifts: Sequence[GeneDrift], comparison: str) -> Prediction:
+def compare(drifts: Sequence[GeneDrift], comparison: str) -> dict[str, Any]:
     """Correlates what is predicted with what is seen, over worlds and genes.
 
     Args:
         drifts: one per world and gene.
         comparison: a key of `COMPARISONS`.
+
+    Returns:
+        What `prediction` gives.
     """
     predicted, seen = COMPARISONS[comparison]
     return prediction((getattr(d, predicted) for d in drifts), (getattr(d, seen) for d in drifts))
