@@ -121,6 +121,14 @@ def _restricted(world: WorldRecord, common: Common) -> float | None:
     return restricted_mean(curve, common.until).mean if common.until and len(curve.age) else None
 
 
+def _food_agent(world: WorldRecord, _common: Common) -> float | None:
+    return food_per_step(world.agents, world.food_kinds)
+
+
+def _food_step(world: WorldRecord, _common: Common) -> float | None:
+    return food_per_agent_step(world.population, world.food_kinds)
+
+
 def _refused(world: WorldRecord, _common: Common) -> float | None:
     sums = world.population.select(pl.col("births", "births_failed_full", "births_failed_space").sum()).row(0)
     return (sums[1] + sums[2]) / sum(sums) if sum(sums) else None
@@ -139,8 +147,8 @@ RESPONSES = (
     Response("alive", "agents alive, last tenth", _alive),
     Response("lifetime", "lifetime of the dead [step]", lambda w, _: mean_lifetime(w.agents), ratio=True),
     Response("restricted_lifetime", "lifetime, the living counted [step]", _restricted, ratio=True),
-    Response("food_agent", "food, mean over agents [1/step]", lambda w, _: _food_agent(w), ratio=True),
-    Response("food_step", "food per step lived [1/step]", lambda w, _: _food_step(w), ratio=True),
+    Response("food_agent", "food, mean over agents [1/step]", _food_agent, ratio=True),
+    Response("food_step", "food per step lived [1/step]", _food_step, ratio=True),
     Response("w_food", "weight of food", _weight("w_normal")),
     Response("w_action", "weight of action", _weight("w_action")),
     Response("neutral", "neutral marker", _weight("neutral_1")),
@@ -151,11 +159,3 @@ RESPONSES = (
     Response("extinct", "extinct", lambda w, _: float(w.extinct_step is not None), sure=False),
 )
 """Responses of a baseline world; those of weights are means over the 5000 agents born last."""
-
-
-def _food_agent(world: WorldRecord) -> float | None:
-    return food_per_step(world.agents, world.food_kinds)
-
-
-def _food_step(world: WorldRecord) -> float | None:
-    return food_per_agent_step(world.population, world.food_kinds)

@@ -46,23 +46,6 @@ class HistoryRow:
     extinct: Container[int] | None = None
 
 
-def draw_history(
-    population: pl.DataFrame,
-    reward_names: Sequence[str],
-    neutral_names: Sequence[str],
-    colors: Mapping[str, str],
-) -> Figure:
-    """One panel per reward weight and one for the neutral genes, all with the same axes; see `draw_histories`.
-
-    Args:
-        population: table `population` of one or more worlds.
-        reward_names: columns of the weights that enter the reward.
-        neutral_names: columns of the genes without effect.
-        colors: of each food kind.
-    """
-    return draw_histories([HistoryRow(population)], reward_names, neutral_names, colors)
-
-
 def draw_histories(
     settings: Sequence[HistoryRow],
     reward_names: Sequence[str],

@@ -7,7 +7,7 @@ import polars as pl
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
 from hedon.figure.demography import draw_demography
-from hedon.figure.history import draw_history
+from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.lineage import draw_lineages
 from hedon.figure.named import NamedFigure
 from hedon.figure.population import draw_population
@@ -39,7 +39,8 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
 
     meals, neutral = (*first.food_kinds, *first.prey), first.neutral_names
     yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
-    yield figure.HISTORY.drawn(draw_history(population, first.reward_names, neutral, colors))
+    courses = draw_histories([HistoryRow(population)], first.reward_names, neutral, colors)
+    yield figure.HISTORY.drawn(courses)
     yield figure.POPULATION.drawn(draw_population(population, meals, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))

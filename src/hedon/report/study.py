@@ -35,11 +35,7 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
     Args:
         studies: as they were chosen; their claims are judged.
         gathered: the worlds for their items.
-        folder: where to write.
-
-    Args:
-        gathered: The worlds of a request, by item.
-        folder: Is made if it is missing.
+        folder: is made if it is missing.
 
     Returns:
         The page in HTML, and the items.

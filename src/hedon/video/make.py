@@ -6,7 +6,7 @@ from itertools import chain
 from pathlib import Path
 
 from hedon.figure.film import Film
-from hedon.figure.style import food_colors
+from hedon.figure.style import meal_colors
 from hedon.video.encoder import Encoder, check_target, find_ffmpeg
 from hedon.video.error import VideoError
 from hedon.video.moment import Footage
@@ -81,8 +81,7 @@ def make_video(footage: Footage, shown: FrameRange, out: Path, width: int, rate:
     find_ffmpeg()
     moments = footage.moments(shown.first, shown.last, shown.speed)
     opening = next(moments)
-    colors = food_colors(opening.food_kinds, [food.color for food in footage.config.food.values()])
-    film = Film(opening, colors, width, footage.usual_energy(), shown.follow)
+    film = Film(opening, meal_colors(footage.config), width, footage.usual_energy(), shown.follow)
     with Encoder(out, film.width, film.height, rate) as encoder:
         for number, moment in enumerate(chain((opening,), moments), 1):
             encoder.add(film.draw(moment))

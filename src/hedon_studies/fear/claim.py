@@ -13,7 +13,7 @@ from functools import partial
 
 from hedon.analysis import WorldRecord
 from hedon.config import hunters
-from hedon.study import Claim, Condition, Order
+from hedon.study import Claim, Condition, Measure, Order
 from hedon_studies.kanagawa_doya_2024.claim import score
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
@@ -46,24 +46,15 @@ def fear(world: WorldRecord) -> float | None:
     return None if found is None else -found
 
 
-def _fear_beyond_drift(world: WorldRecord) -> float | None:
-    found = fear(world)
-    return None if found is None else found - FAR
-
-
-def _own_beyond_drift(world: WorldRecord) -> float | None:
-    found = own_score(world)
-    return None if found is None else found - FAR
-
-
-def _hunter_beyond_drift(world: WorldRecord) -> float | None:
-    found = hunter_score(world)
-    return None if found is None else found - FAR
-
-
-def _obstacle_beyond_drift(world: WorldRecord) -> float | None:
+def _obstacle_fear(world: WorldRecord) -> float | None:
     found = score("w_see_obstacle", world)
-    return None if found is None else -found - FAR
+    return None if found is None else -found
+
+
+def _beyond_drift(measure: Measure, world: WorldRecord) -> float | None:
+    """By how much a score is further above 0 than 97.5 % of neutral genes; None as for the score."""
+    found = measure(world)
+    return None if found is None else found - FAR
 
 
 def _prey(preset: str) -> Condition:
@@ -79,7 +70,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
         "fear often evolves",
         _prey("predator"),
         f"in more than {100 * OFTEN:g} % of worlds the weight of seeing predators is below 97.5 % of neutral genes",
-        _fear_beyond_drift,
+        partial(_beyond_drift, fear),
         "share",
         "often < 0",
         low=OFTEN,
@@ -88,7 +79,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
         "liking one's own kind in some worlds",
         _prey("predator"),
         "the weight of seeing prey is above 97.5 % of neutral genes in more worlds than by chance",
-        _own_beyond_drift,
+        partial(_beyond_drift, own_score),
         "share",
         "> 0 in some",
         low=BY_CHANCE,
@@ -97,7 +88,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
         "liking predators in some worlds",
         _prey("predator"),
         "the weight of seeing predators is above 97.5 % of neutral genes in more worlds than by chance",
-        _hunter_beyond_drift,
+        partial(_beyond_drift, hunter_score),
         "share",
         "> 0 in some",
         low=BY_CHANCE,
@@ -106,7 +97,7 @@ SEQUEL_CLAIMS: tuple[Claim, ...] = (
         "no fear of weak pitfalls",
         Condition("pitfall-weak", "pitfall-weak"),
         f"the weight of seeing obstacles is below 97.5 % of neutral genes in less than {100 * OFTEN:g} % of worlds",
-        _obstacle_beyond_drift,
+        partial(_beyond_drift, _obstacle_fear),
         "share",
         "no fear",
         high=OFTEN,

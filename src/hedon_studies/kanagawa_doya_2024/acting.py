@@ -65,14 +65,12 @@ def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield make_table("acting_worlds", "The worlds of the study of acting", rows, missing, shown=False)
 
 
-ACTING: tuple[Item, ...] = (
-    Item(
-        "acting",
-        "Acting by weights of 16 bits",
-        "Agents act by weights that are rounded to 16 bits, for speed. Do they live, eat and breed as those that act "
-        "by weights of 32 bits?",
-        make_acting,
-        CONDITIONS,
-        SCALE,
-    ),
+ACTING = Item(
+    "acting",
+    "Acting by weights of 16 bits",
+    "Agents act by weights that are rounded to 16 bits, for speed. Do they live, eat and breed as those that act "
+    "by weights of 32 bits?",
+    make_acting,
+    CONDITIONS,
+    SCALE,
 )

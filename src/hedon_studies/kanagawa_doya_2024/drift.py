@@ -106,14 +106,12 @@ def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
     }
 
 
-DRIFT: tuple[Item, ...] = (
-    Item(
-        "drift",
-        "Rewards against drift",
-        "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
-        "the weights of food and of action?",
-        partial(make_drift, CONDITIONS, REWARDS, PAPER_SCALE, "drift"),
-        CONDITIONS,
-        PAPER_SCALE,
-    ),
+DRIFT = Item(
+    "drift",
+    "Rewards against drift",
+    "The paper compares no weight with what drift alone would do. Over all of its conditions, does selection move "
+    "the weights of food and of action?",
+    partial(make_drift, CONDITIONS, REWARDS, PAPER_SCALE, "drift"),
+    CONDITIONS,
+    PAPER_SCALE,
 )

@@ -84,14 +84,12 @@ def _course(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
     return history(stack(worlds, "population", world_indices([worlds])), ("normal",), ("w_normal",))
 
 
-ENTROPY: tuple[Item, ...] = (
-    Item(
-        "entropy",
-        "The bonus for entropy",
-        "The paper prints an entropy coefficient of 0, its program had 0.001. A reward must outweigh that bonus before "
-        "an agent learns to seek it: does it set how large the weight of food must be?",
-        make_entropy,
-        CONDITIONS,
-        SCALE,
-    ),
+ENTROPY = Item(
+    "entropy",
+    "The bonus for entropy",
+    "The paper prints an entropy coefficient of 0, its program had 0.001. A reward must outweigh that bonus before "
+    "an agent learns to seek it: does it set how large the weight of food must be?",
+    make_entropy,
+    CONDITIONS,
+    SCALE,
 )

@@ -84,14 +84,12 @@ def _world_row(label: str, world: WorldRecord) -> dict[str, Any]:
     }
 
 
-EXTINCTIONS: tuple[Item, ...] = (
-    Item(
-        "extinction",
-        "Extinction by the costs of living and of action",
-        "Of ten worlds per setting none dies out at the costs of the baseline. A half more for living lets 30 % die "
-        "out, twice as much 90 %; a half more for action 50 %, twice as much all.",
-        _make,
-        tuple(CONDITIONS),
-        Scale(tuple(range(1, 11)), EXTINCTION_STEP),
-    ),
+EXTINCTIONS = Item(
+    "extinction",
+    "Extinction by the costs of living and of action",
+    "Of ten worlds per setting none dies out at the costs of the baseline. A half more for living lets 30 % die "
+    "out, twice as much 90 %; a half more for action 50 %, twice as much all.",
+    _make,
+    tuple(CONDITIONS),
+    Scale(tuple(range(1, 11)), EXTINCTION_STEP),
 )

@@ -156,14 +156,12 @@ def _cell_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return results
 
 
-FAULTS: tuple[Item, ...] = (
-    Item(
-        "faults",
-        "The faults of the released code and its contact solver",
-        "The paper's program grew food faster than it was set to, repeated the same mutations, trained its critic "
-        "towards the mean of a batch, and let bodies overlap. What does each do, and what do they do together?",
-        make_faults,
-        CONDITIONS,
-        SCALE,
-    ),
+FAULTS = Item(
+    "faults",
+    "The faults of the released code and its contact solver",
+    "The paper's program grew food faster than it was set to, repeated the same mutations, trained its critic "
+    "towards the mean of a batch, and let bodies overlap. What does each do, and what do they do together?",
+    make_faults,
+    CONDITIONS,
+    SCALE,
 )

@@ -34,14 +34,12 @@ def _agreement(agree: list[bool]) -> str:
     return "do not agree" if not any(agree) else f"agree in {sum(agree)} of {len(agree)} genes and worlds"
 
 
-NOISE: tuple[Item, ...] = (
-    Item(
-        "noise",
-        "Frozen mutation noise",
-        "The released program draws the mutations of each window from the same small table. Does the table's mean "
-        "predict where the weights go, the neutral marker's included?",
-        make_noise,
-        CONDITIONS,
-        SCALE,
-    ),
+NOISE = Item(
+    "noise",
+    "Frozen mutation noise",
+    "The released program draws the mutations of each window from the same small table. Does the table's mean "
+    "predict where the weights go, the neutral marker's included?",
+    make_noise,
+    CONDITIONS,
+    SCALE,
 )

@@ -94,11 +94,9 @@ def _column(fidelity: str) -> str:
     return f"in_{fidelity}"
 
 
-PARAMETERS: tuple[Item, ...] = (
-    Item(
-        "parameters",
-        "All parameters",
-        "The parameters of the model. Some are not printed, and some that are printed differ from the released code.",
-        _parameters,
-    ),
+PARAMETERS = Item(
+    "parameters",
+    "All parameters",
+    "The parameters of the model. Some are not printed, and some that are printed differ from the released code.",
+    _parameters,
 )

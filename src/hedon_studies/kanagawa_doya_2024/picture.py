@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from hedon.figure import NamedFigure, draw_body, draw_world, food_colors, telling_agent
+from hedon.figure import NamedFigure, draw_body, draw_world, meal_colors, telling_agent
 from hedon.record import Snapshot
 from hedon.study import Item, ItemInputs, Scale
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PLACES, POISON, POOR, SIZES
@@ -26,8 +26,7 @@ def _arena(inputs: ItemInputs) -> Iterator[NamedFigure]:
     snapshot = inputs.snapshots.get(BASELINE.label)
     if snapshot is None:
         return
-    config = BASELINE.config(inputs.fidelity)
-    colors = food_colors(tuple(config.food), [food.color for food in config.food.values()])
+    colors = meal_colors(BASELINE.config(inputs.fidelity))
     agent = telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
     figure = draw_world(snapshot, colors, rays_of)

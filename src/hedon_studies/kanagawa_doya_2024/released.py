@@ -119,15 +119,13 @@ def _with_bias(rows: Sequence[Mapping[str, Any]], drifts: Drifts) -> list[dict[s
     return [dict(row) | biases.get(row["seed"], {}) for row in rows]
 
 
-RELEASED: tuple[Item, ...] = (
-    Item(
-        "released",
-        "The released program, seed by seed",
-        "The paper shows 5 seeds and replaced those that died out. How many seeds of the released program head for "
-        "extinction, does the weight of food follow the bias of the seed's mutations, and do survivors alone give the "
-        "paper's picture?",
-        make_released,
-        CONDITIONS,
-        SCALE,
-    ),
+RELEASED = Item(
+    "released",
+    "The released program, seed by seed",
+    "The paper shows 5 seeds and replaced those that died out. How many seeds of the released program head for "
+    "extinction, does the weight of food follow the bias of the seed's mutations, and do survivors alone give the "
+    "paper's picture?",
+    make_released,
+    CONDITIONS,
+    SCALE,
 )

@@ -24,7 +24,7 @@ STUDY = Study(
     "Evolution of rewards for food and motor action",
     "Kanagawa & Doya, ALIFE 2024: agents that are born with rewards for food and for action, learn by them within "
     "their lives, and pass them on. Which rewards evolve, and does the abundance of food decide it?",
-    (*PICTURES, *LAWS, *EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, *PARAMETERS),
+    (*PICTURES, *LAWS, EXTINCTIONS, *WEIGHTS, *HISTORIES, *LIVES, PARAMETERS),
     "What the paper shows: food becomes rewarding, action goes two ways, and in plenty hardly anything evolves. The "
     "rules were fixed before runs of the paper's length.",
     (*CLAIMS, *ORDERS),
@@ -36,6 +36,6 @@ OPEN = Study(
     "What the paper leaves open",
     "Do the paper's weights go further than drift; what do the faults of its released program do, which of its worlds "
     "last, and could agents eat what it reports?",
-    (*DRIFT, *FAULTS, *SUPPLY, *RELEASED, *NOISE, *ENTROPY, *ACTING),
+    (DRIFT, FAULTS, SUPPLY, RELEASED, NOISE, ENTROPY, ACTING),
     "Each item says in its module what would count as an effect; it was written before anybody looked at the runs.",
 )

@@ -117,15 +117,13 @@ _ASKED = (
 )
 
 
-SUPPLY: tuple[Item, ...] = (
-    Item(
-        "supply",
-        "The supply of food",
-        "In the small arena and with food around the center, the paper's agents eat four times as much as in the "
-        "baseline and live for 100,000 steps. Does enough food grow for that, as it is set to, five times as fast, or "
-        "in the released program?",
-        make_supply,
-        CONDITIONS,
-        SCALE,
-    ),
+SUPPLY = Item(
+    "supply",
+    "The supply of food",
+    "In the small arena and with food around the center, the paper's agents eat four times as much as in the "
+    "baseline and live for 100,000 steps. Does enough food grow for that, as it is set to, five times as fast, or "
+    "in the released program?",
+    make_supply,
+    CONDITIONS,
+    SCALE,
 )

@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
 from hedon.analysis.world.population import history
-from hedon.figure.history import draw_history
+from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
 from hedon.figure.style import food_colors, save_figure, step_unit, weight_title
@@ -55,7 +55,8 @@ def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> No
 
 def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=3))
-    figure = draw_history(run.population(), run.reward_names, run.neutral_names, food_colors(run.food_kinds))
+    rows = [HistoryRow(run.population())]
+    figure = draw_histories(rows, run.reward_names, run.neutral_names, food_colors(run.food_kinds))
     assert [axes.get_title("left") for axes in figure.axes] == [
         "weight of normal food",
         "weight of action",

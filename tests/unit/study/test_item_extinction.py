@@ -15,7 +15,7 @@ from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.extinction import CONDITIONS, EXTINCTIONS
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, EXTINCTION_STEP
 
-(ITEM,) = EXTINCTIONS
+ITEM = EXTINCTIONS
 OWN, DEAR = "0.001, 2e-5", "0.002, 2e-5"
 
 

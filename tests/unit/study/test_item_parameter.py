@@ -13,7 +13,7 @@ from hedon_studies.kanagawa_doya_2024.parameter import CONCERNS, PARAMETERS
 
 
 def tables(fidelity: str) -> dict[str, ResultTable]:
-    [item] = PARAMETERS
+    item = PARAMETERS
     return {each.name: each for each in item.make(ItemInputs(fidelity)) if isinstance(each, ResultTable)}
 
 

@@ -20,7 +20,7 @@ from hedon_studies.kanagawa_doya_2024 import acting, entropy, fault, noise, rele
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import AppetiteBin, appetite, half_way_weight
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, HEADING, STANDING, fate
 
-ITEMS = [*fault.FAULTS, *supply.SUPPLY, *released.RELEASED, *noise.NOISE, *entropy.ENTROPY, *acting.ACTING]
+ITEMS = [fault.FAULTS, supply.SUPPLY, released.RELEASED, noise.NOISE, entropy.ENTROPY, acting.ACTING]
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +93,7 @@ def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
     """Worlds with growth have twice the numbers of the same worlds without, in all cells."""
     living = worlds[::2]
     doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in living]
-    tables, _ = made(fault.FAULTS[0], {label: doubled if cell[0] else living for label, cell in fault.CELLS.items()})
+    tables, _ = made(fault.FAULTS, {label: doubled if cell[0] else living for label, cell in fault.CELLS.items()})
     rows = tables["fault_effects"].rows.filter(pl.col("response") == "alive")
     alive = np.mean([figures(world, common_to(living), RESPONSES)["alive"] or 0.0 for world in living])
     assert rows["effect"][0] == "growth"
@@ -108,7 +108,7 @@ def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
 
 
 def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
-    tables, _ = made(fault.FAULTS[0], {"none": worlds, "growth": worlds})
+    tables, _ = made(fault.FAULTS, {"none": worlds, "growth": worlds})
     assert set(tables["fault_effects"].rows["effect"]) == {"growth"}
     note = tables["fault_effects"].note
     assert "left out: noise, critic, solver," in note
@@ -154,7 +154,7 @@ def test_the_rule_of_decline() -> None:
 
 
 def test_survivors_are_told_from_all(worlds: list[WorldRecord]) -> None:
-    tables, _ = made(released.RELEASED[0], {"released": worlds})
+    tables, _ = made(released.RELEASED, {"released": worlds})
     fates = {row["fate"]: row["count"] for row in tables["released_fate"].rows.iter_rows(named=True)}
     assert fates["extinct"] == 1
     assert fates["extinct or heading for it"] == 1
@@ -206,7 +206,7 @@ def test_entropy_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
         dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2))
         for w in reversed(living)
     ]
-    tables, _ = made(entropy.ENTROPY[0], {entropy.WITH: living, entropy.WITHOUT: halved})
+    tables, _ = made(entropy.ENTROPY, {entropy.WITH: living, entropy.WITHOUT: halved})
     rows = {row["response"]: row for row in tables["entropy"].rows.iter_rows(named=True)}
     food = rows["food_step"]
     assert (food["change"], food["change_low"], food["change_high"]) == pytest.approx((0.5, 0.5, 0.5))
@@ -216,7 +216,7 @@ def test_entropy_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
 
 def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in worlds]
-    tables, drawn = made(acting.ACTING[0], {acting.FULL: worlds, acting.HALF: doubled})
+    tables, drawn = made(acting.ACTING, {acting.FULL: worlds, acting.HALF: doubled})
     assert [figure.name for figure in drawn] == ["acting_courses"]
     rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
     assert rows["food_step"]["change"] == pytest.approx(0.5)
@@ -227,7 +227,7 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
 
 def test_courses_of_unequal_length_share_one_axis(worlds: list[WorldRecord]) -> None:
     short = [world.until(1024) for world in worlds]  # alone it would be drawn in steps, not in thousands
-    _, drawn = made(acting.ACTING[0], {acting.FULL: worlds, acting.HALF: short})
+    _, drawn = made(acting.ACTING, {acting.FULL: worlds, acting.HALF: short})
     assert drawn[0].figure.axes
     for axes in drawn[0].figure.axes:
         ends = [float(np.max(line.get_xdata())) for line in axes.lines]
@@ -236,6 +236,6 @@ def test_courses_of_unequal_length_share_one_axis(worlds: list[WorldRecord]) -> 
 
 
 def test_one_seed_of_each_arm_may_be_missing(worlds: list[WorldRecord]) -> None:
-    tables, _ = made(entropy.ENTROPY[0], {entropy.WITH: worlds[:1], entropy.WITHOUT: worlds[2:]})
+    tables, _ = made(entropy.ENTROPY, {entropy.WITH: worlds[:1], entropy.WITHOUT: worlds[2:]})
     assert tables["entropy"].rows["seeds"].to_list()[0] == 0
     assert tables["entropy"].rows["change"].null_count() == tables["entropy"].rows.height

@@ -17,7 +17,7 @@ from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.drift import ALL, CONDITIONS, DRIFT
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
-(ITEM,) = DRIFT
+ITEM = DRIFT
 GENES = ["w_normal", "w_action", "neutral_1"]
 
 

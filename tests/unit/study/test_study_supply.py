@@ -14,7 +14,7 @@ from hedon_studies.kanagawa_doya_2024.figure.supply import draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
 from hedon_studies.kanagawa_doya_2024.supply import CONDITIONS, SUPPLY, growth
 
-(ITEM,) = SUPPLY
+ITEM = SUPPLY
 
 
 @pytest.fixture(scope="module")

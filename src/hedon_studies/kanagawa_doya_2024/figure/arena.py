@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, FancyArrowPatch, Rectangle
 
 from hedon.config import Config, PlacementConfig, walls
-from hedon.figure import AGENT_COLOR, INK, MUTED, draw_agents, draw_foods, draw_walls, food_colors, new_figure, styled
+from hedon.figure import AGENT_COLOR, INK, MUTED, draw_agents, draw_foods, draw_walls, meal_colors, new_figure, styled
 from hedon.record import Snapshot
 
 _WIDTH = 9.0  # of the figure [inch]
@@ -67,7 +67,7 @@ def draw_arenas(rows: Sequence[Sequence[ArenaPanel]]) -> Figure:
 
 def _draw_panel(axes: Axes, panel: ArenaPanel) -> None:
     config, snapshot = panel.config, panel.snapshot
-    colors = _colors(config)
+    colors = meal_colors(config)
     draw_walls(axes, walls(config.arena), 1.4)
     for kind, food in config.food.items():
         _draw_placement(axes, food.placement, colors[kind])
@@ -122,7 +122,7 @@ def _draw_placement(axes: Axes, placement: PlacementConfig, color: str) -> None:
 
 def _handles(rows: Sequence[Sequence[ArenaPanel]]) -> list[Line2D]:
     panels = [panel for row in rows for panel in row]
-    colors = {kind: color for panel in panels for kind, color in _colors(panel.config).items()}
+    colors = {kind: color for panel in panels for kind, color in meal_colors(panel.config).items()}
     places = [food.placement for panel in panels for food in panel.config.food.values()]
     dot = {"marker": "o", "linestyle": "", "markeredgecolor": MUTED, "markeredgewidth": 0.5}
     handles = [Line2D([], [], color=AGENT_COLOR, markersize=7, label="agent", **dot)]
@@ -136,7 +136,3 @@ def _handles(rows: Sequence[Sequence[ArenaPanel]]) -> list[Line2D]:
         label = f"next place, after {after:,} eaten"
         handles.append(Line2D([], [], color=INK, linewidth=1.3, marker=">", markersize=4, markevery=[1], label=label))
     return handles
-
-
-def _colors(config: Config) -> dict[str, str]:
-    return food_colors(tuple(config.food), [food.color for food in config.food.values()])
