@@ -69,13 +69,7 @@ def run(
       hedon sweep run cost.toml --workers 2
       hedon sweep run cost.toml --out s3://bucket/cost
     """
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import write_plan
-    from hedon.sweep.read import read_sweep
-
-    asked = read_sweep(file)
-    store = Store(out or str(Path("sweeps") / asked.plan.name))
-    _run_and_report(write_plan(asked, store), store, workers, ray, part, checkpoint)
+    _run_and_report(*_written(file, out), workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -92,11 +86,7 @@ def resume(
     Example:
       hedon sweep resume sweeps/cost --workers 2
     """
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import load_plan
-
-    store = Store(place)
-    _run_and_report(load_plan(store), store, workers, ray, part, checkpoint)
+    _run_and_report(*_opened(place), workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -108,12 +98,9 @@ def status(place: Place) -> None:
       hedon sweep status sweeps/cost
     """
     from hedon.cli.display.run import duration
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import load_plan
     from hedon.sweep.status import sweep_status
 
-    store = Store(place)
-    made, console = load_plan(store), make_console()
+    (made, store), console = _opened(place), make_console()
     _say_size(made, console)
     found = sweep_status(made, store)
     console.print(f"  done: {found.done} of {found.batches} batches, {found.worlds} worlds, {found.extinct} extinct")
@@ -134,13 +121,10 @@ def collect(place: Place) -> None:
     Example:
       hedon sweep collect sweeps/cost
     """
-    from hedon.jobs.store import Store
     from hedon.sweep.collect import TABLE
     from hedon.sweep.collect import collect as write_table
-    from hedon.sweep.plan import load_plan
 
-    store = Store(place)
-    made = load_plan(store)
+    made, store = _opened(place)
     table = write_table(made, store)
     all_worlds = len(made.settings) * len(made.seeds)
     make_console().print(f"wrote {store.location}/{TABLE}: {table.height} of {all_worlds} worlds", soft_wrap=True)
@@ -161,13 +145,10 @@ def report(
       hedon sweep report sweeps/cost
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
-    from hedon.jobs.store import Store
     from hedon.sweep.collect import collect as write_table
-    from hedon.sweep.plan import load_plan
     from hedon.sweep.report import write_report
 
-    store = Store(place)
-    made = load_plan(store)
+    made, store = _opened(place)
     names = [name.strip() for name in only.split(",")] if only else []
     folder = out or (store.folder or Path("sweeps") / made.name) / "report"
     files = write_report(made, write_table(made, store), folder, names)
@@ -194,23 +175,38 @@ def script(
       hedon sweep script cost.toml --slurm --out /shared/cost --jobs 100
     """
     from hedon.jobs.slurm import slurm_script
-    from hedon.jobs.store import Store
     from hedon.record.atomic import write_atomically
     from hedon.sweep.error import SweepError
-    from hedon.sweep.plan import write_plan
-    from hedon.sweep.read import read_sweep
 
     if not slurm:
         raise SweepError("say for which system: --slurm is the only one")
-    asked = read_sweep(file)
-    store = Store(out or str(Path("sweeps") / asked.plan.name))
-    made = write_plan(asked, store)
+    made, store = _written(file, out)
     path = Path(f"{made.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
     place = store.location if store.folder is None else str(store.folder.absolute())
     words = ["sweep", "resume", place, "--workers", str(workers), "--checkpoint", f"{checkpoint:g}"]
     text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(made.batches())), workers, hours).encode()
     write_atomically(path, lambda content: content.write(text))
     make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
+
+
+def _written(file: Path, out: str | None) -> "tuple[SweepPlan, Store]":
+    """The plan of a file, written where the sweep lives."""
+    from hedon.jobs.store import Store
+    from hedon.sweep.plan import write_plan
+    from hedon.sweep.read import read_sweep
+
+    asked = read_sweep(file)
+    store = Store(out or str(Path("sweeps") / asked.plan.name))
+    return write_plan(asked, store), store
+
+
+def _opened(place: str) -> "tuple[SweepPlan, Store]":
+    """The plan of a sweep that lives somewhere."""
+    from hedon.jobs.store import Store
+    from hedon.sweep.plan import load_plan
+
+    store = Store(place)
+    return load_plan(store), store
 
 
 def _say_size(made: "SweepPlan", console: "Console") -> None:

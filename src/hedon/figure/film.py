@@ -74,16 +74,6 @@ class Film:
             self._canvas.draw()
         return self._canvas.buffer_rgba()
 
-    def pixel(self, x: float, y: float) -> tuple[int, int]:
-        """The column and the row of a place in the world [u], in the picture drawn last.
-
-        Args:
-            x: place along the arena's first axis [u].
-            y: place along its second axis [u].
-        """
-        column, above = self._axes.transData.transform((x, y))
-        return int(column), self.height - 1 - int(above)
-
     def _look_at(self, place: np.ndarray) -> None:
         """Moves the view there, as far as it stays within the arena."""
         half = self._span / 2 - self._rim

@@ -7,7 +7,7 @@ from hedon.analysis import ResultTable, generator, make_table
 from hedon.figure import NamedFigure
 from hedon.statistic import SHOWN_FROM
 from hedon.study import Condition, ItemInputs, sentences
-from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift, compare, gene_drift
+from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, Drift, compare, gene_drift
 from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
 
 GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}
@@ -34,7 +34,7 @@ _GENE = (
 
 _BRIEF = ("weight", "numbers", "bias", "slope", "displacement", "generations", "line_mean", "end")
 
-Drifts = Mapping[str, Sequence[tuple[int, GeneDrift]]]
+Drifts = Mapping[str, Sequence[tuple[int, Drift]]]
 """Per condition, the seed of each world and the drift of each of its genes."""
 
 
@@ -70,26 +70,24 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
     yield make_table(
         f"{name}_prediction",
         "Mutations: predicted and seen",
-        [row for label, found in drifts.items() for row in _prediction_rows(label, shown[label], _world_count(found))],
+        [
+            row
+            for label, found in drifts.items()
+            for row in _prediction_rows(label, shown[label], len({seed for seed, _ in found}))
+        ],
         sentences(_PREDICTION, note),
     )
-    rows = [
-        {"condition": label, "seed": seed} | vars(drift) for label, found in drifts.items() for seed, drift in found
-    ]
+    rows = [{"condition": label, "seed": seed} | drift for label, found in drifts.items() for seed, drift in found]
     brief = [{column: row[column] for column in ("condition", "seed", *_BRIEF)} for row in rows]
     yield make_table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
     yield make_table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
 
-def _world_count(found: Sequence[tuple[int, GeneDrift]]) -> int:
-    return len({seed for seed, _ in found})
-
-
-def _prediction_rows(label: str, drifts: Sequence[GeneDrift], worlds: int) -> Iterator[dict[str, Any]]:
+def _prediction_rows(label: str, drifts: Sequence[Drift], worlds: int) -> Iterator[dict[str, Any]]:
     """Genes of one world share its pedigree, so bounds and chances are given from three worlds on, not three pairs."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
-            mine = [drift for drift in drifts if weight in (drift.weight, _ALL)]
+            mine = [drift for drift in drifts if weight in (drift["weight"], _ALL)]
             if mine:
                 found = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
                 found |= compare(mine, comparison)

@@ -20,7 +20,7 @@ def make_noise(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
     drifts = condition_drifts(inputs, CONDITIONS)
     tables = [
-        f"{label}: births of equal number {_agreement([drift.is_table for _, drift in found])}"
+        f"{label}: births of equal number {_agreement([drift['is_table'] for _, drift in found])}"
         for label, found in drifts.items()
         if found
     ]

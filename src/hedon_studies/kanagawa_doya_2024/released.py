@@ -115,7 +115,7 @@ def _with_bias(rows: Sequence[Mapping[str, Any]], drifts: Drifts) -> list[dict[s
     """The rows, with the bias of each world's table beside its weights."""
     biases: dict[int, dict[str, float]] = {}
     for seed, drift in drifts[LABEL]:
-        biases.setdefault(seed, {})[f"bias_{drift.weight}"] = drift.bias
+        biases.setdefault(seed, {})[f"bias_{drift['weight']}"] = drift["bias"]
     return [dict(row) | biases.get(row["seed"], {}) for row in rows]
 
 

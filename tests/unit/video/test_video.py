@@ -20,6 +20,12 @@ from hedon.video.moment import blend, open_footage
 imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="needs ffmpeg: uv sync --extra video")
 
 
+def pixel(film: Film, x: float, y: float) -> tuple[int, int]:
+    """The column and the row of a place in the world [u], in the picture drawn last."""
+    column, above = film._axes.transData.transform((x, y))
+    return int(column), film.height - 1 - int(above)
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return record(tmp_path_factory.mktemp("video") / "run", 256)
@@ -55,7 +61,7 @@ def test_a_video_has_the_pictures_and_agents_of_the_frames(folder, tmp_path, end
     for picture, moment in zip(pictures, moments, strict=True):
         drawn = np.asarray(film.draw(moment))[:, :, :3].astype(int)
         for x, y in zip(moment.x, moment.y, strict=True):
-            column, row = film.pixel(x, y)
+            column, row = pixel(film, x, y)
             # Half-way to the rim, away from the line of the heading; codecs change colors a little.
             near = np.s_[row - 3 : row + 4, column - 3 : column + 4]
             assert np.abs(picture[near].astype(int) - drawn[near]).mean() < bound
@@ -86,10 +92,10 @@ def test_a_followed_agent_stays_ringed_and_in_sight(folder):
     agent = int(moment.agent_id[5])
     film = Film(moment, {"normal": "#3d8f4d", "poison": "#8e44ad"}, 480, 60.0, agent)
     picture = np.asarray(film.draw(moment)).astype(int)
-    column, row = film.pixel(float(moment.x[5]), float(moment.y[5]))
+    column, row = pixel(film, float(moment.x[5]), float(moment.y[5]))
     assert 0 <= column < film.width
     assert 0 <= row < film.height
-    edge, _ = film.pixel(float(moment.x[5]) + float(moment.radius[0]) + 1.5, float(moment.y[5]))
+    edge, _ = pixel(film, float(moment.x[5]) + float(moment.radius[0]) + 1.5, float(moment.y[5]))
     assert picture[row, edge - 1 : edge + 2, :3].sum(axis=1).min() < 250  # the ring is dark
     shown = choose_range(footage, None, None, 8, agent)
     assert (shown.first, shown.last) == footage.lifetime(agent)

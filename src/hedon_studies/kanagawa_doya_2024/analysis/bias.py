@@ -12,7 +12,6 @@ weight of those born last; the bias of the first half of a run with that of the 
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,49 +33,14 @@ COMPARISONS = {
     "weight at the end": ("line_mean", "end"),
     "bias, first half and second": ("bias_first", "bias_second"),
 }
-"""What is compared: attributes of `GeneDrift`, what is predicted first."""
+"""What is compared: columns of a `Drift`, what is predicted first."""
 
 
-@dataclass(frozen=True)
-class GeneDrift:
-    """One gene of one world: predicted and seen; NaN for what has no value.
-
-    Attributes:
-        weight: genome column.
-        births: with a known mutation.
-        numbers: of births within a window, so entries of the table.
-        bounds: entries of which only a lower bound is known, since all their children were clipped.
-        disagreement: largest difference between births of equal number that were not clipped.
-        is_table: whether they agree, so that there is a table.
-        bias: mean mutation per birth.
-        bias_first, bias_second: the same over the births of either half of the record.
-        line_mean: mean weight of lines without selection after `generations`.
-        line_low, line_high: bounds that 95 % of them lie between.
-        slope: of the mean weight of the living against their mean generation, over the run.
-        displacement: (mean weight of the living at the end − mean of the founders' law) / generations.
-        end: mean weight of the 5000 agents born last.
-        generations: mean of the 5000 agents born last.
-    """
-
-    weight: str
-    births: int
-    numbers: int
-    bounds: int
-    disagreement: float
-    is_table: bool
-    bias: float
-    bias_first: float
-    bias_second: float
-    line_mean: float
-    line_low: float
-    line_high: float
-    slope: float
-    displacement: float
-    end: float
-    generations: float
+Drift = dict[str, Any]
+"""One gene of one world, predicted and seen, as `gene_drift` gives it."""
 
 
-def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> GeneDrift | None:
+def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Drift | None:
     """Predicts where mutation alone carries a gene, and compares it with what happened.
 
     Args:
@@ -85,7 +49,15 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
         rng: source of chance for the walks.
 
     Returns:
-        None where no birth is recorded.
+        weight, the genome column; births, with a known mutation; numbers of births within a window, so entries of the
+        table; bounds, entries of which only a lower bound is known, since all their children were clipped;
+        disagreement, the largest difference between births of equal number that were not clipped; is_table, whether
+        they agree, so that there is a table; bias, the mean mutation per birth; bias_first and bias_second, the same
+        over the births of either half of the record; line_mean, the mean weight of lines without selection after
+        `generations`; line_low and line_high, bounds that 95 % of them lie between; slope of the mean weight of the
+        living against their mean generation, over the run; displacement, (mean weight of the living at the end − mean
+        of the founders' law) / generations; end, the mean weight of the 5000 agents born last; generations, their mean.
+        NaN for what has no value; None where no birth is recorded.
     """
     found = mutations(world, weight)
     if not len(found.change):
@@ -102,27 +74,27 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Gen
     low, high = np.quantile(lines, (0.5 - LEVEL / 2, 0.5 + LEVEL / 2))
     first, second = _half_biases(world, found, table)
     slope, displacement = _observed(world.population, weight, start)
-    return GeneDrift(
-        weight=weight,
-        births=len(found.change),
-        numbers=int(np.count_nonzero(table.births)),
-        bounds=int(table.bound.sum()),
-        disagreement=table.disagreement,
-        is_table=table.is_one,
-        bias=float(pool.mean()),
-        bias_first=first,
-        bias_second=second,
-        line_mean=float(lines.mean()),
-        line_low=float(low),
-        line_high=float(high),
-        slope=slope,
-        displacement=displacement,
-        end=float(newest[weight].to_numpy().mean(dtype=np.float64)),
-        generations=generations,
-    )
+    return {
+        "weight": weight,
+        "births": len(found.change),
+        "numbers": int(np.count_nonzero(table.births)),
+        "bounds": int(table.bound.sum()),
+        "disagreement": table.disagreement,
+        "is_table": table.is_one,
+        "bias": float(pool.mean()),
+        "bias_first": first,
+        "bias_second": second,
+        "line_mean": float(lines.mean()),
+        "line_low": float(low),
+        "line_high": float(high),
+        "slope": slope,
+        "displacement": displacement,
+        "end": float(newest[weight].to_numpy().mean(dtype=np.float64)),
+        "generations": generations,
+    }
 
 
-def compare(drifts: Sequence[GeneDrift], comparison: str) -> dict[str, Any]:
+def compare(drifts: Sequence[Drift], comparison: str) -> dict[str, Any]:
     """Correlates what is predicted with what is seen, over worlds and genes.
 
     Args:
@@ -133,7 +105,7 @@ def compare(drifts: Sequence[GeneDrift], comparison: str) -> dict[str, Any]:
         What `prediction` gives.
     """
     predicted, seen = COMPARISONS[comparison]
-    return prediction((getattr(d, predicted) for d in drifts), (getattr(d, seen) for d in drifts))
+    return prediction((d[predicted] for d in drifts), (d[seen] for d in drifts))
 
 
 def _pool(found: Mutations, table: NoiseTable) -> Floats:

@@ -61,12 +61,6 @@ class NoiseTable:
     disagreement: float
     is_one: bool
 
-    @property
-    def bias(self) -> float:
-        """Mean mutation per birth, over the births as they happened; NaN without births."""
-        there = self.births > 0
-        return float(np.average(self.value[there], weights=self.births[there])) if there.any() else np.nan
-
 
 def mutations(world: WorldRecord, weight: str) -> Mutations:
     """All recorded mutations of one gene.

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hedon.figure import BLUE, GREEN, MUTED, ORANGE, PALE, VERMILION, new_figure, say_empty, styled
-from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, GeneDrift
+from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, Drift
 
 _COLORS = (VERMILION, BLUE, GREEN, ORANGE)
 _MARKERS = ("o", "s", "^", "D")
@@ -21,7 +21,7 @@ _LINEAR = 0.003
 """Below this an axis of mutations is linear; above, logarithmic, since Cauchy numbers span orders of magnitude."""
 
 
-def draw_predictions(conditions: Mapping[str, Sequence[GeneDrift]], titles: Mapping[str, str]) -> Figure:
+def draw_predictions(conditions: Mapping[str, Sequence[Drift]], titles: Mapping[str, str]) -> Figure:
     """A panel per comparison; a color per condition, a mark per gene. The line is where both are equal.
 
     Args:
@@ -37,7 +37,7 @@ def draw_predictions(conditions: Mapping[str, Sequence[GeneDrift]], titles: Mapp
             reach = 0.0
             for label, drifts in shown.items():
                 for marker, weight in zip(_MARKERS, titles, strict=False):
-                    pairs = np.array([(getattr(d, predicted), getattr(d, seen)) for d in drifts if d.weight == weight])
+                    pairs = np.array([(d[predicted], d[seen]) for d in drifts if d["weight"] == weight])
                     pairs = pairs.reshape(-1, 2)[np.isfinite(pairs.reshape(-1, 2)).all(axis=1)]
                     look = {"marker": marker, "facecolors": "none", "edgecolors": colors[label], "linewidths": 1.2}
                     axes.scatter(pairs[:, 0], pairs[:, 1], s=26, zorder=3, **look)
