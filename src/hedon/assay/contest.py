@@ -16,8 +16,7 @@ from scipy.integrate import trapezoid
 from hedon.analysis.descent.genealogy import Genealogy, depth, founder, genealogy, living_at
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.assay.landscape import AssayError
-from hedon.assay.resample import PERMUTATIONS, Floats, Ints, chance, world_draws, world_interval
-from hedon.assay.surface import Estimate
+from hedon.assay.resample import PERMUTATIONS, Estimate, Floats, Ints, bounded, chance, world_draws, world_interval
 from hedon.config.config import Config
 from hedon.record.founder import Founders
 from hedon.record.founder_table import load_founders
@@ -203,14 +202,12 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, st
     draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
     with np.errstate(divide="ignore", invalid="ignore"):
         strength = (draws @ change) / (draws @ variation)
-    low, high = world_interval(strength[1:], worlds)
     ends = np.array([each.share[-1] for each in lines])
-    end_low, end_high = world_interval((draws[1:] @ ends) / worlds, worlds)
     return Contest(
         groups=groups,
         lines=tuple(lines),
-        selection=Estimate(float(strength[0]), float(low), float(high)),
-        share=Estimate(float(ends.mean()), float(end_low), float(end_high)),
+        selection=bounded(strength[0], strength[1:], worlds),
+        share=bounded(ends.mean(), (draws[1:] @ ends) / worlds, worlds),
         start=float(np.mean([each.share[0] for each in lines])),
         p=_exchange(lines, rng),
         fixed=int((ends == 1).sum()),

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hedon.assay.contest import Lines
-from hedon.assay.resample import Floats, world_draws, world_interval
-from hedon.assay.surface import Estimate
+from hedon.assay.resample import Estimate, Floats, bounded, world_draws, world_interval
 
 COEXIST, EXCLUDE, NONE, OPEN = "coexist", "exclude", "none", "open"
 VERDICTS = {
@@ -106,7 +105,6 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     share = np.linspace(starts[0], starts[-1], GRID)
     lines = base[:, None] + slope[:, None] * share
     low, high = world_interval(lines[1:], len(seeds))
-    slope_low, slope_high = world_interval(slope[1:], len(seeds))
     within = share[(low <= 0) & (high >= 0)]
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = -base[0] / slope[0]
@@ -115,7 +113,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     return Frequency(
         groups=groups,
         shares=found,
-        slope=Estimate(float(slope[0]), float(slope_low), float(slope_high)),
+        slope=bounded(slope[0], slope[1:], len(seeds)),
         crossing=Estimate(float(crossing) if known else np.nan, *bounds),
         line=np.stack([share, lines[0], low, high]),
         verdict=_verdict(low, high),
@@ -140,8 +138,8 @@ def _at_share(start: float, worlds: Sequence[Lines], sums: Floats, draws: Floats
     return AtShare(
         start=start,
         share=float(mean),
-        selection=Estimate(float(strength[0]), *map(float, world_interval(strength[1:], draws.shape[1]))),
-        end=Estimate(float(ends.mean()), *map(float, world_interval(again, len(ends)))),
+        selection=bounded(strength[0], strength[1:], draws.shape[1]),
+        end=bounded(ends.mean(), again, len(ends)),
         worlds=len(worlds),
         extinct=sum(lines.ended for lines in worlds),
         fixed=int((ends == 1).sum()),

@@ -9,12 +9,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable
-from hedon.assay.surface import Estimate
+from hedon.assay.resample import Estimate
 from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
-from hedon.record.error import RecordError
+from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.markdown import pipe_table
 from hedon.report.summary import plain
@@ -84,12 +84,10 @@ def write_assay(folder: Path, answer: Answer) -> list[Path]:
     for each in (table for table in tables if table.shown):
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{kind}.json": summary + "\n", f"{kind}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
-    try:
+    with one_writer(folder, "the assay"):
         for name, text in files.items():
             write_atomically(folder / name, lambda file, text=text: file.write(text.encode()))
         return [*(folder / name for name in files), save_figure(answer.figure, folder / f"{kind}.png")]
-    except OSError as error:
-        raise RecordError(f"cannot write the assay into {folder}: {error}") from error
 
 
 def world_line(runs: Sequence[Run]) -> str:

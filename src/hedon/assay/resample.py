@@ -1,6 +1,8 @@
 """Intervals over worlds, and chances under the null that genes do nothing."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +51,26 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
     enough = known.mean(axis=0) >= 1.0 - _FAILED
     bounds = np.nanquantile(np.where(known | ~enough, np.where(known, values, 0.0), np.nan), (tail, 1.0 - tail), axis=0)
     return np.where(enough, bounds, np.nan)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with the bounds of its 95 % interval over worlds; NaN where there is none."""
+
+    value: float
+    low: float
+    high: float
+
+
+def bounded(value: float, replicates: NDArray[np.float64] | Sequence[float], worlds: int) -> Estimate:
+    """An estimate with its interval; see `world_interval`.
+
+    Args:
+        value: of all worlds.
+        replicates: one per bootstrap sample, (replicates,).
+        worlds: how many were drawn.
+    """
+    return Estimate(float(value), *map(float, world_interval(np.asarray(replicates), worlds)))
 
 
 def within(values: Floats, world: Ints) -> Floats:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import BSpline
 
-from hedon.assay.resample import Floats, Ints, within, world_draws, world_interval
+from hedon.assay.resample import Estimate, Floats, Ints, bounded, within, world_draws, world_interval
 
 INTERVALS = 4
 """Pieces of the spline along each gene."""
@@ -20,15 +20,6 @@ GRID = 41
 _DEGREE = 3
 _PENALTIES = np.logspace(-2, 7, 28)
 _RIDGE = 1e-8  # makes up for the constant, which the means of worlds take away
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A number with the bounds of its 95 % interval over worlds; NaN where there is none."""
-
-    value: float
-    low: float
-    high: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +77,7 @@ class Smooth:
         """Relative fitness at points within the range, (count, 2)."""
         basis = _basis(points, self.knots)
         return [
-            _estimate(values[0], values[1:], self.worlds)
+            bounded(values[0], values[1:], self.worlds)
             for values in ((basis @ np.vstack([self.coefficients, self.draws]).T) + self.shift).tolist()
         ]
 
@@ -111,10 +102,9 @@ def fit_quadratic(z: Floats, fitness: Floats, world: Ints, rng: np.random.Genera
     worlds, left, right = _moments(terms / scale, deviation, world)
     draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
     found = _solve(draws, left, right, np.eye(5) * _RIDGE) / scale
-    low, high = world_interval(found[1:], worlds)
-    told = [Estimate(float(found[0, i]), float(low[i]), float(high[i])) for i in range(5)]
+    told = [bounded(found[0, i], found[1:, i], worlds) for i in range(5)]
     optima = np.array([_maximum(row) for row in found])
-    optimum = [_estimate(optima[0, i], optima[1:, i], worlds) for i in range(2)]
+    optimum = [bounded(optima[0, i], optima[1:, i], worlds) for i in range(2)]
     return Quadratic((told[0], told[1]), (told[2], told[3]), told[4], (optimum[0], optimum[1]), found[0])
 
 
@@ -152,8 +142,8 @@ def fit_smooth(
         value=surface[0].reshape(shape),
         low=low.reshape(shape),
         high=high.reshape(shape),
-        slope=(_estimate(slopes[0][0], slopes[0][1:], worlds), _estimate(slopes[1][0], slopes[1][1:], worlds)),
-        optimum=(_estimate(best[0, 0], best[1:, 0], worlds), _estimate(best[0, 1], best[1:, 1], worlds)),
+        slope=(bounded(slopes[0][0], slopes[0][1:], worlds), bounded(slopes[1][0], slopes[1][1:], worlds)),
+        optimum=(bounded(best[0, 0], best[1:, 0], worlds), bounded(best[0, 1], best[1:, 1], worlds)),
         at_edge=any(i in (0, GRID - 1) for i in top),
         freedom=freedom,
         coefficients=found[0],
@@ -162,11 +152,6 @@ def fit_smooth(
         knots=knots,
         worlds=worlds,
     )
-
-
-def _estimate(value: float, replicates: Floats, worlds: int) -> Estimate:
-    low, high = world_interval(np.asarray(replicates), worlds)
-    return Estimate(float(value), float(low), float(high))
 
 
 def _moments(terms: Floats, deviation: Floats, world: Ints) -> tuple[int, Floats, Floats]:

@@ -61,22 +61,29 @@ class FolderLock:
 
 
 @contextmanager
-def one_writer(folder: Path) -> Iterator[None]:
-    """Makes a folder and lets one process at a time write a report into it; the others wait.
+def one_writer(folder: Path, what: str) -> Iterator[None]:
+    """Makes a folder and lets one process at a time write into it; the others wait.
 
     The lock is on the folder itself, so that no file is left in it.
 
+    Args:
+        folder: made if it is missing.
+        what: is written, for the message.
+
     Raises:
-        OSError: the folder cannot be made or opened.
+        RecordError: what is written within cannot be, for whatever reason the file system gives.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
-        with suppress(OSError):  # a file system without locks
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(descriptor)
+        folder.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            with suppress(OSError):  # a file system without locks
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(descriptor)
+    except OSError as error:
+        raise RecordError(f"cannot write {what} into {folder}: {error}") from error
 
 
 def _write_owner(descriptor: int) -> None:

@@ -10,7 +10,6 @@ from typing import Any
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
 from hedon.record.atomic import write_atomically
-from hedon.record.error import RecordError
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.summary import plain
@@ -68,12 +67,9 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
         buffer = io.BytesIO()
         table.rows.write_csv(buffer)
         contents[f"{name}.csv"] = buffer.getvalue()
-    try:
-        with one_writer(folder):
-            for name, content in contents.items():
-                write_atomically(folder / name, lambda file, content=content: file.write(content))
-    except OSError as error:
-        raise RecordError(f"cannot write the analysis into {folder}: {error}") from error
+    with one_writer(folder, "the analysis"):
+        for name, content in contents.items():
+            write_atomically(folder / name, lambda file, content=content: file.write(content))
     return [folder / name for name in contents]
 
 

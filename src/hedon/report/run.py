@@ -48,21 +48,18 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
     """
     folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
     faults: list[RecordError] = []
-    try:
-        with one_writer(folder):
-            analysis = analyze(runs)
-            summaries = [_write_summary(run) for run in runs]
-            (folder / FIGURES).mkdir(exist_ok=True)
-            figures: list[FigureFile] = []
-            for group, named in _figures(analysis, faults):
-                figures.append(_save(folder, group, named, {figure.path for figure in figures}))
-            answers = write_analysis(analysis, folder / ANALYSIS)[0]
-            pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, figures), strict=True))
-            for name, text in pages.items():
-                content = text.encode()
-                write_atomically(folder / name, lambda file, content=content: file.write(content))
-    except OSError as error:
-        raise RecordError(f"cannot write the report into {folder}: {error}") from error
+    with one_writer(folder, "the report"):
+        analysis = analyze(runs)
+        summaries = [_write_summary(run) for run in runs]
+        (folder / FIGURES).mkdir(exist_ok=True)
+        figures: list[FigureFile] = []
+        for group, named in _figures(analysis, faults):
+            figures.append(_save(folder, group, named, {figure.path for figure in figures}))
+        answers = write_analysis(analysis, folder / ANALYSIS)[0]
+        pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, figures), strict=True))
+        for name, text in pages.items():
+            content = text.encode()
+            write_atomically(folder / name, lambda file, content=content: file.write(content))
     if faults:
         raise faults[0]
     return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in figures)]

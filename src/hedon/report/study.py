@@ -13,7 +13,6 @@ from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure, svg_bytes
 from hedon.record.atomic import write_atomically
-from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
 from hedon.report.page import FigureFile
@@ -43,12 +42,8 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
     Raises:
         RecordError: the folder cannot be written.
     """
-    try:
-        with one_writer(folder):
-            made = _write(studies, gathered, folder)
-    except OSError as error:
-        raise RecordError(f"cannot write the studies into {folder}: {error}") from error
-    return folder / HTML, made
+    with one_writer(folder, "the studies"):
+        return folder / HTML, _write(studies, gathered, folder)
 
 
 def _write(studies: Sequence[Study], gathered: Gathered, folder: Path) -> list[BuiltItem]:

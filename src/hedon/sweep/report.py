@@ -34,7 +34,8 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
         The files written, the page first.
 
     Raises:
-        SweepError: there is no world yet, a column is not one, or the folder cannot be written.
+        SweepError: there is no world yet, or a column is not one.
+        RecordError: the folder cannot be written.
     """
     if table.is_empty():
         raise SweepError("no batch of the sweep is done yet: there is nothing to report")
@@ -48,13 +49,10 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
             figures[f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name.replace('.', '-')}"] = draw_map(
                 table, pair, name, title
             )
-    try:
-        with one_writer(folder):
-            files = [save_figure(figure, folder / f"{name}.png") for name, figure in figures.items()]
-            page = _page(plan, table, shown, list(figures)).encode()
-            write_atomically(folder / PAGE, lambda file: file.write(page))
-    except OSError as error:
-        raise SweepError(f"cannot write the report into {folder}: {error}") from error
+    with one_writer(folder, "the report"):
+        files = [save_figure(figure, folder / f"{name}.png") for name, figure in figures.items()]
+        page = _page(plan, table, shown, list(figures)).encode()
+        write_atomically(folder / PAGE, lambda file: file.write(page))
     return [folder / PAGE, *files]
 
 
