@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from resumed_run import SMALL
+from two_stores import FED
 
 from hedon.config.config import Config
 from hedon.config.load import load_config
@@ -25,13 +26,13 @@ SHARK = ('species.shark.diet.eats=[["shark", 0.6], ["normal", 1.0]]', "species.s
 WORLDS = {
     "cannibals alone": SHARK,
     "cannibals that need no food": ('species.shark.diet.eats=[["shark", 0.6]]',),
-    "one species that starves": ('energy.starvation="death"',),
+    "one species that starves": ('energy.at_zero="death"',),
     "two species that leave each other alone": ("species.a.population.capacity=12", "species.b.population.capacity=12"),
     "hunters that share each prey": (
         'world.prey_sharing="each"',
         "species.prey.birth.kappa=0.1",
         'species.hunter.diet.eats=[["prey", 0.5], ["hunter", 0.5]]',
-        'species.hunter.energy.starvation="death"',
+        'species.hunter.energy.at_zero="death"',
     ),
     "species that differ in everything": (
         "genome.neutral_count=4",
@@ -39,16 +40,16 @@ WORLDS = {
         "obstacle.min_side=10",
         "obstacle.max_side=10",
         "obstacle.damage=0.01",
-        "food.normal.nutrient=1",
-        "food.poison.energy=-0.6",
-        "food.poison.toxin=1",
+        *FED[:-1],
+        "food.poison.gives.energy=-0.6",
+        "food.poison.gives.toxin=1",
         "food.normal.schedule.growth_rate={points=[[0, 1.0], [100, 0.5]], period=200}",
         "species.prey.genome.neutral_count=3",
         'species.prey.birth.mating="pairs"',
         "species.prey.birth.mating_range=100",
         "species.prey.reward.drive_reduction_coef=0.1",
         'species.hunter.diet.eats=[["prey", 0.5]]',
-        'species.hunter.energy.starvation="death"',
+        'species.hunter.energy.at_zero="death"',
         "species.hunter.diet.digestion_steps=10",
         'species.hunter.learning.policy="ppo"',
         'species.hunter.birth.network="learned"',

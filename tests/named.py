@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from ppo_reference import split
 
-from hedon.config.layout import INNER_STATES, layouts, observation_columns
+from hedon.config.layout import layouts, observation_columns, store_columns
 from hedon.experiment.simulation import World
 from hedon.record.schema import columns_of
 
@@ -88,7 +88,7 @@ def _of_living(world: World, index: int, living: dict[str, NDArray[Any]]) -> Ite
     yield "place", short(living["x"], living["y"])
     yield "angle", short(living["angle"])
     yield "velocity", short(*(living[key] for key in VELOCITY))
-    for key in INNER_STATES[1:]:
+    for key in store_columns(world.config):
         if key in living:
             yield key, short(living[key])
     name = list(world.config.species)[index]

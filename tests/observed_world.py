@@ -13,7 +13,6 @@ from hedon.record.schema import CAUSES
 
 FIRST, SECOND = 1, 2
 """Marks of a pair of bodies: the mouth of the first, or of the second, touches the other, which it may eat."""
-INNER = ("nutrient", "toxin")
 
 
 def read_world(simulation: Simulation) -> World:
@@ -50,7 +49,7 @@ def read_world(simulation: Simulation) -> World:
 
 def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
     rows, living = world.agents(), world.living
-    known = {each.name for each in fields(Agent)} & set(rows) - {"genome"}
+    known = {each.name for each in fields(Agent)} & set(rows) - {"genome", "store"}
     columns = {name: rows[name].tolist() for name in known}
     for name in ("digestion", "ready_until"):
         if len(world.view(name)):
@@ -61,11 +60,11 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
     memory = world.view("memory").reshape(len(world.view("alive")), -1)[living]
     kept = [species.reward.memory for species in world.config.species.values()]
     genomes = rows["genome"].astype(float)
+    stores = [list(species.store) for species in world.config.species.values()]
     for i in range(len(living)):
-        agent = Agent(**{name: column[i] for name, column in columns.items()}, genome=genomes[i])
+        held = {name: float(rows[name][i]) for name in stores[columns["species"][i]]}
+        agent = Agent(**{name: column[i] for name, column in columns.items()}, genome=genomes[i], store=held)
         agent.genome = agent.genome[: len(made[agent.species].genes)]
-        for name in set(INNER) - set(made[agent.species].inner):
-            setattr(agent, name, 0.0)  # what others of the world have
         agent.memory = memory[i, : kept[agent.species]].tolist()
         agents.append(agent)
     return agents

@@ -10,6 +10,7 @@ from observed_touch import assert_touches, touch_bits
 from observed_world import food_slots, read_deeds, read_world, rollout_rows
 from reference.draw import normals
 from reference.heredity import first_log_sd, inherited_network
+from reference.meal import can_digest
 from reference.model import Model
 from reference.reward import inputs
 from reference.sense import body_sense, smells
@@ -35,7 +36,8 @@ class Judge:
         self.simulation, self.model = simulation, Model(simulation.config, seed)
         species = self.model.rules.species
         self.force = FORCE * math.sqrt(2) * max(each.max_force for each in species)
-        self.costs = 2e-12 + self.force * max(each.energy.action_cost + each.nutrient.action_cost for each in species)
+        costs = [sum(store.action_cost for store in each.stores.values()) for each in species]
+        self.costs = 2e-12 + self.force * max(costs)
         self.happened: dict[str, float] = {}
         self.born_with: dict[int, np.ndarray] = {}
         """The network that each agent had when it was first seen."""
@@ -106,9 +108,8 @@ class Judge:
             mated=sum(child.mate_id >= 0 for child in born),
             alone=sum(child.mate_id < 0 for child in born),
             waiting=sum(agent.ready_until >= expected.world.step for agent in expected.world.agents),
-            poisoned=sum(agent.toxin > 1 for agent in before.agents),
-            sated=sum(agent.nutrient == rules.of(agent).nutrient.capacity for agent in before.agents),
-            empty=sum("nutrient" in rules.of(agent).holds and agent.nutrient == 0 for agent in before.agents),
+            **_held(rules, before),
+            refused=sum(not can_digest(rules, turn, kind) for turn in turns for kind, _ in turn.deed.mouthfuls),
             eaten_foods=len(expected.world.eaten_foods),
             switched=sum(a.center != b.center for a, b in zip(before.stocks, expected.world.stocks, strict=True)),
             told=sum(rules.of(turn.agent).learning.policy == "external" and any(turn.deed.action) for turn in turns),
@@ -210,6 +211,16 @@ def command(simulation: Simulation) -> None:
         if species.learning.policy == "external" and step % 7 == 0:
             actions = np.random.default_rng(step).normal(size=(1, species.population.capacity, 2))
             simulation.engine.set_actions(s, actions.astype(np.float32))
+
+
+def _held(rules: Rules, world: World) -> dict[str, float]:
+    """How often a store weakens motors, and how often stores beside energy are full, and empty."""
+    held = [(agent.store[name], each) for agent in world.agents for name, each in rules.of(agent).store.items()]
+    return {
+        "poisoned": sum(amount > 1 for amount, store in held if store.motor_threshold),
+        "sated": sum(amount == store.capacity for amount, store in held),
+        "empty": sum(amount == 0 for amount, store in held if not store.motor_threshold),
+    }
 
 
 def _overlaps(rules: Rules, world: World) -> int:

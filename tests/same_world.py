@@ -26,7 +26,7 @@ EXACT = (
     *("agent_id", "species", "parent_id", "mate_id", "generation", "birth_step", "children", "eaten"),
     *("digestion", "ready_until", "resident_slot"),
 )
-STORED = ("energy", "nutrient", "toxin", "birth_energy", "energy_gained", "energy_spent")
+STORED = ("energy", "store", "birth_energy", "energy_gained", "energy_spent")
 assert {*MEASURED, *EXACT, *STORED, "memory"} == {each.name for each in fields(Agent)}
 
 
@@ -40,7 +40,9 @@ def assert_close(actual, expected, tolerance, share=1e-12):
 def column(world: World, name: str) -> np.ndarray:
     """A field of all agents; where each has several numbers, one agent's after another's."""
     values = [getattr(agent, name) for agent in world.agents]
-    return np.concatenate([*values, np.zeros(0)]) if name in ("genome", "memory") else np.array(values)
+    if name == "store":
+        values = [np.array(list(each.values()), float) for each in values]
+    return np.concatenate([*values, np.zeros(0)]) if name in ("genome", "memory", "store") else np.array(values)
 
 
 def assert_same_world(actual: World, expected: World, costs: float, force: float, late: bool) -> None:

@@ -6,6 +6,8 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+NUMBERS = ("gives", "needs")
+"""Settings that are tables of numbers."""
 PAGE = Path(__file__).parents[1] / "docs" / "config.md"
 
 
@@ -40,7 +42,7 @@ def values(part: Any, path: str = "") -> dict[str, Any]:
     inner = part.items() if isinstance(part, dict) else ((each.name, getattr(part, each.name)) for each in fields(part))
     found = {}
     for name, value in inner:
-        if isinstance(value, dict) or is_dataclass(value):
+        if name not in NUMBERS and (isinstance(value, dict) or is_dataclass(value)):
             found |= values(value, f"{path}{name}.")
         else:
             found[f"{path}{name}".removeprefix("species.agent.")] = _plain(value)

@@ -22,7 +22,7 @@ SETTINGS = {
     "one agent": ("baseline", ("population.initial_count=1", *CHILDLESS, *DEATHLESS)),
     "births on the spot": ("baseline", ("birth.distance_sd=0.001", "birth.kappa=0.02", "hazard.kappa=0.0001")),
     "births and deaths all the time": ("small", ("birth.kappa=0.2", "hazard.kappa=0.3", "birth.attempts=100")),
-    "starvation kills": ("poison", ('energy.starvation="death"', "birth.kappa=0.01", "energy.basic_cost=0.01")),
+    "starvation kills": ("poison", ('energy.at_zero="death"', "birth.kappa=0.01", "energy.basic_cost=0.01")),
 }
 
 

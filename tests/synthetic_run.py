@@ -182,7 +182,7 @@ def write_run(
         run_seconds=10.0,
     )
     done, extinct_steps = [], []
-    others = "".join(f"[food.{kind}]\nenergy = 0.2\n" for kind in food_kinds if kind != "normal")
+    others = "".join(f"[food.{kind}]\ngives.energy = 0.2\n" for kind in food_kinds if kind != "normal")
     with Writer(folder, f'preset = "baseline"\n{others}', manifest) as writer:
         last = []
         for index, seed in enumerate(manifest.seeds):

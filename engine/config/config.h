@@ -17,8 +17,13 @@ inline constexpr int LEARNING_GENES = std::size(EnumNames<GenomeLearning>::text)
 inline constexpr int FAMILY_GENES = std::size(EnumNames<GenomeFamily>::text);
 inline constexpr int RULE_USES = std::size(EnumNames<RuleUse>::text);
 
-/// What an agent holds, in the order in which drives count them.
-enum InnerState : int32_t { ENERGY, NUTRIENT, TOXIN, INNER_STATES };
+/// The first store of every species.
+inline constexpr int32_t ENERGY = 0;
+
+/// The settings of a store of a species: energy, then the others in the order of the config.
+HEDON_FN const StoreConfig& store_of(const SpeciesConfig& config, int32_t store) {
+  return store == ENERGY ? config.energy : config.store[store - 1];
+}
 
 /// One gene.
 struct Gene {
@@ -47,7 +52,7 @@ struct LearningGene {
 /// see_mean         mean over the rays of the reading of sight channel `index`
 /// see_max          the largest of them
 /// smell            mean over the noses of what they smell of channel `index`
-/// drive_reduction  by how much inner states came closer to their set points, in shares of their capacities
+/// drive_reduction  by how much stores came closer to their set points, in shares of what each is measured by
 HEDON_ENUM(RewardInput, food, action, see_mean, see_max, smell, drive_reduction)
 
 constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
@@ -78,17 +83,17 @@ struct SpeciesLayout {
   FixedList<int32_t, MAX_TYPES> smells;   ///< types that it smells, by channel, ascending
   FixedList<float, MAX_FOOD_KINDS> eats_food;  ///< factor on the energy of each kind; 0: it does not eat this kind
   FixedList<float, MAX_SPECIES> eats_species;  ///< share of the energy of each species that it gains; 0: none
-  int32_t has_nutrient;                        ///< 1 if its food brings it
-  int32_t has_toxin;
-  FixedList<int32_t, RULE_USES> rules;  ///< 1 for each use that a function of the caller decides
-  FixedList<Gene, MAX_GENES> genes;     ///< the genome, in order
+  FixedList<float, MAX_FOOD_KINDS * MAX_STORES> gives;  ///< what each kind gives of each of its stores
+  FixedList<float, MAX_FOOD_KINDS * MAX_STORES> needs;  ///< how much it must hold of each to eat each kind
+  FixedList<int32_t, RULE_USES> rules;                  ///< 1 for each use that a function of the caller decides
+  FixedList<Gene, MAX_GENES> genes;                     ///< the genome, in order
   FixedList<LearningGene, LEARNING_GENES> learning;
-  FixedList<int32_t, FAMILY_GENES> family;      ///< gene that multiplies each setting by ten to its power; -1 for none
-  FixedList<int32_t, INNER_STATES> set_points;  ///< gene of the set point of each inner state; -1 for none
+  FixedList<int32_t, FAMILY_GENES> family;    ///< gene that multiplies each setting by ten to its power; -1 for none
+  FixedList<int32_t, MAX_STORES> set_points;  ///< gene of the set point of each store; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
 
-  HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species,
-               has_nutrient, has_toxin, rules, genes, learning, family, set_points, terms)
+  HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
+               needs, rules, genes, learning, family, set_points, terms)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
@@ -99,8 +104,8 @@ struct SpeciesLayout {
                                      TYPE,
                                      Limit::from(-1e4, 1e4),
                                      YES,
-                                     YES,
-                                     YES,
+                                     Limit::from(-1e4, 1e4),
+                                     Limit::from(0, 1e6),
                                      YES,
                                      Limit(),
                                      Limit(),

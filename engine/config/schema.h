@@ -17,7 +17,8 @@ inline constexpr int MAX_FOOD_KINDS = 8;
 inline constexpr int MAX_OBSTACLES = 256;
 inline constexpr int MAX_RAYS = 32;
 inline constexpr int MAX_TOUCH_BITS = 128;
-inline constexpr int MAX_SMELLS = 12;
+inline constexpr int MAX_STORES = 8;
+inline constexpr int MAX_OBSERVED = 15;
 inline constexpr int MAX_GENES = 64;
 inline constexpr float MAX_FORCE = 1000000.0;
 inline constexpr float MAX_FACTOR = 1000.0;
@@ -125,19 +126,15 @@ struct FoodSchedule {
 };
 
 struct FoodConfig {
-  float energy;  ///< [energy]
-  float nutrient;  ///< [nutrient]
-  float toxin;  ///< [toxin]
   float growth_rate;  ///< [food/step]
   int32_t capacity;  ///< [food]
   int32_t initial_count;  ///< [food]
   int32_t candidates;
   PlacementConfig placement;
   FoodSchedule schedule;
-  HEDON_FIELDS(FoodConfig, energy, nutrient, toxin, growth_rate, capacity, initial_count, candidates, placement,
-      schedule)
-  static constexpr Limit LIMITS[] = {Limit::from(-10000, 10000), Limit::from(0, 10000), Limit::from(0, 10000),
-      Limit::from(0, 1000), Limit::from(0, 100000), Limit::from(0, 100000), Limit::from(1, 10000), Limit(), Limit()};
+  HEDON_FIELDS(FoodConfig, growth_rate, capacity, initial_count, candidates, placement, schedule)
+  static constexpr Limit LIMITS[] = {Limit::from(0, 1000), Limit::from(0, 100000), Limit::from(0, 100000),
+      Limit::from(1, 10000), Limit(), Limit()};
 };
 
 HEDON_ENUM(WorldEatenFood, gone, seen)
@@ -211,37 +208,24 @@ struct DietConfig {
   static constexpr Limit LIMITS[] = {Limit::from(0, 1000000)};
 };
 
-HEDON_ENUM(EnergyStarvation, floor, death)
-struct EnergyConfig {
-  float initial;  ///< [energy]
-  float capacity;  ///< [energy]
-  float basic_cost;  ///< [energy/step]
-  float action_cost;  ///< [energy/(step·force)]
-  float birth_share;
-  EnergyStarvation starvation;
-  HEDON_FIELDS(EnergyConfig, initial, capacity, basic_cost, action_cost, birth_share, starvation)
-  static constexpr Limit LIMITS[] = {Limit::from(0, 1000000), Limit::over(0, 1000000), Limit::from(0, 10000),
-      Limit::from(0, 10000), Limit::from(0, 1), Limit()};
-};
-
-struct NutrientConfig {
-  float initial;  ///< [nutrient]
-  float capacity;  ///< [nutrient]
-  float basic_cost;  ///< [nutrient/step]
-  float action_cost;  ///< [nutrient/(step·force)]
-  float hazard_share;
+HEDON_ENUM(StoreAtZero, floor, death)
+struct StoreConfig {
+  float initial;  ///< [amount]
+  float capacity;  ///< [amount]
+  float basic_cost;  ///< [amount/step]
+  float action_cost;  ///< [amount/(step·force)]
+  float decay;  ///< [1/step]
+  float child_share;
+  StoreAtZero at_zero;
+  float hazard_weight;
+  float motor_threshold;  ///< [amount]
   int32_t observed;
-  HEDON_FIELDS(NutrientConfig, initial, capacity, basic_cost, action_cost, hazard_share, observed)
+  float scale;  ///< [amount]
+  HEDON_FIELDS(StoreConfig, initial, capacity, basic_cost, action_cost, decay, child_share, at_zero, hazard_weight,
+      motor_threshold, observed, scale)
   static constexpr Limit LIMITS[] = {Limit::from(0, 1000000), Limit::over(0, 1000000), Limit::from(0, 10000),
-      Limit::from(0, 10000), Limit::from(0, 10000), Limit::from(0, 1)};
-};
-
-struct ToxinConfig {
-  float decay;  ///< [toxin/step]
-  float threshold;  ///< [toxin]
-  int32_t observed;
-  HEDON_FIELDS(ToxinConfig, decay, threshold, observed)
-  static constexpr Limit LIMITS[] = {Limit::from(0, 10000), Limit::over(0, 1000), Limit::from(0, 1)};
+      Limit::from(0, 10000), Limit::from(0, 1), Limit::from(0, 1), Limit(), Limit::from(0, 10000), Limit::from(0, 1000),
+      Limit::from(0, 1), Limit::from(0.001, 1000000)};
 };
 
 struct HazardSchedule {
@@ -324,17 +308,15 @@ struct SpeciesConfig {
   SensorConfig sensor;
   PopulationConfig population;
   DietConfig diet;
-  EnergyConfig energy;
-  NutrientConfig nutrient;
-  ToxinConfig toxin;
+  StoreConfig energy;
+  FixedList<StoreConfig, 7> store;
   HazardConfig hazard;
   BirthConfig birth;
   RewardConfig reward;
   LearningConfig learning;
-  HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, nutrient, toxin, hazard, birth, reward,
-      learning)
+  HEDON_FIELDS(SpeciesConfig, body, motor, sensor, population, diet, energy, store, hazard, birth, reward, learning)
   static constexpr Limit LIMITS[] = {Limit(), Limit(), Limit(), Limit(), Limit(), Limit(), Limit(), Limit(), Limit(),
-      Limit(), Limit(), Limit()};
+      Limit(), Limit()};
 };
 
 struct Settings {

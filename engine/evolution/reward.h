@@ -19,10 +19,10 @@ struct RewardInputs {
   int32_t rays;
   const float* smelled;  ///< by channel, then by nose
   int32_t noses;
-  double before[INNER_STATES];    ///< inner states before this step's meals and costs
-  double now[INNER_STATES];       ///< after them
-  double capacity[INNER_STATES];  ///< of each; for toxin its threshold
-  double age;                     ///< steps lived, this one included
+  const double* before;        ///< what it held of each store before this step's meals and costs
+  double now[MAX_STORES];      ///< after them
+  double measure[MAX_STORES];  ///< of each store: what its set point is a share of
+  double age;                  ///< steps lived, this one included
 };
 
 /// Mean or largest reading, in [0, 1], of the rays that met a type; 0 for the others.
@@ -37,14 +37,13 @@ HEDON_FN float sight_of(const RewardInputs& inputs, int32_t channel, bool mean) 
   return mean ? sum / static_cast<float>(inputs.rays) : largest;
 }
 
-/// Drive: the distance of inner states from their set points, in shares of their capacities. Keramati and Gutkin
-/// (2014).
-HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, const double* states, const double* capacity) {
+/// Drive: the distance of stores from their set points, in shares of their measures. Keramati and Gutkin (2014).
+HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, const double* held, const double* measure) {
   double squared = 0.0, only = 0.0;
   int32_t count = 0;
-  for (int32_t s = 0; s < INNER_STATES; ++s) {
+  for (int32_t s = 0; s < layout.set_points.count; ++s) {
     if (layout.set_points[s] < 0) continue;
-    only = static_cast<double>(genome[layout.set_points[s]]) - states[s] / capacity[s];
+    only = static_cast<double>(genome[layout.set_points[s]]) - held[s] / measure[s];
     squared += only * only;
     ++count;
   }
@@ -53,8 +52,8 @@ HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, const do
 
 /// The drive before this step's meals and costs less the drive after them.
 HEDON_FN float drive_reduction(const SpeciesLayout& layout, const float* genome, const RewardInputs& inputs) {
-  return static_cast<float>(drive(layout, genome, inputs.before, inputs.capacity) -
-                            drive(layout, genome, inputs.now, inputs.capacity));
+  return static_cast<float>(drive(layout, genome, inputs.before, inputs.measure) -
+                            drive(layout, genome, inputs.now, inputs.measure));
 }
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }

@@ -137,8 +137,11 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   check_types(complaint, path + "sees", own.sees, types);
   check_types(complaint, path + "touches", own.touches, types);
   check_types(complaint, path + "smells", own.smells, config.species.count + config.food.count);
-  complaint.need(own.smells.count * sensor.noses <= MAX_SMELLS, path + "smells", own.smells.count,
-                 "at most " + std::to_string(MAX_SMELLS / sensor.noses));
+  const int32_t stores = 1 + config.species[s].store.count;
+  int32_t observed = own.smells.count * sensor.noses;
+  for (int32_t i = 0; i < stores; ++i) observed += store_of(config.species[s], i).observed;
+  complaint.need(observed <= MAX_OBSERVED, path + "smells", own.smells.count,
+                 "with the observed stores at most " + std::to_string(MAX_OBSERVED));
   check_terms(complaint, path + "terms", config, own);
   for (int32_t i = 0; i < own.learning.count; ++i)
     check_gene(complaint, path + "learning.gene", own, own.learning[i].gene);
@@ -149,7 +152,9 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   count("eats_species", own.eats_species.count, config.species.count, "one share for each species");
   count("rules", own.rules.count, RULE_USES, "one for each use of a rule");
   count("family", own.family.count, FAMILY_GENES, "one for each setting of a family that a gene may set");
-  count("set_points", own.set_points.count, INNER_STATES, "one for each inner state");
+  count("set_points", own.set_points.count, stores, "one for each store");
+  count("gives", own.gives.count, config.food.count * stores, "one for each kind of food and each store");
+  count("needs", own.needs.count, config.food.count * stores, "one for each kind of food and each store");
   for (int32_t i = 0; i < own.family.count; ++i) check_gene(complaint, path + "family", own, own.family[i]);
   for (int32_t i = 0; i < own.set_points.count; ++i) check_gene(complaint, path + "set_points", own, own.set_points[i]);
   complaint.need(own.min_force < own.max_force, path + "min_force", own.min_force, "below max_force");
@@ -170,8 +175,11 @@ void check_species(Complaint& complaint, const std::string& path, const Config& 
   const bool plain = own.birth.network == BirthNetwork::none && own.birth.mating == BirthMating::none;
   complaint.need(plain || config.world.inheritance == WorldInheritance::at_birth, path + "birth.network", 0,
                  "none, as mating, where newborns inherit when the window ends");
-  complaint.need(own.energy.initial <= own.energy.capacity, path + "energy.initial", own.energy.initial,
-                 "at most energy.capacity");
+  for (int32_t i = 0; i <= own.store.count; ++i) {
+    const StoreConfig& store = store_of(own, i);
+    const std::string place = path + (i == ENERGY ? "energy" : item("store", i - 1));
+    complaint.need(store.initial <= store.capacity, place + ".initial", store.initial, "at most its capacity");
+  }
 }
 
 }  // namespace

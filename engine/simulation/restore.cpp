@@ -136,6 +136,7 @@ bool check_life(Inspector& in) {
          in.within<int32_t>("life.parent_id", -1, MOST) && in.within<int32_t>("life.generation", 0, MOST) &&
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
+         (in.world_.shape->stores == 1 || in.within<double>("store", 0, LARGEST)) &&
          (!in.world_.shape->learning ||
           (in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&

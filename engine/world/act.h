@@ -5,8 +5,8 @@
 
 #include "base/device.h"
 #include "base/random.h"
-#include "world/inner.h"
 #include "world/sensor.h"
+#include "world/store.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -77,8 +77,10 @@ HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const float range = motor.max_force - motor.min_force;
   float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
   float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
-  if (species.layout->has_toxin != 0) {
-    const float left_over = static_cast<float>(strength(species.config->toxin, world.inner(slot)[1]));
+  for (int32_t i = 0; i < species.stores(); ++i) {
+    const float threshold = store_of(*species.config, i).motor_threshold;
+    if (!(threshold > 0.0f)) continue;
+    const float left_over = static_cast<float>(strength(threshold, world.held(slot, i)));
     left *= left_over;
     right *= left_over;
   }

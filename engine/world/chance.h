@@ -17,9 +17,9 @@ HEDON_FN double hazard_by_store(const HazardConfig& config, double store) {
   return config.kappa * (x / (1.0 + x));
 }
 
-/// Probability of dying in a step at age `age` [step] and energy `energy`.
-HEDON_FN double hazard(const HazardConfig& config, double age, double energy) {
-  return hazard_by_store(config, energy) + config.alpha_age * exp_double(config.beta_age * age);
+/// The part that depends on age [step].
+HEDON_FN double hazard_by_age(const HazardConfig& config, double age) {
+  return config.alpha_age * exp_double(config.beta_age * age);
 }
 
 /// Probability of having a child in a step at energy `energy`.
@@ -29,13 +29,15 @@ HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
 
 /// Probability that the agent in `slot` dies at the end of this step.
 HEDON_FN double death_chance(const World& world, int32_t slot) {
-  const Life& life = world.state.life[slot];
-  const HazardConfig& config = world.species(slot).config->hazard;
-  const double age = static_cast<double>(world.head().step + 1 - life.birth_step);
-  double chance = hazard(config, age, life.energy);
-  const float share = world.species(slot).config->nutrient.hazard_share;
-  if (world.species(slot).layout->has_nutrient != 0)
-    chance += static_cast<double>(share) * hazard_by_store(config, world.inner(slot)[0]);
+  const Species& species = world.species(slot);
+  const HazardConfig& config = species.config->hazard;
+  const double age = static_cast<double>(world.head().step + 1 - world.state.life[slot].birth_step);
+  const auto by_store = [&](int32_t store) {
+    const double weight = store_of(*species.config, store).hazard_weight;
+    return weight > 0.0 ? weight * hazard_by_store(config, world.held(slot, store)) : 0.0;
+  };
+  double chance = by_store(ENERGY) + hazard_by_age(config, age);
+  for (int32_t i = 1; i < species.stores(); ++i) chance += by_store(i);
   return factor_at(config.schedule.scale, world.head().step) * chance;
 }
 

@@ -44,8 +44,9 @@ enum class Extent : uint8_t {
   instinct_slots,    ///< slots, if some species passes on the networks that it was born with
   mating_slots,      ///< slots, if some species has two parents
   mating_death_log,  ///< the same, if some species has two parents
-  inner_slots,       ///< slots, if some species has a nutrient or a toxin
-  inner_states,      ///< nutrient and toxin
+  store_slots,       ///< slots, if some species has a store beside energy
+  stores,            ///< most stores of a species
+  more_stores,       ///< the same without energy
   scents,            ///< what an agent smells: channels times noses
   memory,            ///< numbers that a rule keeps for each agent
   record,            ///< numbers that a rule gets for one agent
@@ -72,7 +73,7 @@ HEDON_FN bool is_by_slot(Extent rows) {
   return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::resident_slots ||
          rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots ||
          rows == Extent::ruled_slots || rows == Extent::packed_slots || rows == Extent::wide_slots ||
-         rows == Extent::obstacle_slots || rows == Extent::inner_slots || rows == Extent::instinct_slots ||
+         rows == Extent::obstacle_slots || rows == Extent::store_slots || rows == Extent::instinct_slots ||
          rows == Extent::mating_slots || rows == Extent::hunted_slots;
 }
 
@@ -148,10 +149,12 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.mating ? shape.capacity : 0;
     case Extent::mating_death_log:
       return shape.mating ? shape.death_log_rows : 0;
-    case Extent::inner_slots:
-      return shape.inner ? shape.capacity : 0;
-    case Extent::inner_states:
-      return 2;
+    case Extent::store_slots:
+      return shape.stores > 1 ? shape.capacity : 0;
+    case Extent::stores:
+      return shape.stores;
+    case Extent::more_stores:
+      return shape.stores - 1;
     case Extent::scents:
       return shape.scents;
     case Extent::memory:

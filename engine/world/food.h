@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "world/placement.h"
 #include "world/schedule.h"
+#include "world/store.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -106,7 +107,8 @@ HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
   }
 }
 
-/// The nearest of the agents whose mouths touched a food in this step eats it; or all of them do.
+/// The nearest of the agents whose mouths touched a food in this step eats it, or all of them do; those that lack what
+/// it needs do not.
 HEDON_FN void share_food(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
@@ -116,6 +118,7 @@ HEDON_FN void share_food(World& world) {
   const bool seen = world.shape->shows_eaten_food;
   int32_t found = 0;
   for_each_marked_circle(state.physics.neighbors, [&](int32_t slot, int32_t f) {
+    if (!can_digest(world, slot, food_kind(*world.shape, f))) return;
     const Vec2 apart{state.physics.circles.x[f] - body.x[slot], state.physics.circles.y[f] - body.y[slot]};
     const float distance = squared_length(apart);
     if (all && scratch.eater[f] >= 0) return feed(world, slot, food_kind(*world.shape, f));

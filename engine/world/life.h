@@ -1,4 +1,4 @@
-/// Energy and age, and the births and deaths that depend on them.
+/// Stores and age, and the births and deaths that depend on them.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 #include "base/random.h"
 #include "evolution/reward.h"
 #include "world/chance.h"
-#include "world/inner.h"
 #include "world/population.h"
 #include "world/rule.h"
+#include "world/store.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -31,38 +31,22 @@ HEDON_FN void decide_birth(const World& world, int32_t slot, double draw, double
 
 /// Pays one agent its meals and charges it for living and for its motors.
 HEDON_FN void spend_energy(World& world, int32_t slot) {
-  const SpeciesConfig& config = *world.species(slot).config;
   const WorldState& state = world.state;
-  StepScratch& scratch = world.scratch;
+  const StepScratch& scratch = world.scratch;
   Life& life = state.life[slot];
   const int32_t* meal = world.meal(slot);
-  const SpeciesLayout& layout = *world.species(slot).layout;
-  double eaten = 0.0;
-  for (int32_t k = 0; k < world.shape->kinds; ++k) {
-    eaten += static_cast<double>(layout.eats_food[k] * world.config->food[k].energy) * meal[k];
-    state.eaten[int64_t{slot} * world.shape->meals() + k] += meal[k];
-  }
-  const double basic = config.energy.basic_cost;
-  const double action = static_cast<double>(config.energy.action_cost) * applied_force(world, slot);
+  for (int32_t k = 0; k < world.shape->kinds; ++k) state.eaten[int64_t{slot} * world.shape->meals() + k] += meal[k];
   double damage = 0.0;
   if (world.shape->obstacles > 0) {
     damage = static_cast<double>(world.config->obstacle.damage) * scratch.touched[slot];
     scratch.energy_damage[slot] = damage;
   }
-  const double wanted = life.energy + eaten - action - basic - damage;
-  const double capacity = config.energy.capacity;
-  scratch.energy_before[slot] = life.energy;
-  scratch.energy_eaten[slot] = eaten;
-  scratch.energy_basic[slot] = basic;
-  scratch.energy_action[slot] = action;
-  scratch.energy_forgiven[slot] = wanted < 0.0 ? -wanted : 0.0;
-  scratch.energy_capped[slot] = wanted > capacity ? wanted - capacity : 0.0;
-  scratch.starved[slot] = wanted < 0.0 && config.energy.starvation == EnergyStarvation::death;
-  life.energy = wanted < 0.0 ? 0.0 : (wanted > capacity ? capacity : wanted);
-  life.energy_gained += eaten;
-  life.energy_spent += basic + action + damage;
+  scratch.starved[slot] = 0;
+  const double force = applied_force(world, slot);
+  for (int32_t i = 0; i < world.species(slot).stores(); ++i) settle_store(world, slot, i, force, damage);
+  life.energy_gained += scratch.energy_eaten[slot];
+  life.energy_spent += scratch.energy_basic[slot] + scratch.energy_action[slot] + damage;
 
-  if (world.shape->inner) update_inner(world, slot, applied_force(world, slot));
   const BodyState& body = state.physics.bodies;
   const Vec2 moved{body.x[slot] - scratch.start_x[slot], body.y[slot] - scratch.start_y[slot]};
   life.distance += length(moved);

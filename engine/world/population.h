@@ -7,7 +7,6 @@
 #include "base/random.h"
 #include "evolution/genome.h"
 #include "world/food.h"
-#include "world/inner.h"
 #include "world/mating.h"
 #include "world/newborn.h"
 #include "world/placement.h"
@@ -73,9 +72,9 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
 HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy,
                                int64_t birth_step = 0) {
   const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
-  const SpeciesLayout& layout = *world.shape->of[species].layout;
-  const float nutrient = world.shape->of[species].config->nutrient.initial;
-  if (world.shape->inner) set_inner(world, slot, layout.has_nutrient != 0 ? nutrient : 0.0, 0.0);
+  const Species& own = world.shape->of[species];
+  const SpeciesLayout& layout = *own.layout;
+  for (int32_t i = 1; i < own.stores(); ++i) world.held(slot, i) = store_of(*own.config, i).initial;
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   init_genome(layout, RandomStream{world.seed, Purpose::initial_genome, id, 0}, world.genome(slot));
@@ -92,35 +91,34 @@ HEDON_FN float child_heading(const World& world, uint32_t id) {
   return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
 }
 
-/// Takes from a parent what it gives to a child of `parents` parents; returns the energy.
-HEDON_FN double give_birth_share(World& world, int32_t parent, int32_t parents, double* nutrient) {
-  const double share = static_cast<double>(world.species(parent).config->energy.birth_share) / parents;
-  Life& life = world.state.life[parent];
-  const double energy = share * life.energy;
-  life.energy -= energy;
-  life.children += 1;
-  world.counters(parent).energy_shared += energy;
-  if (!world.shape->inner) return energy;
-  const double stored = share * world.inner(parent)[0];
-  world.inner(parent)[0] -= stored;
-  *nutrient += stored;
-  return energy;
+/// Takes from a parent what it gives to a child of `parents` parents of each of its stores, and adds it to `given`.
+HEDON_FN void give_child_shares(World& world, int32_t parent, int32_t parents, double* given) {
+  const Species& species = world.species(parent);
+  for (int32_t i = 0; i < species.stores(); ++i) {
+    const double share = static_cast<double>(store_of(*species.config, i).child_share) / parents;
+    double& held = world.held(parent, i);
+    const double part = share * held;
+    held -= part;
+    given[i] += part;
+    if (i == ENERGY) world.counters(parent).energy_shared += part;
+  }
+  world.state.life[parent].children += 1;
 }
 
-/// A child of `parent`, and of `mate` unless that is -1, at `position`: part of their energy, a genome with mutation,
+/// A child of `parent`, and of `mate` unless that is -1, at `position`: part of their stores, a genome with mutation,
 /// and a network, by default a new one that has learned nothing.
 HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 position) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
   const Species& species = world.species(parent);
-  double nutrient = 0.0;
+  double given[MAX_STORES] = {};
   const int32_t parents = mate < 0 ? 1 : 2;
-  double energy = give_birth_share(world, parent, parents, &nutrient);
-  if (mate >= 0) energy += give_birth_share(world, mate, parents, &nutrient);
+  give_child_shares(world, parent, parents, given);
+  if (mate >= 0) give_child_shares(world, mate, parents, given);
   const uint32_t id = static_cast<uint32_t>(head.next_agent_id);
   const int32_t slot =
-      spawn(world, world.shape->species_of(parent), position, child_heading(world, id), energy, head.step + 1);
-  if (world.shape->inner) set_inner(world, slot, nutrient, 0.0);
+      spawn(world, world.shape->species_of(parent), position, child_heading(world, id), given[ENERGY], head.step + 1);
+  for (int32_t i = 1; i < species.stores(); ++i) world.held(slot, i) = given[i];
   Life& child = state.life[slot];
   child.parent_id = state.life[parent].agent_id;
   child.generation = state.life[parent].generation + 1;

@@ -23,22 +23,24 @@ HEDON_FN RewardInputs reward_inputs(const World& world, int32_t slot, int64_t t)
   const Species& species = world.species(slot);
   const PackedObservation& seen = world.observation(slot, world.kept(slot, t));
   const Life& life = world.state.life[slot];
-  const double* now = world.inner(slot);
-  const double* before = world.inner_before(slot);
-  const bool inner = world.shape->inner;
-  return {
-      .eaten = world.meal(slot),
-      .force = applied_force(world, slot),
-      .max_force = species.max_force,
-      .ray = seen.ray,
-      .ray_type = seen.ray_type,
-      .rays = species.config->sensor.ray_count,
-      .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
-      .noses = species.config->sensor.noses,
-      .before = {world.scratch.energy_before[slot], inner ? before[0] : 0.0, inner ? before[1] : 0.0},
-      .now = {life.energy, inner ? now[0] : 0.0, inner ? now[1] : 0.0},
-      .capacity = {species.config->energy.capacity, species.config->nutrient.capacity, species.config->toxin.threshold},
-      .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
+  RewardInputs inputs{.eaten = world.meal(slot),
+                      .force = applied_force(world, slot),
+                      .max_force = species.max_force,
+                      .ray = seen.ray,
+                      .ray_type = seen.ray_type,
+                      .rays = species.config->sensor.ray_count,
+                      .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
+                      .noses = species.config->sensor.noses,
+                      .before = world.held_before(slot),
+                      .now = {},
+                      .measure = {},
+                      .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
+  for (int32_t i = 0; i < species.stores(); ++i) {
+    const StoreConfig& store = store_of(*species.config, i);
+    inputs.now[i] = world.held(slot, i);
+    inputs.measure[i] = store.motor_threshold > 0.0f ? store.motor_threshold : store.capacity;
+  }
+  return inputs;
 }
 
 /// Mean reading of all rays, 0 for those that met nothing.
@@ -86,11 +88,9 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   *record++ = static_cast<double>(body.y[slot]);
   *record++ = static_cast<double>(world.head().step);
   *record++ = static_cast<double>(species.capacity() - world.state.free_count[s]);
-  const int32_t present[] = {layout.has_nutrient, layout.has_toxin};
-  for (int32_t i = 0; i < 2; ++i) {
-    if (present[i] == 0) continue;
-    *record++ = world.inner_before(slot)[i];
-    *record++ = world.inner(slot)[i];
+  for (int32_t i = 1; i < species.stores(); ++i) {
+    *record++ = inputs.before[i];
+    *record++ = inputs.now[i];
   }
   *record++ = own_answer(world, slot, use, inputs);
   const double* memory = &world.state.memory[int64_t{slot} * world.shape->memory];

@@ -23,19 +23,23 @@ HEDON_FN void note_start(World& world, int32_t slot) {
   scratch.start_y[slot] = body.y[slot];
 }
 
-/// Writes the entries after energy: other inner states, then smells.
+/// Writes the entries after the agent's motion and heading: the stores that it observes, then smells.
 HEDON_FN void observe_more(const World& world, int32_t slot, Vec2 forward, PackedObservation& out) {
   const Species& species = world.species(slot);
   const SensorConfig& sensor = species.config->sensor;
-  const int32_t scents = species.layout->smells.count * sensor.noses;
-  int32_t at = own_entries(species);
   const bool raw = sensor.scaling == SensorScaling::raw;
-  if (species.observes_toxin) set_dense(out, --at, static_cast<float>(world.inner(slot)[1] * (raw ? 1.0 : 0.1)));
-  if (species.observes_nutrient) set_dense(out, --at, static_cast<float>(world.inner(slot)[0] * (raw ? 1.0 : 0.01)));
+  int32_t at = motion_entries(species);
+  for (int32_t i = 0; i < species.stores(); ++i) {
+    const StoreConfig& store = store_of(*species.config, i);
+    if (store.observed == 0) continue;
+    const float held = static_cast<float>(world.held(slot, i));
+    set_dense(out, at++, raw ? held : held / store.scale);
+  }
+  const int32_t scents = species.layout->smells.count * sensor.noses;
   if (scents == 0) return;
   smell(world, slot, forward);
   const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
-  for (int32_t i = 0; i < scents; ++i) set_dense(out, own_entries(species) + i, smelled[i]);
+  for (int32_t i = 0; i < scents; ++i) set_dense(out, at + i, smelled[i]);
 }
 
 /// The heading of the agent in `slot` at the start of the step, a unit vector.
@@ -43,20 +47,19 @@ HEDON_FN Vec2 forward_of(const World& world, int32_t slot) {
   return {-world.scratch.heading_sine[slot], world.scratch.heading_cosine[slot]};
 }
 
-/// Writes the part of an observation that needs no rays: touch, motion, heading, energy.
+/// Writes the part of an observation that needs no rays: touch, motion, heading, stores, smells.
 HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& out) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
   const float sine = world.scratch.heading_sine[slot], cosine = world.scratch.heading_cosine[slot];
   out.touch = state.touch[slot];
   if (world.species(slot).network.observation.wide()) extra_of(out).touch = state.touch_more[slot];
-  const float energy = static_cast<float>(state.life[slot].energy);
   const float vx = body.velocity_x[slot], vy = body.velocity_y[slot], omega = body.angular_velocity[slot];
   if (world.species(slot).config->sensor.scaling == SensorScaling::raw) {
-    const float dense[MAX_DENSE] = {vx, vy, body.angle[slot], omega, energy, 0.0f};
+    const float dense[MAX_DENSE] = {vx, vy, body.angle[slot], omega, 0.0f, 0.0f};
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   } else {
-    const float dense[MAX_DENSE] = {vx / 1.5f, vy / 1.5f, sine, cosine, omega / 0.2f, energy / 100.0f};
+    const float dense[MAX_DENSE] = {vx / 1.5f, vy / 1.5f, sine, cosine, omega / 0.2f, 0.0f};
     for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
   }
   observe_more(world, slot, {-sine, cosine}, out);

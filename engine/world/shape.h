@@ -61,7 +61,8 @@ struct WorldShape {
   bool packed;             ///< some species acts with weights in pairs
   bool instinct;           ///< some species passes on the networks that it was born with
   bool mating;             ///< some species has two parents
-  bool inner;              ///< some species has a nutrient or a toxin
+  int32_t stores;          ///< most stores of a species
+  bool gated;              ///< some species must hold something to eat some food
   bool hunting;            ///< some species eats agents, of another species or its own
   bool causes;             ///< agents die of more than age and energy: some starve at once, or are eaten
   int32_t lines;           ///< cache lines of an observation
@@ -123,14 +124,16 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
     shape.capacity = species.last_slot;
     shape.instinct |= species.learns && own.birth.network == BirthNetwork::initial;
     shape.mating |= own.birth.mating == BirthMating::pairs;
-    shape.inner |= layout.has_nutrient != 0 || layout.has_toxin != 0;
+    grow(shape.stores, species.stores());
+    for (int32_t i = 0; i < layout.needs.count; ++i) shape.gated |= layout.needs[i] > 0.0f;
     grow(shape.scents, layout.smells.count * own.sensor.noses);
     grow(shape.genes, layout.genes.count);
     grow(shape.params, species.network.size());
     grow(shape.pairs, species.network.pairs());
     grow(shape.lines, species.network.observation.wide() ? WIDE_LINES : NARROW_LINES);
     for (int32_t prey = 0; prey < layout.eats_species.count; ++prey) shape.hunting |= layout.eats_species[prey] > 0.0f;
-    shape.causes |= shape.hunting || own.energy.starvation == EnergyStarvation::death;
+    shape.causes |= shape.hunting;
+    for (int32_t i = 0; i < species.stores(); ++i) shape.causes |= store_of(own, i).at_zero == StoreAtZero::death;
     if (layout.has_rule()) {
       shape.ruled = true;
       grow(shape.memory, own.reward.memory);

@@ -34,10 +34,9 @@ struct Species {
   NetworkShape network;
   BodyShape body;
   Channels sight, touch, scent;
-  bool has_network;  ///< its agents act by networks
-  bool learns;       ///< these networks learn
-  bool observes;     ///< its network, or its reward, reads what its rays meet
-  bool observes_nutrient, observes_toxin;
+  bool has_network;                      ///< its agents act by networks
+  bool learns;                           ///< these networks learn
+  bool observes;                         ///< its network, or its reward, reads what its rays meet
   int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
@@ -51,6 +50,7 @@ struct Species {
   float sector_cosine[65];
 
   HEDON_FN int32_t capacity() const { return last_slot - first_slot; }
+  HEDON_FN int32_t stores() const { return 1 + config->store.count; }
 };
 
 /// The directions of the rays and of the edges of touch sectors.
@@ -77,10 +77,16 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
-/// Entries of an observation for the agent's own motion and heading, its energy and its other inner states.
+/// Entries of an observation for the agent's own motion and heading.
+HEDON_FN int32_t motion_entries(const Species& species) {
+  return species.config->sensor.scaling == SensorScaling::raw ? 4 : 5;
+}
+
+/// The same, and for the stores that it observes.
 HEDON_FN int32_t own_entries(const Species& species) {
-  const int32_t inner = species.observes_nutrient + species.observes_toxin;
-  return (species.config->sensor.scaling == SensorScaling::raw ? 5 : 6) + inner;
+  int32_t entries = motion_entries(species);
+  for (int32_t i = 0; i < species.stores(); ++i) entries += store_of(*species.config, i).observed != 0;
+  return entries;
 }
 
 /// types   of a world that senses may tell apart
@@ -99,10 +105,7 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   species.has_network = species.learns || config.learning.policy == LearningPolicy::fixed;
   species.observes = species.has_network;
   species.observes |= layout.has_rule();
-  species.observes_nutrient = layout.has_nutrient != 0 && config.nutrient.observed != 0;
-  species.observes_toxin = layout.has_toxin != 0 && config.toxin.observed != 0;
-  const int32_t inner = layout.has_nutrient + layout.has_toxin;
-  species.record = layout.terms.count + layout.genes.count + 12 + 2 * inner + config.reward.memory;
+  species.record = layout.terms.count + layout.genes.count + 12 + 2 * config.store.count + config.reward.memory;
   for (int32_t i = 0; i < layout.terms.count; ++i) species.observes |= is_sensed(layout.terms[i].input);
   const int32_t dense = own_entries(species) + layout.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, layout.sees.count, layout.touches.count * config.sensor.touch_sectors,

@@ -148,7 +148,7 @@ struct WorldState {
 
   Array<int64_t> ready_until;  // step until which an agent waits for a second parent
   Array<int32_t> mate_id;      // the second parent; -1 for founders
-  Array<double> inner;         // (slots, 2) nutrient and toxin
+  Array<double> store;         // (slots, stores) held of each store but energy; past those of a species: 0
   Array<float> obstacle;       // (obstacles, corners · 2) where their corners are: follows from the config and the seed
   Array<ObstacleCounters> obstacle_counters;
 
@@ -193,7 +193,7 @@ struct WorldState {
                (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, deaths, one, saved),
                (eaten_by, eaters, meals, saved), (ready_until, mating_slots, one, saved),
-               (mate_id, mating_slots, one, saved), (inner, inner_slots, inner_states, saved),
+               (mate_id, mating_slots, one, saved), (store, store_slots, more_stores, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
                (external_action, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
                (params, network_slots, params, saved), (initial_params, instinct_slots, params, saved),

@@ -44,10 +44,10 @@ struct StepScratch {
   Array<float> start_angle, start_x, start_y;
   Array<int32_t> meal;       ///< foods, and agents of each species, eaten in this step
   Array<double> death_draw;  ///< uniform in [0, 1)
-  Array<double> energy_before, energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
+  Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
   Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
   Array<Finding> finding;                ///< of the audit at the end of a window
-  Array<double> inner_before;            ///< nutrient and toxin before this step
+  Array<double> store_before;            ///< held of each store before this step
   Array<float> smelled;                  ///< at the start of the step, by channel, then by nose
   Array<int32_t> touched;                ///< harmful obstacles that an agent touched
   Array<double> energy_damage;
@@ -68,14 +68,14 @@ struct StepScratch {
                (torque, slots, one, scratch), (heading_sine, slots, one, scratch),
                (heading_cosine, slots, one, scratch), (start_angle, slots, one, scratch),
                (start_x, slots, one, scratch), (start_y, slots, one, scratch), (meal, slots, meals, scratch),
-               (death_draw, slots, one, scratch), (energy_before, slots, one, scratch),
-               (energy_eaten, slots, one, scratch), (energy_basic, slots, one, scratch),
-               (energy_action, slots, one, scratch), (energy_forgiven, slots, one, scratch),
-               (energy_capped, slots, one, scratch), (starved, slots, one, scratch), (breeds, slots, one, scratch),
-               (dies, slots, one, scratch), (finding, slots, one, scratch),
-               (inner_before, inner_slots, inner_states, scratch), (smelled, slots, scents, scratch),
-               (touched, obstacle_slots, one, scratch), (energy_damage, obstacle_slots, one, scratch),
-               (eater, foods, one, scratch), (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
+               (death_draw, slots, one, scratch), (energy_eaten, slots, one, scratch),
+               (energy_basic, slots, one, scratch), (energy_action, slots, one, scratch),
+               (energy_forgiven, slots, one, scratch), (energy_capped, slots, one, scratch),
+               (starved, slots, one, scratch), (breeds, slots, one, scratch), (dies, slots, one, scratch),
+               (finding, slots, one, scratch), (store_before, slots, stores, scratch),
+               (smelled, slots, scents, scratch), (touched, obstacle_slots, one, scratch),
+               (energy_damage, obstacle_slots, one, scratch), (eater, foods, one, scratch),
+               (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
                (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
                (claim_gain, hunted_slots, one, scratch), (record, ruled_slots, record, scratch),
@@ -123,9 +123,12 @@ struct World {
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genes]; }
-  /// Nutrient and toxin of the agent in `slot`, in worlds that have them.
-  HEDON_FN double* inner(int32_t slot) const { return &state.inner[int64_t{slot} * 2]; }
-  HEDON_FN double* inner_before(int32_t slot) const { return &scratch.inner_before[int64_t{slot} * 2]; }
+  /// What the agent in `slot` holds of a store of its species.
+  HEDON_FN double& held(int32_t slot, int32_t store) const {
+    if (store == ENERGY) return state.life[slot].energy;
+    return state.store[int64_t{slot} * (shape->stores - 1) + store - 1];
+  }
+  HEDON_FN double* held_before(int32_t slot) const { return &scratch.store_before[int64_t{slot} * shape->stores]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->meals()]; }
   /// The row of a rollout that holds step `t` of the window: who does not learn keeps only the present step.
   HEDON_FN int64_t kept(int32_t slot, int64_t t) const { return species(slot).learns ? t : 0; }

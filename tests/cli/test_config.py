@@ -28,7 +28,9 @@ def test_shown_config_is_a_file_that_loads(tmp_path: Path) -> None:
 
 
 def test_one_section_is_shown() -> None:
-    assert hedon("config", "show", "poor", "--path", "food.poor").stdout.startswith("[food.poor]\nenergy = 0.2")
+    assert hedon("config", "show", "poor", "--path", "food.poor").stdout.startswith(
+        "[food.poor]\ngives = {energy = 0.2}"
+    )
     missing = hedon("config", "show", "poor", "--path", "food.por")
     assert missing.returncode == 2
     assert missing.stderr == 'hedon: poor: --path = "food.por": there is no such section; did you mean food.poor?\n'
@@ -40,7 +42,7 @@ def test_diff() -> None:
     found = hedon("config", "diff", "small", "small", "--fidelity-b", "released")
     changes = [line.split() for line in found.stdout.splitlines()]
     assert ["world.mutation_noise", '"independent"', "->", '"tabulated"'] in changes
-    assert "food.poor.energy" in hedon("config", "diff", "baseline", "poor").stdout
+    assert "food.poor.gives.energy" in hedon("config", "diff", "baseline", "poor").stdout
 
 
 def test_check_names_all_problems(tmp_path: Path) -> None:

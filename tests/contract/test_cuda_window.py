@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from cuda_emulation import build
 from cuda_emulation import emulated as emulated
+from two_stores import FED
 from worlds import QUICK, RELEASED, make_simulation, set_scene
 
 from hedon.error import EngineError
@@ -51,9 +52,9 @@ def test_presets_have_the_same_bits(emulated: str, preset: str):
 MECHANISMS = {
     "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.smell.normal.coef=0.1"),
     "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.see.obstacle.over_rays=max"),
-    "inner": (
-        "food.normal.nutrient=1",
-        "food.normal.toxin=5",
+    "stores": (
+        *FED,
+        "food.normal.needs.nutrient=1",
         "reward.drive_reduction_coef=1",
         "sensor.mouth_spread=180",
     ),
@@ -166,7 +167,7 @@ def test_not_a_number_is_found_where_the_processor_finds_it(emulated: str):
 def test_what_a_device_cannot_do_is_refused(emulated: str):
     with pytest.raises(EngineError, match="actions of a program"):
         make_simulation('learning.policy="external"', backend=emulated)
-    many = [f"food.kind{i}.energy=1" for i in range(6)]
+    many = [f"food.kind{i}.gives.energy=1" for i in range(6)]
     with pytest.raises(EngineError, match=r"have \d+ inputs, and device 'cuda-emulated' learns with at most \d+"):
         make_simulation(*many, "sensor.touch_sectors=14", backend=emulated)
 

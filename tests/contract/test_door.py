@@ -33,7 +33,7 @@ def changed(config: Any, path: str, value: Any) -> Any:
     """A config, or a part of one, with one setting replaced, unchecked, as `dataclasses.replace` does it."""
     name, _, rest = path.partition(".")
     if isinstance(config, dict):
-        return {**config, name: changed(config[name], rest, value)}
+        return {**config, name: changed(config[name], rest, value) if rest else value}
     return dataclasses.replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
 
 

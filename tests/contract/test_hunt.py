@@ -112,7 +112,7 @@ def test_who_is_eaten_eats_nothing():
 
 
 def test_the_starved_are_not_eaten():
-    simulation = make('energy.starvation="death"', "species.prey.energy.basic_cost=50")
+    simulation = make('energy.at_zero="death"', "species.prey.energy.basic_cost=50")
     set_scene(simulation, [(100, 100, 0.0), facing(100, 81, (100, 100))], species=[PREY, PREDATOR])
     after = step(simulation)
     assert after["cause"].tolist() == [1]

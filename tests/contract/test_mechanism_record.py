@@ -49,7 +49,7 @@ def test_columns_follow_from_mechanisms(made: Path) -> None:
     run = open_run(made)
     config = load_config(made / "config.toml")
     eats = any(name in config.species for each in config.species.values() for name, _ in each.diet.eats)
-    starves = any(each.energy.starvation == "death" for each in config.species.values())
+    starves = any(each.energy.at_zero == "death" for each in config.species.values())
     assert ("cause" in run.agents().columns) == ("deaths_starved" in run.population().columns) == (eats or starves)
     assert (set(run.population().columns) & HUNTS == HUNTS) == eats
     assert bool(run.columns.prey) == eats
@@ -95,8 +95,8 @@ def test_a_branch_keeps_its_counts_and_cannot_begin_to_starve(tmp_path: Path) ->
     mechanism_run(mechanism_config("one species that starves"), tmp_path / "run", CUT)
     branch(tmp_path / "run", tmp_path / "branch", ["hazard.kappa=0.1"], steps=STEPS)
     assert check_run(tmp_path / "branch").findings == ()
-    with pytest.raises(RecordError, match=r"a branch cannot change energy\.starvation"):
-        branch(tmp_path / "run", tmp_path / "no", ['energy.starvation="floor"'], steps=STEPS)
+    with pytest.raises(RecordError, match=r"a branch cannot change energy\.at_zero"):
+        branch(tmp_path / "run", tmp_path / "no", ['energy.at_zero="floor"'], steps=STEPS)
 
 
 def test_a_manifest_that_does_not_say_has_the_columns_of_its_time() -> None:

@@ -114,7 +114,7 @@ def test_a_report_fits_what_each_species_eats(different: Run, tmp_path: Path) ->
     assert "pays for 0 of" not in text
     assert "It eats no food, but prey" in text
     assert "It eats nothing" in text
-    assert "| energy.starvation |" not in text, "the hunters' is not a change of the run's own section"
+    assert "| energy.at_zero |" not in text, "the hunters' is not a change of the run's own section"
     food = pl.read_csv(tmp_path / "analysis/food_world.csv")
     kinds = {name: set(food.filter(pl.col("condition").str.ends_with(name))["kind"]) for name in ("prey", "hunter")}
     assert kinds == {"prey": {"normal", "poison"}, "hunter": {"prey"}}

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
+from two_stores import FED
 from worlds import QUICK
 
 from hedon.analysis.world.record import by_condition, read_worlds
@@ -19,7 +20,7 @@ from hedon.record.reader import Run, open_run
 from hedon.report.topic import ONE_PARENT, run_topics
 
 MATING = ("birth.mating=pairs", "birth.mating_range=60", "birth.kappa=0.02", "birth.beta=10")
-WORLD = ("obstacle.count=6", "obstacle.damage=0.2", "food.normal.nutrient=1", "food.normal.toxin=1")
+WORLD = ("obstacle.count=6", "obstacle.damage=0.2", *FED)
 
 
 def config() -> Config:

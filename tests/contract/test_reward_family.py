@@ -14,7 +14,7 @@ ENERGY = 40.0
 
 def paid(*settings: str, steps: int = 1) -> np.ndarray:
     """What one agent that starts with 40 units of energy, and finds no food, is paid in each step."""
-    exact = ("genome.action.initial_sd=0", "genome.second.initial_sd=0", "genome.set_point.initial_sd=0")
+    exact = ("genome.action.initial_sd=0", "genome.second.initial_sd=0", "energy.set_point.initial_sd=0")
     simulation = make_simulation(*QUICK, *DEATHLESS, "birth.kappa=0", *exact, *settings)
     set_scene(simulation, [(100, 100, 0.0)], energy=ENERGY)
     simulation.run(steps)
@@ -70,7 +70,7 @@ def test_drive_reduction_is_by_how_much_energy_comes_closer_to_the_set_point(set
     found = paid(
         *STILL,
         "reward.drive_reduction_coef=3",
-        f"genome.set_point.initial_mean={set_point}",
+        f"energy.set_point.initial_mean={set_point}",
         f"energy.basic_cost={cost}",
         "energy.action_cost=0",
         "reward.action_coef=0",
@@ -88,7 +88,7 @@ def test_what_a_birth_takes_is_no_drive_reduction():
         "birth.beta=100",
         "reward.action_coef=0",
         "reward.drive_reduction_coef=1",
-        "genome.set_point.initial_sd=0",
+        "energy.set_point.initial_sd=0",
         "energy.basic_cost=0.1",
         "energy.action_cost=0",
     )
@@ -170,7 +170,7 @@ def test_wrong_names_are_refused(setting, message):
 
 def test_two_genes_cannot_have_one_name():
     with pytest.raises(ConfigError, match="two genes would have the name w_normal_old"):
-        load_config("baseline", overrides=["reward.family=by_age", "food.normal_old.energy=1"])
+        load_config("baseline", overrides=["reward.family=by_age", "food.normal_old.gives.energy=1"])
 
 
 def test_genes_cannot_set_the_learning_of_who_does_not_learn():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from two_stores import FED
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
 from hedon import EngineError, load_config
@@ -82,14 +83,14 @@ def recording(file, name, left_out=()):
     return paid(file, "both", *settings, memory=16), columns
 
 
-def test_the_record_has_the_inner_states_of_the_species(file):
+def test_the_record_has_the_stores_of_the_species(file):
     names = ("nutrient_before", "nutrient", "toxin_before", "toxin")
     file.write_text(
         "def copy(agent):\n"
         + "".join(f"    agent.memory_{i} = agent.{n}\n" for i, n in enumerate(names, 1))
         + "    return agent.linear\n"
     )
-    settings = (*QUICK, *DEATHLESS, *CHILDLESS, "food.normal.nutrient=1", "food.normal.toxin=5")
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *FED, "food.normal.gives.toxin=5")
     simulation = paid(file, "copy", *settings, memory=4)
     simulation.run(30)
     world = simulation.worlds[0]
@@ -206,7 +207,7 @@ def test_a_rule_that_fails_stops_the_world(file, name, value):
     [
         (['reward.rule="curious"'], r"reward\.rule.*FILE\.py:NAME"),
         (["reward.memory=2"], r"reward\.memory.*give reward\.rule too"),
-        (['reward.rule="a.py:b"', "food.age.energy=1"], r"reward\.rule.*are called age"),
+        (['reward.rule="a.py:b"', "food.age.gives.energy=1"], r"reward\.rule.*are called age"),
     ],
 )
 def test_a_wrong_setting_is_named(settings, says):

@@ -63,9 +63,9 @@ def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
     settings = (
         f'world.prey_sharing="{sharing}"',
         *("population.capacity=100", "population.initial_count=1", "sensor.mouth_spread=40", "birth.kappa=0"),
-        *each("prey", "energy.basic_cost=0.7", 'energy.starvation="death"'),
+        *each("prey", "energy.basic_cost=0.7", 'energy.at_zero="death"'),
         *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
-        *each("hunter", "energy.basic_cost=0.7", 'energy.starvation="death"'),
+        *each("hunter", "energy.basic_cost=0.7", 'energy.at_zero="death"'),
         *each("top", 'diet.eats=[["hunter", 0.5], ["prey", 0.2], ["top", 0.1]]', "energy.capacity=4"),
     )
     simulation = Simulation(load_config("baseline", None, (*LIVELY, *settings)), [SEED], threads=1)
@@ -140,8 +140,12 @@ def general(path: str) -> str:
     parts = path.split(".")
     if parts[0] == "species":
         parts = parts[2:]
+    if parts[0] == "food" and parts[2] in ("gives", "needs"):
+        parts = parts[:3]
     for i, part in enumerate(parts[:-1]):
-        if part in ("food", "see", "smell", "schedule", "mutation", "family", "learning") and i + 2 < len(parts):
+        if part in ("food", "store", "see", "smell", "schedule", "mutation", "family", "learning") and i + 2 < len(
+            parts
+        ):
             parts[i + 1] = "<kind>"
     return ".".join(parts)
 

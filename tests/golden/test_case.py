@@ -31,7 +31,7 @@ def general(path: tuple[str, ...]) -> str:
     """The path of a setting with `*` for names."""
     here: type = SpeciesConfig if path[0] in PER_SPECIES else Config
     told, words = [], list(path)
-    while words:
+    while words and (not told or told[-1] not in settings(here)):
         told.append(words.pop(0))
         if told[-1] in sections(here):
             inner = sections(here)[told[-1]]

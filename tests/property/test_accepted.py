@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
+from two_stores import FED
 
 from hedon.config.config import Config
 from hedon.config.field import Setting, leaves
@@ -34,8 +35,8 @@ ALL_TABLES = (
     "obstacle.count=2",
     "arena.inner_walls=[[10, 10, 50, 60]]",
     "food.normal.placement={form='mixture', centers=[[50, 50], [80, 90]], sd=[9, 9]}",
-    "food.normal.nutrient=1",
-    "food.normal.toxin=1",
+    *FED,
+    "food.normal.needs.nutrient=1",
     "reward.drive_reduction_coef=1",
     "reward.family=by_age",
     "genome.learning={gamma={}, action_sd={}}",
@@ -122,7 +123,7 @@ def changes(draw: st.DrawFn) -> tuple[str, list[tuple[str, Any]]]:
 @pytest.mark.repeated
 @settings(max_examples=EXAMPLES or 400, **FUZZ)
 @given(changed=changes())
-@example(changed=("one", [("nutrient.hazard_share", 1e7)]))
+@example(changed=("one", [("store.nutrient.hazard_weight", 1e7)]))
 @example(changed=("one", [("motor.max_force", 1e4), ("motor.force_scale", 1e3)]))
 @example(changed=("one", [("food.normal.placement.sd", (1e30, 1e30))]))
 @example(changed=("one", [("food.normal.placement.sd", (1e-50, 1.0))]))

@@ -28,7 +28,7 @@ def test_the_energy_ledger_closes(seed, preset, initial, starvation):
     overrides = (
         *LIVELY,
         f"energy.initial={initial}",
-        f'energy.starvation="{starvation}"',
+        f'energy.at_zero="{starvation}"',
         "energy.basic_cost=0.01",
     )
     simulation = make_simulation(*overrides, preset=preset, seeds=(seed,))

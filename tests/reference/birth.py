@@ -78,14 +78,16 @@ def child_place(rules: Rules, world: World, parent: Agent) -> tuple[float, float
 def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, float]) -> None:
     first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
     sums = world.sums[species.number]
-    energy = nutrient = 0.0
+    energy, store = 0.0, dict.fromkeys(species.store, 0.0)
     for parent in parents:
-        share = species.energy.birth_share / len(parents)
+        share = species.energy.child_share / len(parents)
         energy += share * parent.energy
-        nutrient += share * parent.nutrient
         sums["energy_shared"] += share * parent.energy
         parent.energy *= 1 - share
-        parent.nutrient *= 1 - share
+        for name, own in species.store.items():
+            part = own.child_share / len(parents)
+            store[name] += part * parent.store[name]
+            parent.store[name] *= 1 - part
         parent.children += 1
         parent.ready_until = -1
     vacancy = world.vacancies[species.number].pop()
@@ -96,7 +98,7 @@ def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, f
         child_heading(rules, world, child_id),
         energy,
         child_genome(rules, world, parents, vacancy.genome),
-        nutrient,
+        store,
         parent_id=first.agent_id,
         mate_id=parents[1].agent_id if len(parents) == 2 else -1,
         generation=1 + max(parent.generation for parent in parents),

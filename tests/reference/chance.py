@@ -34,9 +34,8 @@ def by_store(hazard: Any, store: float) -> float:
 def death_chance(species: Species, agent: Agent, step: int) -> float:
     """Of dying at the end of this step; its age counts this step."""
     hazard, age = species.hazard, step + 1 - agent.birth_step
-    chance = by_store(hazard, agent.energy) + hazard.alpha_age * math.exp(hazard.beta_age * age)
-    if "nutrient" in species.holds:
-        chance += species.nutrient.hazard_share * by_store(hazard, agent.nutrient)
+    chance = hazard.alpha_age * math.exp(hazard.beta_age * age)
+    chance += sum(store.hazard_weight * by_store(hazard, agent.held[name]) for name, store in species.stores.items())
     return factor_at(hazard.schedule, "scale", step) * chance
 
 

@@ -12,7 +12,7 @@ def eat(rules: Rules, world: World, turns: list[Turn]) -> None:
     for k, stock in enumerate(world.stocks):
         left, fed = [], 0
         for f, (x, y) in enumerate(stock.foods):
-            rivals = [turn for turn in turns if (k, f) in turn.deed.mouthfuls]
+            rivals = [turn for turn in turns if (k, f) in turn.deed.mouthfuls and can_digest(rules, turn, k)]
             if not rules.all_mouths:
                 rivals = sorted(rivals, key=lambda turn: math.hypot(turn.deed.x - x, turn.deed.y - y))[:1]
             for turn in rivals:
@@ -29,6 +29,11 @@ def eat(rules: Rules, world: World, turns: list[Turn]) -> None:
         stock.number -= len(stock.foods) - len(left)
         stock.eaten += fed
         stock.foods = left
+
+
+def can_digest(rules: Rules, turn: Turn, k: int) -> bool:
+    """Whether an agent holds, at the start of the step, what a kind of food needs."""
+    return all(turn.start.held.get(name, 0.0) >= need for name, need in rules.foods[k].needs.items())
 
 
 def take(world: World, turn: Turn, meal: int) -> None:

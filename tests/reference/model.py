@@ -68,7 +68,7 @@ class Model:
             species.population.heading_range * uniform(draw("initial_heading", number, 0)[0]),
             species.energy.initial,
             first_genome(self.rules, species, number, "initial_genome"),
-            species.nutrient.initial if "nutrient" in species.holds else 0.0,
+            {name: store.initial for name, store in species.store.items()},
             eaten=[0] * meals,
             memory=memory_of(species),
             birth_energy=species.energy.initial,
@@ -106,7 +106,7 @@ class Model:
     def act(self, before: World, start: Agent, agent: Agent, deed: Deed) -> Turn:
         """What an agent sensed and did, and where it ended."""
         agent.x, agent.y, agent.angle = deed.x, deed.y, deed.angle
-        forces = motor_forces(self.rules.of(agent), deed.action, start.toxin)
+        forces = motor_forces(self.rules.of(agent), deed.action, start)
         return Turn(agent, start, deed, [0] * len(agent.eaten), forces, smells(self.rules, before, start))
 
     def draw_fate(self, world: World, turn: Turn) -> None:

@@ -26,16 +26,11 @@ def inputs(rules: Rules, turn: Turn) -> dict[str, float]:
 
 
 def drive(species: Species, agent: Agent) -> float:
-    """Distance of the inner states from their set points, in shares of their capacities."""
-    whole = {
-        "energy": species.energy.capacity,
-        "nutrient": species.nutrient.capacity,
-        "toxin": species.toxin.threshold,
-    }
+    """Distance of the stores from their set points, in shares of their capacities, or of where they weaken motors."""
     apart = []
-    for name in species.holds:
+    for name, store in species.stores.items():
         point = species.gene(agent.genome, "set_point" if name == "energy" else f"set_point_{name}")
-        apart.append(point - getattr(agent, name) / whole[name])
+        apart.append(point - agent.held[name] / (store.motor_threshold or store.capacity))
     return math.hypot(*apart)
 
 

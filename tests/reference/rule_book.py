@@ -57,9 +57,7 @@ class RuleBook:
         agent, start, species = turn.agent, turn.start, self.rules.of(turn.agent)
         told = inputs(self.rules, turn) | dict(zip(species.genes, map(float, agent.genome), strict=True)) | answer
         told |= {"age": world.step + 1 - agent.birth_step, "step": world.step, "x": agent.x, "y": agent.y}
-        told |= {"energy_before": start.energy, "energy": agent.energy}
-        told |= {"nutrient_before": start.nutrient, "nutrient": agent.nutrient}
-        told |= {"toxin_before": start.toxin, "toxin": agent.toxin}
+        told |= agent.held | {f"{name}_before": held for name, held in start.held.items()}
         told["moved"] = math.hypot(agent.x - start.x, agent.y - start.y)
         told["nearness"] = float(np.maximum(turn.deed.seen, 0).sum(axis=1).mean())
         told["force_left"], told["force_right"] = turn.forces

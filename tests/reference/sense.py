@@ -36,11 +36,10 @@ def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
 def body_sense(species: Species, agent: Agent, motion: tuple[float, float, float], smelled: np.ndarray) -> list[float]:
     """The observation after rays and touch; `motion` is the velocity along x and y, and the angular velocity."""
     vx, vy, spin = motion
-    held = {"energy": (agent.energy, 100.0), "nutrient": (agent.nutrient, 100.0), "toxin": (agent.toxin, 10.0)}
-    shown = [name for name in species.holds if name == "energy" or getattr(species, name).observed]
+    held = {name: (agent.held[name], store.scale) for name, store in species.stores.items() if store.observed}
     if species.sensor.scaling == "raw":
-        own = [vx, vy, agent.angle, spin, *(held[name][0] for name in shown)]
+        own = [vx, vy, agent.angle, spin, *(amount for amount, _ in held.values())]
     else:
         heading = [math.sin(agent.angle), math.cos(agent.angle)]
-        own = [vx / 1.5, vy / 1.5, *heading, spin / 0.2, *(held[name][0] / held[name][1] for name in shown)]
+        own = [vx / 1.5, vy / 1.5, *heading, spin / 0.2, *(amount / scale for amount, scale in held.values())]
     return [*own, *smelled.ravel()]

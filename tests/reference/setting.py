@@ -38,17 +38,15 @@ class Species:
         for each, factor in own.diet.eats:
             eaten |= dict.fromkeys(config.food if each == "*" else [each], factor)
         self.eats = {each: held(float(factor)) for each, factor in eaten.items() if factor}
-        self.food_energy = [held(self.eats.get(kind, 0.0) * held(config.food[kind].energy)) for kind in config.food]
+        self.food_energy = [
+            held(self.eats.get(kind, 0.0) * held(config.food[kind].gives.get("energy", 0.0))) for kind in config.food
+        ]
         self.min_force, self.max_force = (
             held(own.motor.force_scale * limit) for limit in (own.motor.min_force, own.motor.max_force)
         )
         scale = config.arena.width if own.birth.distance_unit == "arena_width" else 1.0
         self.distance_sd = held(own.birth.distance_sd * scale)
-        self.holds = ["energy"] + [
-            state
-            for state in ("nutrient", "toxin")
-            if any(getattr(food, state) > 0 for kind, food in config.food.items() if kind in self.eats)
-        ]
+        self.stores = {"energy": self.energy, **self.store}
         every = [*config.species, *config.food, "wall", *(["obstacle"] if config.obstacle.count else [])]
         solid = ("wall", "obstacle")
         self.sees, self.touches = (
@@ -78,7 +76,7 @@ class Species:
         if gene.startswith("neutral_"):
             return genome.neutral
         if gene.startswith("set_point"):
-            return getattr(genome, gene)
+            return self.stores[gene.removeprefix("set_point").removeprefix("_") or "energy"].set_point
         if gene.startswith("g_"):
             return (genome.family | genome.learning)[name]
         return held(weights[name]) if name in weights else genome.second

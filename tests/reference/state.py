@@ -27,8 +27,8 @@ class Agent:
     angle: float
     energy: float
     genome: np.ndarray
-    nutrient: float = 0.0
-    toxin: float = 0.0
+    store: dict[str, float] = field(default_factory=dict)
+    """What it holds of each store but energy."""
     parent_id: int = -1
     mate_id: int = -1
     generation: int = 0
@@ -50,6 +50,11 @@ class Agent:
     reward: float = 0.0
     resident_slot: bool = False
     """Whether somebody lived in its slot when the window began."""
+
+    @property
+    def held(self) -> dict[str, float]:
+        """What it holds of each store."""
+        return {"energy": self.energy, **self.store}
 
 
 @dataclass
@@ -102,7 +107,7 @@ class World:
         """The same world; genomes are never changed in place."""
         return replace(
             self,
-            agents=[replace(a, eaten=[*a.eaten], memory=[*a.memory]) for a in self.agents],
+            agents=[replace(a, eaten=[*a.eaten], memory=[*a.memory], store={**a.store}) for a in self.agents],
             stocks=[replace(stock, foods=[*stock.foods]) for stock in self.stocks],
             sums=[{**sums} for sums in self.sums],
             meals=[[*meals] for meals in self.meals],

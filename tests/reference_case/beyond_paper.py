@@ -4,6 +4,7 @@ from pathlib import Path
 
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER
+from two_stores import STORES
 
 RULES = Path(__file__).parents[1] / "rule_example.py"
 
@@ -11,7 +12,7 @@ SPECIES = {
     "hunters": Case(
         "a species that eats another; digestion; sights in the reward; starvation",
         (
-            'energy.starvation="death"',
+            'energy.at_zero="death"',
             *("reward.see.prey.coef=0.3", "reward.see.hunter.coef=0.2", 'reward.see.hunter.over_rays="max"'),
             *each("prey", "population.capacity=26", "population.initial_count=22", "birth.kappa=0.15"),
             *each("hunter", "population.capacity=14", "population.initial_count=12", "body.radius=14"),
@@ -78,9 +79,10 @@ SPECIES = {
         {"smelled": 100, "paid_smell_two": 500, "paid_smell_normal": 500, "eaten_foods": 3},
     ),
     "wide": Case(
-        "observations with more touch than one word has bits, and all inner states",
+        "observations with more touch than one word has bits, and three stores",
         (
-            *("sensor.touch_sectors=20", "food.normal.nutrient=0.5", "food.normal.toxin=0.4"),
+            *STORES,
+            *("sensor.touch_sectors=20", "food.normal.gives.nutrient=0.5", "food.normal.gives.toxin=0.4"),
             *each("one", "population.capacity=14", "population.initial_count=12"),
             *each("two", "population.capacity=14", "population.initial_count=12", 'sensor.smells=["*"]'),
         ),
@@ -92,31 +94,80 @@ INNER = {
     "stores": Case(
         "a nutrient and a toxin: costs, hazard, weak motors, births; not observed by one species",
         (
-            *("food.fruit.energy=0.2", "food.fruit.nutrient=1.5", "food.fruit.growth_rate=1", "food.fruit.capacity=15"),
-            *("food.fungus.energy=1.5", "food.fungus.toxin=4", "food.fungus.growth_rate=1", "food.fungus.capacity=15"),
-            *("nutrient.initial=1", "nutrient.capacity=2", "nutrient.basic_cost=0.02", "nutrient.action_cost=1e-4"),
-            *("nutrient.hazard_share=0.5", "toxin.decay=0.05", "toxin.threshold=3", "energy.birth_share=0.3"),
+            *STORES,
+            *(
+                "food.fruit.gives.energy=0.2",
+                "food.fruit.gives.nutrient=1.5",
+                "food.fruit.growth_rate=1",
+                "food.fruit.capacity=15",
+            ),
+            *(
+                "food.fungus.gives.energy=1.5",
+                "food.fungus.gives.toxin=4",
+                "food.fungus.growth_rate=1",
+                "food.fungus.capacity=15",
+            ),
+            *(
+                "store.nutrient.initial=1",
+                "store.nutrient.capacity=2",
+                "store.nutrient.basic_cost=0.02",
+                "store.nutrient.action_cost=1e-4",
+            ),
+            *(
+                "store.nutrient.hazard_weight=0.5",
+                "store.toxin.basic_cost=0.05",
+                "store.toxin.motor_threshold=3",
+                "energy.child_share=0.3",
+            ),
             *each("open", "population.capacity=20", "population.initial_count=16", 'sensor.scaling="unit"'),
             *each("blind", "population.capacity=20", "population.initial_count=16"),
-            *each("blind", "nutrient.observed=false", "toxin.observed=false", 'diet.eats=[["*", 1.0], ["fruit", 0.5]]'),
+            *each(
+                "blind",
+                "store.nutrient.observed=false",
+                "store.toxin.observed=false",
+                'diet.eats=[["*", 1.0], ["fruit", 0.5]]',
+            ),
             *each("pure", "population.capacity=8", "population.initial_count=6", 'diet.eats=[["normal", 2.0]]'),
         ),
         {"poisoned": 20, "sated": 1, "empty": 20},
     ),
+    "gates": Case(
+        "a store that food needs, one that decays and one whose end kills; energy that decays and makes slow",
+        (
+            "store.water={capacity=5.0, initial=2.5, basic_cost=0.05, child_share=0.5}",
+            *("store.water.scale=2", "store.water.hazard_weight=0.3"),
+            "store.venom={capacity=9.0, initial=1.0, decay=0.05, motor_threshold=2.0, action_cost=1e-4}",
+            *("food.normal.gives.water=1", "food.grain.gives={energy=2.0, water=-0.2, venom=1.5}"),
+            *("food.grain.needs={water=2.0, energy=0.5}", "food.grain.growth_rate=1", "food.grain.capacity=20"),
+            *("energy.decay=0.01", "energy.motor_threshold=6", "energy.hazard_weight=0.7", "energy.scale=20"),
+            *each("land", "population.capacity=20", "population.initial_count=14", 'sensor.scaling="unit"'),
+            *each("sea", "population.capacity=20", "population.initial_count=14", "energy.observed=false"),
+            *each("sea", "store.air={capacity=6.0, initial=4.0, basic_cost=0.1, child_share=0.5}"),
+            *each("sea", 'store.air.at_zero="death"', 'body.collides=["sea", "land", "normal", "grain"]'),
+            "food.normal.gives.air=3",
+        ),
+        {"eaten": 10, "starved": 3, "refused": 5, "poisoned": 20},
+    ),
     "homeostasis": Case(
         "relief alone pays: energy, nutrient and toxin come closer to set points, which are genes",
         (
-            *("food.normal.nutrient=1", "nutrient.initial=1", "nutrient.capacity=3", "nutrient.basic_cost=0.01"),
-            *("food.normal.toxin=1", "toxin.decay=0.1", "energy.capacity=6"),
+            *STORES,
+            *(
+                "food.normal.gives.nutrient=1",
+                "store.nutrient.initial=1",
+                "store.nutrient.capacity=3",
+                "store.nutrient.basic_cost=0.01",
+            ),
+            *("food.normal.gives.toxin=1", "store.toxin.basic_cost=0.1", "energy.capacity=6"),
             *(
                 "reward.drive_reduction_coef=2",
                 "reward.meal_coef=0",
                 "reward.action_coef=0",
-                "genome.set_point.initial_sd=0.3",
+                "energy.set_point.initial_sd=0.3",
             ),
-            *("genome.set_point_nutrient.initial_mean=0.8", "genome.set_point_toxin.initial_sd=0.2"),
-            *("genome.set_point.initial_mean=0.7", "genome.set_point_nutrient.initial_sd=0.3"),
-            *("genome.set_point_toxin.initial_mean=0.3", "genome.mutation.set_point.scale=0.1"),
+            *("store.nutrient.set_point.initial_mean=0.8", "store.toxin.set_point.initial_sd=0.2"),
+            *("energy.set_point.initial_mean=0.7", "store.nutrient.set_point.initial_sd=0.3"),
+            *("store.toxin.set_point.initial_mean=0.3", "genome.mutation.set_point.scale=0.1"),
         ),
         {"paid_drive_reduction": 1000, "eaten": 10},
     ),
@@ -133,7 +184,7 @@ OBSTACLES = {
         (
             *("obstacle.count=4", "obstacle.damage=0.3", "obstacle.min_side=15", "obstacle.max_side=35"),
             *("obstacle.schedule.harmful.points=[[0, 0.5], [40, 1.0], [70, 0.25]]",),
-            *("reward.see.obstacle.coef=0.2", 'reward.see.obstacle.reads="normal"', 'energy.starvation="death"'),
+            *("reward.see.obstacle.coef=0.2", 'reward.see.obstacle.reads="normal"', 'energy.at_zero="death"'),
         ),
         {"harmed": 20, "harmless": 10, "starved": 3, "paid_see_obstacle": 100},
     ),
@@ -160,7 +211,8 @@ HEREDITY = {
             *each("pairs", 'birth.mating="pairs"', "birth.mating_window=6", "birth.mating_range=50"),
             *each("pairs", "population.capacity=20", "population.initial_count=16", "hazard.kappa=0.2"),
             *each("couples", 'birth.mating="pairs"', "population.capacity=16", "population.initial_count=12"),
-            *("food.normal.nutrient=1", "nutrient.initial=2"),
+            *STORES[:3],
+            *("food.normal.gives.nutrient=1", "store.nutrient.initial=2"),
             *each("alone", "birth.logit_offset=3", "population.capacity=14", "population.initial_count=8"),
         ),
         {"mated": 10, "alone": 3, "waiting": 50},
@@ -281,9 +333,25 @@ COMBINED = {
         (
             *("obstacle.count=3", "obstacle.damage=0.2", "obstacle.max_side=30", "obstacle.min_side=20"),
             *("obstacle.schedule.harmful.points=[[0, 1], [50, 0.4]]", 'world.birth_order="after_deaths"'),
-            *("food.fruit.energy=0.3", "food.fruit.nutrient=1", "food.fruit.growth_rate=1", "food.fruit.capacity=12"),
-            *("food.fungus.energy=1", "food.fungus.toxin=3", "food.fungus.growth_rate=1", "food.fungus.capacity=12"),
-            *("nutrient.initial=1", "nutrient.basic_cost=0.02", "toxin.decay=0.1", "birth.kappa=0.15"),
+            *STORES,
+            *(
+                "food.fruit.gives.energy=0.3",
+                "food.fruit.gives.nutrient=1",
+                "food.fruit.growth_rate=1",
+                "food.fruit.capacity=12",
+            ),
+            *(
+                "food.fungus.gives.energy=1",
+                "food.fungus.gives.toxin=3",
+                "food.fungus.growth_rate=1",
+                "food.fungus.capacity=12",
+            ),
+            *(
+                "store.nutrient.initial=1",
+                "store.nutrient.basic_cost=0.02",
+                "store.toxin.basic_cost=0.1",
+                "birth.kappa=0.15",
+            ),
             *each("grazer", "reward.drive_reduction_coef=1", "reward.see.hunter.coef=0.3", 'birth.mating="pairs"'),
             *each("grazer", "birth.mating_window=8", "birth.mating_range=40", "population.capacity=24"),
             *each(
@@ -295,7 +363,7 @@ COMBINED = {
             *each("hunter", 'diet.eats=[["grazer", 0.7], ["hunter", 0.3], ["fruit", 0.5]]', "body.radius=13"),
             *each("hunter", "diet.digestion_steps=3", 'sensor.smells=["grazer", "fruit"]', "sensor.noses=2"),
             *each("hunter", "reward.smell.grazer.coef=0.4", 'reward.family="hungry"', "reward.threshold=3"),
-            *each("hunter", "population.capacity=14", "population.initial_count=9", 'energy.starvation="death"'),
+            *each("hunter", "population.capacity=14", "population.initial_count=9", 'energy.at_zero="death"'),
             *each("drifter", 'learning.policy="random"', 'body.collides=["grazer", "hunter"]', "diet.eats=[]"),
             *each("drifter", "population.capacity=8", "population.initial_count=5", 'genome.mutation_law="normal"'),
         ),

@@ -41,5 +41,5 @@ def each(species: str, *settings: str) -> tuple[str, ...]:
 def kind(name: str, form: str, centers: str, sd: str, *more: str) -> tuple[str, ...]:
     """A kind of food that grows in places of its own."""
     place = (f'form="{form}"', f"centers={centers}", f"sd={sd}", *more)
-    own = ("energy=0.4", "growth_rate=0.8", "capacity=12", "initial_count=4")
+    own = ("gives.energy=0.4", "growth_rate=0.8", "capacity=12", "initial_count=4")
     return tuple(f"food.{name}.{setting}" for setting in (*own, *(f"placement.{each}" for each in place)))

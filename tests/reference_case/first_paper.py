@@ -13,7 +13,7 @@ FIRST_PAPER = {
     ),
     "costly births": Case(
         "who gives energy to a child dies more easily in the same step",
-        ("energy.birth_share=0.8", "hazard.alpha_energy=50", "hazard.beta_energy=3", "birth.kappa=0.15"),
+        ("energy.child_share=0.8", "hazard.alpha_energy=50", "hazard.beta_energy=3", "birth.kappa=0.15"),
         {"births": 20, "deaths": 20},
     ),
     "relocation": Case(
@@ -27,7 +27,7 @@ FIRST_PAPER = {
     ),
     "poor": Case(
         "two foods; starvation kills",
-        ('energy.starvation="death"', 'food."*".growth_rate=1.3', "arena.corner_radius=0"),
+        ('energy.at_zero="death"', 'food."*".growth_rate=1.3', "arena.corner_radius=0"),
         {"energy_forgiven": 0.2, "starved": 5},
         preset="poor",
     ),

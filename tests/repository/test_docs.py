@@ -86,6 +86,8 @@ def test_configs_of_a_page_are_what_they_say(page, tmp_path):
             continue
         config = load_config(file)
         have = values(config)
+        tables = [(path, each) for path, each in have.items() if isinstance(each, dict)]
+        have |= {f"{path}.{name}": number for path, each in tables for name, number in each.items()}
         for path, value in told.items():
             if "*" in path:
                 assert {have[path.replace("*", kind)] for kind in config.food} == {value}, path

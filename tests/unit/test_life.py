@@ -38,7 +38,7 @@ def test_energy_stops_at_zero_and_what_could_not_be_paid_is_forgiven():
 
 
 def test_starvation_can_kill():
-    simulation = make_simulation(*STILL, *SAFE, 'energy.starvation="death"')
+    simulation = make_simulation(*STILL, *SAFE, 'energy.at_zero="death"')
     set_scene(simulation, [(240, 180, 0.0)], energy=0.0505)
     simulation.run(200)
     assert simulation.worlds[0].extinct_step == 51  # 50 steps are paid for, the next is not
@@ -46,7 +46,7 @@ def test_starvation_can_kill():
 
 
 def test_who_starves_bears_no_child_in_its_last_step():
-    fertile = ("birth.kappa=1", "birth.beta=100", *DEATHLESS, 'energy.starvation="death"', "energy.basic_cost=1")
+    fertile = ("birth.kappa=1", "birth.beta=100", *DEATHLESS, 'energy.at_zero="death"', "energy.basic_cost=1")
     simulation = make_simulation(*STILL, *fertile)
     crowd = [
         (x, y, 0.0) for x in range(60, 420, 60) for y in range(60, 300, 60)
@@ -64,7 +64,7 @@ def test_who_starves_bears_no_child_in_its_last_step():
 
 def test_energy_above_the_capacity_is_destroyed():
     simulation = make_simulation(
-        *STILL, *SAFE, "food.normal.energy=5", "energy.capacity=42", "food.normal.growth_rate=0"
+        *STILL, *SAFE, "food.normal.gives.energy=5", "energy.capacity=42", "food.normal.growth_rate=0"
     )
     set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
     simulation.run(1)

@@ -219,7 +219,7 @@ def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
 
 @pytest.mark.parametrize(
     ("path", "value"),
-    [("food.normal.energy", "1000000"), ("population.capacity", "1.5"), ("energy.initial", "many")],
+    [("food.normal.gives.energy", "1000000"), ("population.capacity", "1.5"), ("energy.initial", "many")],
 )
 def test_a_setting_is_refused_in_the_words_of_the_command(path, value, watch):
     given = value if value != "many" else f'"{value}"'

@@ -30,7 +30,7 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
         told = [layout["genes"][term["gene"]]["name"] for term in species["reward"]["meals"]]
         assert told == [f"w_{layout['meals'][term['meal']]}" for term in species["reward"]["meals"]]
         assert [*told, *(f"w_{name}" for name in species["reward"]["rest"])] == [term.gene for term in own.terms]
-    assert [food["energy"] for food in layout["foods"]] == [food.energy for food in config.food.values()]
+    assert [food["energy"] for food in layout["foods"]] == [food.gives["energy"] for food in config.food.values()]
     assert layout["arena"]["width"] == config.arena.width
     assert len(layout["arena"]["walls"]) >= 4
     json.dumps(layout, allow_nan=False)
@@ -61,7 +61,7 @@ def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
 def test_a_changed_setting_changes_only_its_line_of_the_text():
     """What the page does to the text by itself is what the command's config gives."""
     for setting in live_world(load_config("poison"), "poison")["settings"]:
-        if setting["path"] not in ("food.poison.energy", "food.poison.gene.initial_sd", "energy.initial"):
+        if setting["path"] not in ("food.poison.gives.energy", "food.poison.gene.initial_sd", "energy.initial"):
             continue
         before = engine_text(load_config("poison"), 1).splitlines()
         after = engine_text(load_config("poison", overrides=[f"{setting['path']}=0.5"]), 1).splitlines()

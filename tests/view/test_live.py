@@ -141,18 +141,18 @@ def test_the_config_of_the_page_makes_the_same_world(server, watch):
 
 def test_the_config_of_a_world_from_a_file_is_whole(tmp_path, watch):
     file = tmp_path / "mushrooms.toml"
-    file.write_text('preset = "small"\n[food.mushroom]\nenergy = 3.0\ninitial_count = 5\ncapacity = 20\n')
+    file.write_text('preset = "small"\n[food.mushroom]\ngives.energy = 3.0\ninitial_count = 5\ncapacity = 20\n')
     with serving(live_server(str(file))) as server:
         watched = watch(server.link)
         watched.get("hedon.tab('settings')")
         watched.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
-        watched.page.locator("[data-path='food.mushroom.energy']").fill("4.5")
+        watched.page.locator("[data-path='food.mushroom.gives.energy']").fill("4.5")
         watched.page.locator("#restart").click()
         watched.until("hedon.source.changes.size === 1 && hedon.frame")
         watched.get("hedon.tab('world-panel')")
         taken = tmp_path / "taken.toml"
         download(watched, "#save-config").save_as(taken)
-        expected = load_config(str(file), overrides=["food.mushroom.energy=4.5"])
+        expected = load_config(str(file), overrides=["food.mushroom.gives.energy=4.5"])
         assert load_config(str(taken)).food == expected.food
 
 

@@ -139,10 +139,11 @@ def migrate(
 
 
 def _food_lines(config: Config) -> list[str]:
-    return [
-        f"{kind}: energy {food.energy:g}, at most {food.capacity}, {food.placement.form}"
-        for kind, food in config.food.items()
-    ]
+    lines = []
+    for kind, food in config.food.items():
+        amounts = ", ".join(f"{name} {amount:g}" for name, amount in food.gives.items()) or "nothing"
+        lines.append(f"{kind}: {amounts}, at most {food.capacity}, {food.placement.form}")
+    return lines
 
 
 def _text(value: Any) -> str:

@@ -9,10 +9,12 @@ from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.check_species import MAX_COVERAGE, check_species
 from hedon.config.field import inner_sections
 from hedon.config.food import FoodConfig
+from hedon.config.layout import store_columns
 from hedon.config.problem import Check, Problem, nearest, single
 from hedon.config.room import MAX_FOOD_KINDS
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.settings import PROVENANCE, Settings
+from hedon.config.store import ENERGY
 
 MIN_WALL = 0.01
 """Length of the shortest wall whose direction float32 can still hold [u]."""
@@ -89,6 +91,11 @@ def _kinds(check: Check, config: Settings) -> None:
         check.match("#[0-9a-f]{6}", f"{path}.color", 'must be "#rrggbb" in lower-case hexadecimal digits')
         rule = f"must be at most {path}.capacity = {food.capacity}"
         check.need(food.initial_count <= food.capacity, f"{path}.initial_count", rule)
+        for what, table in (("gives", food.gives), ("needs", food.needs)):
+            known = (ENERGY, *store_columns(config))
+            for name in table.keys() - set(known):
+                rule = "no species has such a store: there are " + ", ".join(known)
+                check.add(f"{path}.{what}.{name}", rule, nearest(name, known))
         _placement(check, config.arena, food, f"{path}.placement")
 
 

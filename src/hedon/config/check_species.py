@@ -4,27 +4,34 @@ import math
 import re
 from collections.abc import Sequence
 
-from hedon.config.evolution import GenomeConfig
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import (
-    INNER_STATES,
     SOLID,
     Gene,
     chosen,
-    inner_states,
+    diet,
     layout_of,
+    observed_stores,
     rule_columns,
-    set_point_of,
     smelled,
+    store_columns,
 )
 from hedon.config.problem import Check, nearest, single
-from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_SMELLS, MAX_SPECIES, MAX_TOUCH_BITS
+from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
+from hedon.config.store import ENERGY
 
 THRESHOLDS = ("fed", "hungry", "by_age")
 """Families of rewards that have a threshold."""
+RESERVED_STORES = (
+    *("energy", "age", "reward", "children", "generation", "distance", "eaten", "genome", "cause", "species", "step"),
+    *("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity", "heading", "heading_sine", "heading_cosine"),
+    *("force_left", "force_right", "agent_id", "parent_id", "mate_id", "birth_step", "death_step", "birth_energy"),
+    *("energy_gained", "energy_spent"),
+)
+"""Names of other numbers of an agent, which no store can have."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -38,6 +45,7 @@ def check_species(check: Check) -> None:
         _body(check, config, species, path)
         _life(check, config, species, path)
         _lists(check, config, species, path)
+        _stores(check, config, species, path)
         before = len(check.problems)
         _sight(check, config, species, path)
         if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
@@ -72,7 +80,7 @@ def _body(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
 
 
 def _life(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    learning, birth, energy, population = species.learning, species.birth, species.energy, species.population
+    learning, birth, population = species.learning, species.birth, species.population
     rule = f"must be at most population.capacity = {population.capacity}"
     check.need(population.initial_count <= population.capacity, f"{path}population.initial_count", rule)
     far = birth.distance_unit == "arena_width" and birth.distance_sd > 1
@@ -88,8 +96,6 @@ def _life(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
     check.need(networks, f"{path}birth.network", rule)
     rule = 'must be at least 2 with birth.mating = "pairs": nobody mates alone'
     check.need(birth.mating != "pairs" or population.capacity >= 2, f"{path}population.capacity", rule)
-    rule = f"must be at most energy.capacity = {energy.capacity:g}"
-    check.need(energy.initial <= energy.capacity, f"{path}energy.initial", rule)
     rule = f"must divide world.rollout_steps = {config.world.rollout_steps}"
     check.need(config.world.rollout_steps % learning.minibatch_size == 0, f"{path}learning.minibatch_size", rule)
 
@@ -106,6 +112,28 @@ def _lists(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
         check.need(good, eats, f"the share of a {name} must be from 0 to 1", share)
         if name in everything and name not in touched:
             check.add(eats, f"it passes through {name}, so it cannot eat it: add it to body.collides")
+
+
+def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
+    if len(species.stores) > MAX_STORES:
+        check.add(f"{path}store", f"there must be at most {MAX_STORES} stores with energy, not {len(species.stores)}")
+    for name, store in species.stores.items():
+        place = f"{path}{name}" if name == ENERGY else f"{path}store.{name}"
+        rule = f"must be at most its capacity = {store.capacity:g}"
+        check.need(store.initial <= store.capacity, f"{place}.initial", rule)
+    for name in species.store:
+        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in RESERVED_STORES:
+            rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
+            check.add(f"{path}store.{name}", f"{rule} and not be one of " + ", ".join(RESERVED_STORES))
+    for kind in diet(config, species).keys() & config.food.keys():
+        for name in config.food[kind].needs.keys() & set(store_columns(config)) - set(species.store):
+            rule = f"it needs {name}, which it could never hold: give it store.{name}, or take {kind} out of diet.eats"
+            check.add(f"{path}diet.eats", rule)
+    observed, noses = len(observed_stores(species)), species.sensor.noses
+    most = max(MAX_OBSERVED - observed, 0) // noses
+    smells = len(smelled(config, species.sensor.smells))
+    rule = f"must name at most {most} with sensor.noses = {noses} and {observed} stores that it observes"
+    check.need(smells <= most, f"{path}sensor.smells", rule)
 
 
 def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) -> None:
@@ -140,9 +168,6 @@ def _sight(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
         if name not in smells:
             rule = "it does not smell this: add it to sensor.smells" + (f" = {', '.join(smells)}" if smells else "")
             check.add(f"{path}reward.smell.{name}", rule, nearest(name, smells))
-    noses = species.sensor.noses
-    rule = f"must name at most {MAX_SMELLS // noses} with sensor.noses = {noses}"
-    check.need(len(smells) * noses <= MAX_SMELLS, f"{path}sensor.smells", rule)
 
 
 def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
@@ -158,11 +183,6 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
     for value in ("learning_rate", "entropy_coef"):
         good = value not in genome.learning or getattr(learning, value) > 0
         check.need(good, f"{path}learning.{value}", "a gene multiplies it, so it must not be 0")
-    for state in set(INNER_STATES) - set(inner_states(config, species)):
-        point = set_point_of(state)
-        if getattr(genome, point) != getattr(GenomeConfig(), point):
-            rule = f"nobody here has {state}: give a kind of food that it eats {state} above 0"
-            check.add(f"{path}genome.{point}", rule)
     genes = layout_of(config, species).genes
     names = [gene.name for gene in genes]
     if len(names) > MAX_GENES:

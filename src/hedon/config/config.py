@@ -3,10 +3,10 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hedon.config.layer import EVERY, settle_mutation
-from hedon.config.migrate import MOVED
+from hedon.config.layer import EVERY, settle_mutation, settle_stores
+from hedon.config.migrate import new_path
 from hedon.config.override import parse_path
-from hedon.config.problem import ConfigError, Problem
+from hedon.config.problem import ConfigError, Problem, folded
 from hedon.config.settings import Settings
 from hedon.config.species import PER_SPECIES, default_path
 from hedon.config.validate import build
@@ -23,7 +23,7 @@ class Config(Settings):
 
         Args:
             path: As in a complete file, `species.prey.birth.kappa`, or as in a short one: `birth.kappa` is that of all
-                species, `food.*.energy` that of all kinds of food.
+                species, `food.*.capacity` that of all kinds of food.
             value: Of the setting's type; a table for a section.
 
         Raises:
@@ -32,7 +32,7 @@ class Config(Settings):
         tables, names = asdict(self), parse_path(path)
         if not names:
             raise ConfigError(self.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
-        now = MOVED.get(default_path(".".join(names)))
+        now = new_path(default_path(".".join(names)))
         if now is not None:
             raise ConfigError(self.name, [Problem(path, f"is called {now} now")])
         roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
@@ -41,6 +41,9 @@ class Config(Settings):
             if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
                 raise ConfigError(self.name, [Problem(path, "there is no such setting")])
         settle_mutation(tables)
+        problems = list(settle_stores(tables))
+        if problems:
+            raise ConfigError(self.name, folded(problems, tuple(self.species)))
         return build(Config, tables, self.name)
 
 

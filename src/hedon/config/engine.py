@@ -8,7 +8,7 @@ from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
-from hedon.config.layout import INNER_STATES, Gene, diet, layout_of, set_point_of, types
+from hedon.config.layout import Gene, diet, layout_of, set_point_of, types
 from hedon.config.life import distance_sd
 from hedon.config.species import RULE_USES, SpeciesConfig
 
@@ -134,13 +134,13 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         "smells": [number[each] for each in layout.smells],
         "eats_food": [eaten.get(each, 0.0) for each in config.food],
         "eats_species": [eaten.get(each, 0.0) for each in config.species],
-        "has_nutrient": int("nutrient" in layout.inner),
-        "has_toxin": int("toxin" in layout.inner),
+        "gives": _of_stores(config, "gives", layout.stores),
+        "needs": _of_stores(config, "needs", layout.stores),
         "rules": [int(bool(getattr(species, use).rule)) for use in RULE_USES],
         "genes": [_gene(species, path, each) for each in layout.genes],
         "learning": [{"sets": each, "gene": gene[f"g_{each}"]} for each in species.genome.learning],
         "family": [gene.get(f"g_{each}", -1) for each in FAMILY_GENES],
-        "set_points": [gene.get(set_point_of(state), -1) for state in INNER_STATES],
+        "set_points": [gene.get(set_point_of(state), -1) for state in layout.stores],
         "terms": [
             {
                 "input": term.input,
@@ -152,6 +152,16 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
             for term in layout.terms
         ],
     }
+
+
+def _of_stores(config: Config, what: str, stores: tuple[str, ...]) -> list[Any]:
+    """What each kind of food gives or needs, by kind, then by store."""
+    tables = {kind: getattr(food, what) for kind, food in config.food.items()}
+    return [
+        _Path(f"food.{kind}.{what}.{name}") if name in table else 0.0
+        for kind, table in tables.items()
+        for name in stores
+    ]
 
 
 def _gene(species: SpeciesConfig, path: str, gene: Gene) -> dict[str, Any]:

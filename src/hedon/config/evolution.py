@@ -54,8 +54,7 @@ class GenomeConfig:
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
     that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
-    reward has one, `[genome.set_point]` the set point of energy
-    (`set_point_nutrient`, `set_point_toxin` those of other inner states), and `[genome.neutral]` each neutral marker.
+    reward has one, and `[genome.neutral]` each neutral marker.
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
@@ -81,9 +80,6 @@ class GenomeConfig:
     prey: GeneConfig = section(GeneConfig)
     neutral: GeneConfig = section(GeneConfig)
     second: GeneConfig = section(GeneConfig)
-    set_point: GeneConfig = section(lambda: GeneConfig(initial_mean=0.5))
-    set_point_nutrient: GeneConfig = section(lambda: GeneConfig(initial_mean=0.5))
-    set_point_toxin: GeneConfig = section(GeneConfig)
     learning: dict[str, GeneConfig] = section(names=LEARNING_GENES)
     family: dict[str, GeneConfig] = section(names=FAMILY_GENES)
     mutation: dict[str, MutationConfig] = section()
@@ -143,8 +139,9 @@ class RewardConfig:
     )
     drive_reduction_coef: float = setting(
         0.0,
-        "factor of drive reduction: by how much a step's meals and costs bring energy, nutrient and toxin closer "
-        "to set points, which are genes, in shares of their capacities; 0: there is neither term nor gene",
+        "factor of drive reduction: by how much a step's meals and costs bring the stores closer to set points, which "
+        "are genes, in shares of their capacities, or of motor_threshold where they weaken the motors; 0: there is "
+        "neither term nor gene",
         "",
         OURS,
         ge=-1e3,

@@ -1,7 +1,8 @@
 """How settings are declared: each with its meaning, unit, range and source, for people and for programs."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from functools import cache
 from types import MappingProxyType
 from typing import Any, Literal, get_args, get_origin, get_type_hints
@@ -79,7 +80,10 @@ def setting(
         shapes: The engine gets it, but layouts or walls depend on it too: it cannot be changed without them.
         limits: The allowed values, besides their type, as `Range` takes them.
     """
-    return field(default=default, metadata={"doc": Doc(meaning, unit, source, Range(**limits), derived, shapes)})
+    doc = {"doc": Doc(meaning, unit, source, Range(**limits), derived, shapes)}
+    if isinstance(default, dict):
+        return field(default_factory=default.copy, metadata=doc)
+    return field(default=default, metadata=doc)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +115,8 @@ def type_name(kind: Any) -> str:
     plain = {float: "a number", int: "an integer", str: "a text", bool: "true or false"}
     if kind in plain:
         return plain[kind]
+    if get_origin(kind) is dict:
+        return "a table of numbers"
     items = get_args(kind)
     if items == (str, Ellipsis):
         return "a list of texts"
@@ -149,8 +155,12 @@ def settings(section: type) -> Mapping[str, Setting]:
     """The settings of a section by name, in order, without its inner sections."""
     hints, own = get_type_hints(section), (each for each in fields(section) if "doc" in each.metadata)
     return MappingProxyType(
-        {each.name: Setting(each.name, hints[each.name], each.default, each.metadata["doc"]) for each in own}
+        {each.name: Setting(each.name, hints[each.name], _default(each), each.metadata["doc"]) for each in own}
     )
+
+
+def _default(each: Field[Any]) -> Any:
+    return each.default if each.default_factory is MISSING else each.default_factory()
 
 
 @cache
@@ -164,6 +174,12 @@ def sections(section: type) -> Mapping[str, Section]:
             inner = get_args(kind)[1] if repeated else kind
             found[each.name] = Section(inner, repeated, *each.metadata["section"])
     return MappingProxyType(found)
+
+
+def _number_of(table: Setting, name: str) -> Setting:
+    """One number of a table of them, as a setting."""
+    low, high = table.doc.range.each or (-math.inf, math.inf)
+    return Setting(name, float, 0.0, replace(table.doc, range=Range(ge=low, le=high)))
 
 
 def engine_settings(section: type) -> Mapping[str, Setting]:
@@ -218,11 +234,18 @@ def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section,
 def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
     """Every setting in a section and its inner sections by its path, in order, with its value.
 
+    A table of numbers has a path for each of them: `food.normal.gives.energy`.
+
     Args:
         section: a config, or a part of one.
         path: of the section, with a dot at its end; empty for the config itself.
     """
     for name, setting in settings(type(section)).items():
-        yield f"{path}{name}", setting, getattr(section, name)
+        value = getattr(section, name)
+        if isinstance(value, dict):
+            for each, number in value.items():
+                yield f"{path}{name}.{each}", _number_of(setting, each), number
+        else:
+            yield f"{path}{name}", setting, value
     for place, _, own in inner_sections(section, path):
         yield from leaves(own, f"{place}.")

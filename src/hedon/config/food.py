@@ -5,7 +5,7 @@ from typing import Literal
 
 from hedon.config.evolution import GeneConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
-from hedon.config.room import MAX_FACTOR
+from hedon.config.room import MAX_FACTOR, MAX_STORES
 from hedon.config.schedule import ScheduleConfig
 
 
@@ -48,10 +48,21 @@ class PlacementConfig:
 class FoodConfig:
     """One kind of food. `[food.<kind>.schedule.growth_rate]` and `.capacity` make these follow time."""
 
-    energy: float = setting(1.0, "energy gained by eating one piece", "energy", PAPER, ge=-1e4, le=1e4)
-    nutrient: float = setting(0.0, "nutrient gained by eating one piece", "nutrient", OURS, ge=0, le=1e4, shapes=True)
-    toxin: float = setting(
-        0.0, "toxin that one piece leaves", "toxin", OURS + "; the paper's code has 10", ge=0, le=1e4, shapes=True
+    gives: dict[str, float] = setting(
+        {"energy": 1.0},
+        "by store, what one piece adds to it, or takes if negative; a factor of `diet.eats` is on energy alone",
+        "amount",
+        PAPER + " for energy",
+        max_items=MAX_STORES,
+        each=(-1e4, 1e4),
+    )
+    needs: dict[str, float] = setting(
+        {},
+        "by store, how much an agent must hold to eat a piece; it is not used up, and who lacks it leaves the food",
+        "amount",
+        OURS,
+        max_items=MAX_STORES,
+        each=(0, 1e6),
     )
     growth_rate: float = setting(
         0.2,

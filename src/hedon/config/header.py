@@ -7,6 +7,7 @@ setting. Each struct has the limits of its members, for the engine's own check.
 import sys
 import textwrap
 from collections.abc import Iterator
+from dataclasses import is_dataclass
 from typing import Any, get_args
 
 from hedon.config import room
@@ -58,6 +59,8 @@ def _structs() -> Iterator[str]:
 
 def _add(section: type, made: dict[str, list[str]]) -> str:
     """Adds the struct of a section after those of its inner sections; returns its name."""
+    if is_dataclass(section.__base__):  # the same settings with other defaults
+        return _add(section.__base__, made)
     name = section.__name__
     own, enums, members = name.removesuffix("Config"), [], []
     for setting in engine_settings(section).values():

@@ -38,13 +38,13 @@ def settle_food(tables: Table) -> Iterator[Problem]:
     every = food.pop(EVERY, {})
     if not isinstance(every, dict):
         yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))
-    others = [name for name, other in food.items() if isinstance(other, dict) and "energy" in other]
+    others = [name for name, other in food.items() if isinstance(other, dict) and "gives" in other]
     for kind, value in list(food.items()):
         if value is False:
             del food[kind]
-        elif isinstance(value, dict) and "energy" not in value:
+        elif isinstance(value, dict) and "gives" not in value:
             known = ", ".join(others) or "none"
-            message = f"there is no such kind of food (known: {known}); a new kind must give its energy"
+            message = f"there is no such kind of food (known: {known}); a new kind must say what it gives"
             yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
 
 
@@ -130,6 +130,23 @@ def settle_mutation(tables: Table) -> None:
             for gene, own in genome["mutation"].items()
             if own is not False
         }
+
+
+def settle_stores(tables: Table) -> Iterator[Problem]:
+    """Removes the stores that are false from each species, in place; yields those that are new but have no capacity."""
+    species = tables.get("species")
+    for name, own in species.items() if isinstance(species, dict) else ():
+        stores = own.get("store") if isinstance(own, dict) else None
+        if not isinstance(stores, dict):
+            continue
+        own["store"] = kept = {store: value for store, value in stores.items() if value is not False}
+        known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
+        for store, value in kept.items():
+            if isinstance(value, dict) and store not in known:
+                message = (
+                    f"there is no such store (known: {', '.join(known) or 'none'}); a new one must say its capacity"
+                )
+                yield Problem(f"species.{name}.store.{store}", message, nearest=nearest(store, known))
 
 
 def _lay(base: Any, over: Any) -> Any:

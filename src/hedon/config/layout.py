@@ -11,6 +11,7 @@ from hedon.config.field import value_at
 from hedon.config.problem import nearest
 from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, SpeciesConfig
+from hedon.config.store import ENERGY
 from hedon.error import ArgumentError
 from hedon.text import brief
 
@@ -24,8 +25,6 @@ SCALE, OLD = "_scale", "_old"
 SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
 """Families of rewards whose weights have a second gene: the end of its name, and what it is."""
 SET_POINT = "set_point"
-INNER_STATES = ("energy", "nutrient", "toxin")
-"""What an agent may hold, in the engine's order."""
 MAX_EXPONENT, MAX_WEIGHT = 2.0, 1e3
 """Largest limit of genes that are exponents, and of others."""
 
@@ -87,7 +86,7 @@ class SpeciesLayout:
         genes: The genome, in order.
         terms: The reward, in order.
         sees: What its rays tell apart, in the order of their channels.
-        inner: Which of `INNER_STATES` it has, in order.
+        stores: Names of its stores, in the engine's order: energy first.
         smells: What it smells, in the order of the channels of smell.
         touches: What it collides with and feels, in the order of the channels of touch.
     """
@@ -97,7 +96,7 @@ class SpeciesLayout:
     sees: tuple[str, ...]
     touches: tuple[str, ...]
     smells: tuple[str, ...]
-    inner: tuple[str, ...]
+    stores: tuple[str, ...]
 
     @property
     def gene_names(self) -> tuple[str, ...]:
@@ -136,31 +135,19 @@ def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
         *(f"touch_{kind}_{i}" for kind in layout.touches for i in range(species.sensor.touch_sectors)),
-        *("velocity_x", "velocity_y", *heading, "angular_velocity", *observed_states(config, species)),
+        *("velocity_x", "velocity_y", *heading, "angular_velocity", *observed_stores(species)),
         *(f"smell_{kind}_{i}" for kind in layout.smells for i in range(species.sensor.noses)),
     )
 
 
-def inner_states(config: Settings, species: SpeciesConfig) -> tuple[str, ...]:
-    """Which of `INNER_STATES` a species has: energy, and what its food brings.
-
-    Args:
-        config: with the foods.
-        species: one of the config's.
-    """
-    kinds = [config.food[name] for name in diet(config, species) if name in config.food]
-    return tuple(name for name in INNER_STATES if name == "energy" or any(getattr(kind, name) > 0 for kind in kinds))
+def observed_stores(species: SpeciesConfig) -> tuple[str, ...]:
+    """Names of the stores that a species observes, in order."""
+    return tuple(name for name, store in species.stores.items() if store.observed)
 
 
-def observed_states(config: Settings, species: SpeciesConfig) -> tuple[str, ...]:
-    """Which of its inner states a species observes: energy, and the others unless the config says no.
-
-    Args:
-        config: with the foods.
-        species: one of the config's.
-    """
-    every = inner_states(config, species)
-    return tuple(name for name in every if name == "energy" or getattr(species, name).observed)
+def store_columns(config: Settings) -> tuple[str, ...]:
+    """Names of the stores of all species but energy, each once, in order."""
+    return tuple(dict.fromkeys(name for species in config.species.values() for name in species.store))
 
 
 RULE_INPUTS = (
@@ -175,8 +162,8 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
 
     An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or
     `drive_reduction`. What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
-    Where there are other inner states than energy, they stand before it, each as it was at the start of the step and as
-    it is.
+    Where there are other stores than energy, they stand before it, each as it was at the start of the step and as it
+    is.
 
     Args:
         config: with the species.
@@ -184,11 +171,10 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
         use: of the rule: "reward", "hazard" or "birth".
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
-    inner = inner_states(config, config.species[name])[1:]
-    states = (column for state in inner for column in (f"{state}_before", state))
+    stores = (column for store in config.species[name].store for column in (f"{store}_before", store))
     inputs = (term.name for term in layout.terms)
     own = "linear" if use == "reward" else "chance"
-    return (*inputs, *layout.gene_names, *RULE_INPUTS, *states, own, *(f"memory_{i + 1}" for i in range(memory)))
+    return (*inputs, *layout.gene_names, *RULE_INPUTS, *stores, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
 def choose_species(name: str | None, config: Settings) -> str:
@@ -264,9 +250,9 @@ def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)
 
 
-def set_point_of(state: str) -> str:
-    """The gene of the set point of an inner state."""
-    return SET_POINT if state == "energy" else f"{SET_POINT}_{state}"
+def set_point_of(store: str) -> str:
+    """The gene of the set point of a store."""
+    return SET_POINT if store == ENERGY else f"{SET_POINT}_{store}"
 
 
 class _Layout:
@@ -316,7 +302,6 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     """
     made, genome, reward = _Layout(config, species), species.genome, species.reward
     eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
-    inner = inner_states(config, species)
     for index, kind in enumerate(config.food):
         if kind in eaten:
             made.add_term("food", index, kind, f"a food of kind {kind}", f"food.{kind}.gene", "reward.meal_coef")
@@ -334,10 +319,10 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
             "smell", smells.index(name), f"smell_{name}", f"smelling {name}", f"{place}.gene", f"{place}.coef"
         )
     if reward.drive_reduction_coef:
-        for state in inner:
-            name = set_point_of(state)
-            meaning = f"{state} that it seeks, as a share of its {'threshold' if state == 'toxin' else 'capacity'}"
-            made.add_gene(name, "reward", meaning, f"genome.{name}")
+        for name, store in species.stores.items():
+            measure = "motor_threshold" if store.motor_threshold else "capacity"
+            place = f"{name if name == ENERGY else f'store.{name}'}.set_point"
+            made.add_gene(set_point_of(name), "reward", f"{name} that it seeks, as a share of its {measure}", place)
         coef = "reward.drive_reduction_coef"
         made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.drive_reduction_coef, coef))
     for name in genome.family:
@@ -349,5 +334,10 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
         made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
     touches = chosen(config, species.body.collides)
     return SpeciesLayout(
-        genes=tuple(made.genes), terms=tuple(made.terms), sees=sees, touches=touches, smells=smells, inner=inner
+        genes=tuple(made.genes),
+        terms=tuple(made.terms),
+        sees=sees,
+        touches=touches,
+        smells=smells,
+        stores=tuple(species.stores),
     )

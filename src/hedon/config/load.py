@@ -11,7 +11,16 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, diff, digest, dump_toml
 from hedon.config.field import leaves
-from hedon.config.layer import Table, has, settle_food, settle_mutation, settle_species, stack, with_defaults
+from hedon.config.layer import (
+    Table,
+    has,
+    settle_food,
+    settle_mutation,
+    settle_species,
+    settle_stores,
+    stack,
+    with_defaults,
+)
 from hedon.config.migrate import is_earlier, migrate_text, migrated, renamed
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
@@ -98,7 +107,7 @@ def _current(tables: Table, origin: str) -> Table:
     if not is_earlier(tables):
         return tables
     old = migrated(tables)
-    problems = [*settle_food(old), *settle_species(old, [])]
+    problems = [*settle_food(old), *settle_species(old, []), *settle_stores(old)]
     if problems:
         raise ConfigError(origin, problems)
     return {"complete": True, "schema": SCHEMA} | asdict(build(Config, old, origin))
@@ -111,7 +120,11 @@ def migrated_file(path: Path) -> str:
         ConfigError: It is no config file, or a complete one with something wrong in it.
     """
     tables = read_toml(path)
-    return dump_toml(load_config(path)) if is_earlier(tables) else migrate_text(path.read_text(encoding="utf-8-sig"))
+    if is_earlier(tables):
+        return dump_toml(load_config(path))
+    preset = tables.get("preset", DEFAULT_PRESET)
+    below = stack(_preset_layers(preset)) if preset in PRESETS else {}
+    return migrate_text(path.read_text(encoding="utf-8-sig"), below)
 
 
 def is_modified(config: Config) -> bool:
@@ -206,13 +219,20 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
     merged = stack([*below, *above])
     problems = [*_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
+    problems += settle_stores(merged)
     settle_mutation(merged)
     if problems:
-        raise ConfigError(origin, problems)
+        raise ConfigError(origin, folded(problems, _species_of(merged)))
     config = build(Config, merged, origin)
     if complete:
         _require_complete(config, merged, origin)
     return config
+
+
+def _species_of(tables: Table) -> tuple[str, ...]:
+    """The names of the species, as far as there are any."""
+    species = tables.get("species")
+    return tuple(species) if isinstance(species, dict) else ()
 
 
 def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:

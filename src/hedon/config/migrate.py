@@ -6,7 +6,7 @@ from typing import Any
 
 from hedon.config.layer import Table, has
 from hedon.config.problem import Problem
-from hedon.config.species import PER_SPECIES
+from hedon.config.species import EVERYTHING, PER_SPECIES
 
 MOVED = {
     "body.food_radius": "world.food_radius",
@@ -23,8 +23,32 @@ MOVED = {
     "learning.rollout_steps": "world.rollout_steps",
     "learning.networks": "world.networks",
     "reward.relief_coef": "reward.drive_reduction_coef",
+    "energy.birth_share": "energy.child_share",
+    "energy.starvation": "energy.at_zero",
+    "genome.set_point": "energy.set_point",
+    **{f"nutrient.{name}": f"store.nutrient.{name}" for name in ("initial", "capacity", "basic_cost", "action_cost")},
+    "nutrient.hazard_share": "store.nutrient.hazard_weight",
+    "nutrient.observed": "store.nutrient.observed",
+    "genome.set_point_nutrient": "store.nutrient.set_point",
+    "toxin.decay": "store.toxin.basic_cost",
+    "toxin.threshold": "store.toxin.motor_threshold",
+    "toxin.observed": "store.toxin.observed",
+    "genome.set_point_toxin": "store.toxin.set_point",
 }
 """Settings of a file that have another path now."""
+GIVEN = ("energy", "nutrient", "toxin")
+"""What a kind of food gave by settings of its own, before it had `gives`."""
+STORES: dict[str, dict[str, Any]] = {
+    "nutrient": {
+        **{"initial": 40.0, "capacity": 400.0, "basic_cost": 1e-4, "action_cost": 2e-6, "hazard_weight": 0.2},
+        "set_point": {"initial_mean": 0.5, "initial_sd": 0.1},
+    },
+    "toxin": {
+        **{"capacity": 1e6, "basic_cost": 0.01, "motor_threshold": 5.0, "scale": 10.0},
+        "set_point": {"initial_mean": 0.0, "initial_sd": 0.1},
+    },
+}
+"""What the stores of earlier versions did where a file did not say it."""
 VALUES = {
     "learning.policy": {"still": "idle", "frozen": "fixed"},
     "world.mutation_noise": {"frozen": "tabulated"},
@@ -53,6 +77,23 @@ def renamed(tables: Table) -> Iterator[Problem]:
             if isinstance(value, str) and value in names:
                 yield Problem(place + path, f'is called "{names[value]}" now ({_HINT})', f'"{value}"')
 
+    for kind, food in _tables(tables.get("food")).items():
+        for name in GIVEN:
+            if name in food:
+                yield Problem(f"food.{kind}.{name}", f"is called food.{kind}.gives.{name} now ({_HINT})")
+
+
+def new_path(path: str) -> str | None:
+    """What a setting is called now that another version had at this path; None if none had it.
+
+    Args:
+        path: as in a file of one species.
+    """
+    names = path.split(".")
+    if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
+        return f"food.{names[1]}.gives.{names[2]}"
+    return MOVED.get(path)
+
 
 def is_earlier(tables: Mapping[str, Any]) -> bool:
     """Whether tables are those of a complete file of an earlier version, as the folders of its runs have."""
@@ -69,6 +110,7 @@ def migrated(tables: Table) -> Table:
     for food in _tables(made.get("food")).values():
         food |= {"gene": _law(genome, "initial_mean_food")} if has(genome, ["initial_mean_food"]) else {}
     _rename(made, [*species.values(), made])
+    _name_stores(made, {}, whole=True)
     for name in PER_SPECIES if species else ():
         made.pop(name, None)
     for own in species.values() or [made]:
@@ -81,12 +123,18 @@ def migrated(tables: Table) -> Table:
     return made
 
 
-def migrate_text(text: str) -> str:
-    """A short file of an earlier version with the names of this one; comments and order stay."""
+def migrate_text(text: str, below: Table) -> str:
+    """A short file of an earlier version with the names of this one; comments and order stay.
+
+    Args:
+        text: of the file.
+        below: the tables of its preset.
+    """
     import tomlkit
 
     document: Any = tomlkit.parse(text)
     _rename(document, [document, *_tables(document.get("species")).values()], tomlkit.table)
+    _name_stores(document, below, False, tomlkit.table)
     return tomlkit.dumps(document)
 
 
@@ -102,7 +150,7 @@ def _law(genome: Table, mean: str = "") -> Table:
 def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict) -> None:
     """Gives settings and choices the names of this version, in place."""
     for old, new in MOVED.items():
-        (section, name), (target, now) = old.split("."), new.split(".")
+        (section, name), (target, *between, now) = old.split("."), new.split(".")
         for owner in owners:
             if not has(owner, [section, name]):
                 continue
@@ -110,9 +158,67 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict) -
             if not owner[section]:
                 owner.pop(section)
             home = root if target == "world" else owner
-            home.setdefault(target, table())[now] = value
+            for place in (target, *between):
+                home = home.setdefault(place, table())
+            home[now] = value
+    for food in _tables(root.get("food")).values():
+        for name in GIVEN:
+            if name in food:
+                value = food.pop(name)
+                food.setdefault("gives", table())[name] = value
     for path, names in VALUES.items():
         section, name = path.split(".")
         for owner in owners:
             if has(owner, [section, name]) and isinstance(owner[section][name], str):
                 owner[section][name] = names.get(owner[section][name], owner[section][name])
+
+
+def _name_stores(root: Any, below: Table, whole: bool, table: Callable[[], Any] = dict) -> None:
+    """Names the stores of earlier versions, in place. Who ate nothing of what a store is filled by did not have it.
+
+    Args:
+        root: the tables of a file.
+        below: those of its preset.
+        whole: each species has all its settings, and those at the top mean nothing.
+        table: makes an empty table.
+    """
+    foods, above, under = _tables(root.get("food")), _tables(root.get("species")), _tables(below.get("species"))
+    for name, before in STORES.items():
+        for food in foods.values():
+            if food.get("gives", {}).get(name) == 0:
+                del food["gives"][name]
+        kinds = {kind for kind, food in foods.items() if name in food.get("gives", {})}
+        for own in above.values() if whole and above else [root]:
+            if kinds:
+                share = {"child_share": own.get("energy", {}).get("child_share", 0.4)} if name == "nutrient" else {}
+                _fill(own.setdefault("store", table()).setdefault(name, table()), before | share)
+            else:
+                own.get("store", {}).pop(name, None)
+        for each in dict.fromkeys((*above, *under)) if kinds else ():
+            own, layers = above.get(each, {}), (above.get(each), under.get(each), root, below)
+            if not _eats(kinds, layers):
+                place = root.setdefault("species", table()).setdefault(each, table())
+                place.setdefault("store", table())[name] = False
+            elif name == "nutrient" and has(own, ["energy", "child_share"]):
+                store = own.setdefault("store", table()).setdefault(name, table())
+                store["child_share"] = own["energy"]["child_share"]
+    for own in (root, *above.values()):
+        if own.get("store") == {}:
+            own.pop("store")
+
+
+def _fill(store: Any, before: Table) -> None:
+    """Gives a table what it lacks of another one, in place."""
+    for name, value in before.items():
+        if isinstance(value, dict) and name in store:
+            _fill(store[name], value)
+        elif name not in store:
+            store[name] = value
+
+
+def _eats(kinds: set[str], layers: Sequence[Any]) -> bool:
+    """Whether who has these tables, of which the first that says it counts, eats any of some kinds of food."""
+    told = (each["diet"]["eats"] for each in layers if has(each, ["diet", "eats"]))
+    return any(
+        factor and (name in kinds or EVERYTHING in (name, *kinds)) for name, factor in next(told, [[EVERYTHING, 1.0]])
+    )

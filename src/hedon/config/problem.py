@@ -131,14 +131,18 @@ def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]
 
 
 def format_value(value: Any) -> str:
-    """A value as TOML writes it; a table as "a table"."""
+    """A value as TOML writes it; a table that has more than numbers as "a table"."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(format_value(item) for item in value) + "]"
-    return "a table" if isinstance(value, dict) else repr(value)
+    if not isinstance(value, dict):
+        return repr(value)
+    if any(isinstance(item, bool) or not isinstance(item, int | float) for item in value.values()):
+        return "a table"
+    return "{" + ", ".join(f"{name} = {item!r}" for name, item in value.items()) + "}"
 
 
 def single(value: float) -> float:

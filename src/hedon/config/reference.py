@@ -24,8 +24,11 @@ fidelity = "corrected"
 [energy]
 initial = 20.0
 
-[food.fungus]        # a new kind of food must give its energy
-energy = 0.5
+[food.fungus]        # a new kind of food must say what it gives
+gives = { energy = 0.5, water = 2.0 }
+
+[store.water]        # a new store must say its capacity
+capacity = 50.0
 
 [food."*"]           # every kind of food
 growth_rate = 0.5

@@ -10,8 +10,10 @@ MAX_RAYS = 32
 """Most rays of an agent."""
 MAX_TOUCH_BITS = 128
 """Most types times touch sectors."""
-MAX_SMELLS = 12
-"""Most smells times noses, beside inner states."""
+MAX_STORES = 8
+"""Most stores of a species, energy among them."""
+MAX_OBSERVED = 15
+"""Most that a species observes of its stores, and of smells times noses, together."""
 MAX_GENES = 64
 """Most genes of a genome."""
 MAX_FORCE = 1e6

@@ -4,13 +4,13 @@ import re
 from dataclasses import dataclass, fields
 
 from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
-from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, section, setting
-from hedon.config.inner import NutrientConfig, ToxinConfig
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.population import PopulationConfig
+from hedon.config.room import MAX_STORES
+from hedon.config.store import ENERGY, EnergyConfig, StoreConfig
 
 ONLY = "agent"
 """The name of the species of a file without `[species]`."""
@@ -46,13 +46,17 @@ class SpeciesConfig:
     population: PopulationConfig = section(PopulationConfig)
     diet: DietConfig = section(DietConfig)
     energy: EnergyConfig = section(EnergyConfig)
-    nutrient: NutrientConfig = section(NutrientConfig)
-    toxin: ToxinConfig = section(ToxinConfig)
+    store: dict[str, StoreConfig] = section(most=MAX_STORES - 1)
     hazard: HazardConfig = section(HazardConfig)
     birth: BirthConfig = section(BirthConfig)
     genome: GenomeConfig = section(GenomeConfig, derived=True)
     reward: RewardConfig = section(RewardConfig)
     learning: LearningConfig = section(LearningConfig)
+
+    @property
+    def stores(self) -> dict[str, StoreConfig]:
+        """All its stores by name: energy, then the others in their order."""
+        return {ENERGY: self.energy, **self.store}
 
 
 PER_SPECIES = tuple(each.name for each in fields(SpeciesConfig))

@@ -4,7 +4,8 @@ import math
 import re
 import sys
 from collections.abc import Iterator, Mapping
-from typing import Any, TypeVar, get_args
+from dataclasses import replace
+from typing import Any, TypeVar, get_args, get_origin
 
 from hedon.config.check import contradictions
 from hedon.config.field import Setting, sections, settings
@@ -40,9 +41,10 @@ def build(root: type[S], tables: Mapping[str, Any], origin: str) -> S:
     return config
 
 
-def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[Problem]) -> T:
-    """A section from its table; adds what is wrong to `problems`, and leaves it out."""
+def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[Problem], base: T | None = None) -> T:
+    """A section from its table, with the defaults of `base`; adds what is wrong to `problems`, and leaves it out."""
     own, inner, values = settings(kind), sections(kind), {}
+    default: Any = kind() if base is None else base
     for name, value in zip(map(str, table), table.values(), strict=True):
         place = f"{path}{name}"
         if name in own:
@@ -55,7 +57,7 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
         elif not isinstance(value, Mapping):
             problems.append(Problem(place, "must be a table", format_value(value)))
         elif not inner[name].repeated:
-            values[name] = _section(inner[name].type, value, f"{place}.", problems)
+            values[name] = _section(inner[name].type, value, f"{place}.", problems, getattr(default, name))
         else:
             values[name] = {}
             for each, below in zip(map(str, value), value.values(), strict=True):
@@ -63,11 +65,13 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
                     values[name][each] = _section(inner[name].type, below, f"{place}.{each}.", problems)
                 else:
                     problems.append(Problem(f"{place}.{each}", "must be a table", format_value(below)))
-    return kind(**values)
+    return replace(default, **values)
 
 
 def _plain(value: Any) -> Any:
     """NumPy's numbers as Python's."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(each) for name, each in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
     return value.item() if getattr(value, "ndim", 1) == 0 and hasattr(value, "item") else value
@@ -102,6 +106,11 @@ def _misfits(kind: Any, value: Any, place: str = "") -> Iterator[tuple[str, Any]
     elif not items:
         if not _is_a(kind, value):
             yield place, value
+    elif get_origin(kind) is dict:
+        for name, part in value.items() if isinstance(value, dict) else ():
+            yield from _misfits(items[1], part, f"{place}.{name}")
+        if not isinstance(value, dict):
+            yield place, value
     elif not isinstance(value, list | tuple):
         yield place, value
     elif items[1:] != (Ellipsis,) and len(value) != len(items):
@@ -121,7 +130,9 @@ def _is_a(kind: type, value: Any) -> bool:
 
 
 def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers in a list and in the lists in it, each with its place."""
+    """The numbers in a table, or in a list and in the lists in it, each with its place."""
+    for name, item in value.items() if isinstance(value, dict) else ():
+        yield f"{place}.{name}", item
     for i, item in enumerate(value) if isinstance(value, list | tuple) else ():
         yield from _numbers(item, f"{place}[{i}]")
     if isinstance(value, int | float):
@@ -131,6 +142,8 @@ def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
 def _converted(kind: Any, value: Any) -> Any:
     """A value of the right type with tuples for lists, and numbers with a point where a setting has them."""
     items = get_args(kind)
+    if isinstance(value, dict):
+        return {name: float(part) for name, part in value.items()}
     if not isinstance(value, list | tuple):
         return float(value) if kind is float else value
     return tuple(_converted(items[0 if items[1] is Ellipsis else i], part) for i, part in enumerate(value))

@@ -10,7 +10,7 @@ import numpy as np
 from hedon.config import Config
 from hedon.config.body import MotorConfig
 from hedon.config.food import FoodConfig
-from hedon.config.layout import choose_species, diet, inner_states
+from hedon.config.layout import choose_species, diet
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
@@ -159,7 +159,7 @@ def _eats_food(config: Config, species: str) -> bool:
 def _feeding(config: Config, species: str) -> dict[str, float]:
     """The energy that a species gains by each kind of food that feeds it."""
     eaten = diet(config, config.species[species])
-    energies = {kind: eaten.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
+    energies = {kind: eaten.get(kind, 0.0) * food.gives.get("energy", 0.0) for kind, food in config.food.items()}
     return {kind: energy for kind, energy in energies.items() if energy > 0}
 
 
@@ -185,7 +185,7 @@ def _warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...], fed
     own = config.species[species]
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
     capacity, founders = own.population.capacity, own.population.initial_count
-    floor = own.energy.starvation == "floor"
+    floor = own.energy.at_zero == "floor"
     found = list(_rule_warnings(own))
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
@@ -289,22 +289,28 @@ def _others(config: Config, species: str) -> Iterator[str]:
 def _beyond(config: Config, species: str) -> Iterator[str]:
     """What enters births and deaths, but not this forecast."""
     own = config.species[species]
-    inner = inner_states(config, own)
     if config.obstacle.count and config.obstacle.damage:
         yield (
             f"Obstacles cost {config.obstacle.damage:g} energy per step of touch: how often they are touched depends "
             "on what agents learn, and is not forecast."
         )
-    if "nutrient" in inner:
-        empty = own.nutrient.hazard_share * float(energy_hazard(own.hazard, 0.0))
-        yield f"Without nutrient the chance of death is {empty:.3g} per step higher; lives here are with enough."
+    for name, store in own.store.items():
+        empty = store.hazard_weight * float(energy_hazard(own.hazard, 0.0))
+        if empty:
+            yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
+        if store.at_zero == "death":
+            yield f"Without {name} agents die at once: how often that happens is not forecast."
+    gated = [kind for kind in diet(config, own) if kind in config.food and config.food[kind].needs]
+    if gated:
+        yield f"Only agents that hold enough can eat {' and '.join(gated)}: the numbers here are as if all could."
     if own.birth.mating == "pairs":
         yield (
             "Children need two parents that wait near one another: R0 counts draws, of which two make one child, and "
             "the chance to meet is not forecast."
         )
-    if "toxin" in inner:
-        yield "Toxin weakens motors, so agents that eat it move and spend less; this is not forecast."
+    for name, store in own.stores.items():
+        if store.motor_threshold:
+            yield f"{name.capitalize()} weakens motors, so agents that hold it spend less; this is not forecast."
 
 
 def _rule_warnings(own: SpeciesConfig) -> Iterator[str]:

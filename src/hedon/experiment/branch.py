@@ -178,7 +178,7 @@ def _check_shape(config: Config, changed: Config) -> None:
         if default_path(path).startswith(SHAPE)
         or path == "food"
         or (path.startswith("food.") and path.endswith(".capacity"))
-        or (path.endswith("energy.starvation") and columns_of(config).causes != columns_of(changed).causes)
+        or (path.endswith(".at_zero") and columns_of(config).causes != columns_of(changed).causes)
     ]
     if fixed:
         raise RecordError(

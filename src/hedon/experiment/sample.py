@@ -108,8 +108,8 @@ class PopulationSampler:
         for name, k in _meals(self.columns).items():
             row[f"eaten_{name}"] = now.eaten[k] - since.eaten[k]
         row["energy_total"] = lives["energy"].sum()
-        own = list(layouts(world.config).values())[self.species].inner
-        for name in self.columns.inner:
+        own = list(world.config.species.values())[self.species].store
+        for name in self.columns.stores:
             row[f"{name}_mean"] = lives[name].mean() if name in own and len(lives[name]) else np.nan
         return row
 

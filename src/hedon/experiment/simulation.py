@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.engine import engine_input
-from hedon.config.layout import INNER_STATES, layouts
+from hedon.config.layout import layouts, store_columns
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.device import device_library
@@ -225,16 +225,22 @@ class World:
         return self._engine.view(self.index, path)
 
     def agents(self) -> dict[str, NDArray[Any]]:
-        """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes)."""
+        """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes).
+
+        Each store beside energy is there by its name, with 0 for agents of species that do not have it.
+        """
         rows = self._engine.living_rows(self.index)
         living = self.living
         rows["age"] = self.step - rows["birth_step"]
         for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
             rows[name] = self.view(f"physics.bodies.{name}")[living]
-        inner = self.view("inner")
-        for i, name in enumerate(INNER_STATES[1:]):
-            if len(inner):
-                rows[name] = inner[living, i]
+        held = self.view("store")[living] if len(self.view("store")) else np.zeros((len(living), 0))
+        for name in store_columns(self.config):
+            rows[name] = np.zeros(len(living))
+            for species, each in enumerate(self.config.species.values()):
+                if name in each.store:
+                    mine = rows["species"] == species
+                    rows[name][mine] = held[mine, list(each.store).index(name)]
         return rows
 
     def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:

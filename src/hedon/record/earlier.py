@@ -2,7 +2,7 @@
 
 import json
 
-NAMES = {"kernel": "backend"}
+NAMES = {"kernel": "backend", "inner": "stores"}
 """Fields of a manifest, of its sessions, and of the head of a checkpoint."""
 
 

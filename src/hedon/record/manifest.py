@@ -125,7 +125,7 @@ class Manifest:
         obstacles: whether the worlds have obstacles; fixes the columns of the tables.
         obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
         mating: whether some species has two parents.
-        inner: names of the inner states beside energy, of all species.
+        stores: names of the stores beside energy, of all species.
         causes: whether agents die of more than age and energy; None in old manifests.
         rules: the rules in Python, with their texts.
         format_version: of the run folder.
@@ -168,7 +168,7 @@ class Manifest:
     prey: tuple[str, ...] = ()
     obstacles: bool = False
     mating: bool = False
-    inner: tuple[str, ...] = ()
+    stores: tuple[str, ...] = ()
     causes: bool | None = None
     obstacle_places: tuple[tuple[tuple[tuple[float, float], ...], ...], ...] = ()
     rules: tuple[RuleSource, ...] = ()
@@ -194,9 +194,9 @@ class Manifest:
         for kind in self.food_kinds:
             if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", kind):
                 yield f"food_kinds: {brief(repr(kind))} is not the name of a food kind"
-        for name in (*self.species, *self.rewards, *self.prey):
+        for name in (*self.species, *self.rewards, *self.prey, *self.stores):
             if not re.fullmatch(r"[a-z][a-z0-9_]{0,63}", name):
-                yield f"species, rewards: {brief(repr(name))} is not the name of a species or a gene"
+                yield f"species, rewards, stores: {brief(repr(name))} is not the name of a species, a gene or a store"
         for color in self.food_colors:
             if not re.fullmatch(r"#[0-9a-fA-F]{6}", color):
                 yield f'food_colors: {brief(repr(color))} is not a color "#rrggbb"'

@@ -8,7 +8,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.layout import INNER_STATES, LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts
+from hedon.config.layout import LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts, store_columns
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -30,7 +30,7 @@ class Columns:
         prey: names of the species that are eaten, by others or by their own kind.
         obstacles: whether the worlds have obstacles.
         mating: whether some species has two parents.
-        inner: names of the inner states beside energy, of all species.
+        stores: names of the stores beside energy, of all species.
         causes: whether agents die of more than age and energy; None where a manifest does not say: columns of causes
             and of hunts then are there if there are several species.
     """
@@ -42,7 +42,7 @@ class Columns:
     prey: tuple[str, ...] = ()
     obstacles: bool = False
     mating: bool = False
-    inner: tuple[str, ...] = ()
+    stores: tuple[str, ...] = ()
     causes: bool | None = None
 
     @property
@@ -88,8 +88,8 @@ def columns_of(config: Config) -> Columns:
     neutral = max(species.genome.neutral_count for species in config.species.values())
     eaten = {name for species in config.species.values() for name in diet(config, species)}
     prey = tuple(name for name in config.species if name in eaten)
-    inner = tuple(name for name in INNER_STATES[1:] if any(name in each.inner for each in made.values()))
-    starving = any(species.energy.starvation == "death" for species in config.species.values())
+    stores = (store for species in config.species.values() for store in species.stores.values())
+    starving = any(store.at_zero == "death" for store in stores)
     return Columns(
         food_kinds=tuple(config.food),
         neutral_count=neutral,
@@ -98,7 +98,7 @@ def columns_of(config: Config) -> Columns:
         prey=prey,
         obstacles=config.obstacle.count > 0,
         mating=any(species.birth.mating == "pairs" for species in config.species.values()),
-        inner=inner,
+        stores=store_columns(config),
         causes=bool(prey) or starving,
     )
 
@@ -202,7 +202,10 @@ def _population_table(columns: Columns) -> Table:
         Column("energy_lost", "f64", "energy", "held by those who died in the interval"),
         Column("energy_shared", "f64", "energy", "given by parents to children in the interval"),
         Column("energy_total", "f64", "energy", "held by the living at the end"),
-        *(Column(f"{name}_mean", "f32", name, f"mean {name} of the living at the end", True) for name in columns.inner),
+        *(
+            Column(f"{name}_mean", "f32", "amount", f"mean {name} of the living at the end", True)
+            for name in columns.stores
+        ),
     )
 
 

@@ -63,7 +63,7 @@ _MECHANISMS = {
     "death by starvation, or agents that eat agents": Columns(("normal",), 1, causes=True),
     "agents that eat agents, here those of a species `prey`": Columns(("normal",), 1, prey=("prey",), causes=True),
     "obstacles": Columns(("normal",), 1, obstacles=True),
-    "other inner states than energy": Columns(("normal",), 1, inner=("nutrient", "toxin")),
+    "other stores than energy, here `water`": Columns(("normal",), 1, stores=("water",)),
 }
 """What gives the tables more columns, each with the columns that a run then has."""
 

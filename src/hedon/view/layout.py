@@ -30,7 +30,7 @@ def describe(config: Config) -> dict[str, Any]:
     """
     made = layouts(config)
     foods = [
-        {"name": name, "radius": config.world.food_radius, "energy": food.energy, "color": food.color}
+        {"name": name, "radius": config.world.food_radius, "energy": food.gives.get("energy", 0.0), "color": food.color}
         for name, food in config.food.items()
     ]
     hunting = any(name in config.species for each in config.species.values() for name in diet(config, each))

@@ -12,7 +12,7 @@ CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_physics": ("Bodies and physics", ("arena", "body", "physics", "obstacle")),
     "parameters_sense": ("Motors and senses", ("motor", "sensor")),
     "parameters_food": ("Food", ("food", "diet")),
-    "parameters_life": ("Energy, birth and death", ("population", "energy", "nutrient", "toxin", "hazard", "birth")),
+    "parameters_life": ("Energy, birth and death", ("population", "energy", "store", "hazard", "birth")),
     "parameters_evolution": ("Genome and reward", ("genome", "reward")),
     "parameters_learning": ("Learning", ("learning",)),
     "parameters_world": ("Rules of the world", ("world",)),

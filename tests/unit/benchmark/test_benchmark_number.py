@@ -69,7 +69,7 @@ def test_a_scaled_world_has_the_same_density_of_everything(preset):
     for kind, food in base.food.items():
         for name in ("capacity", "growth_rate", "candidates"):
             assert getattr(scaled.food[kind], name) == pytest.approx(10 * getattr(food, name))
-        assert scaled.food[kind].energy == food.energy
+        assert scaled.food[kind].gives == food.gives
     assert scaled.world.rollout_steps == 100  # no window ends within the 99 steps
     assert scaled_own.energy == own.energy
 

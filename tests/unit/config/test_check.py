@@ -6,7 +6,7 @@ from hedon.assay.option import parse_spread
 from hedon.config import ConfigError, load_config
 from hedon.config.gene import limit_of
 
-NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.energy=1" for i in range(8))]
+NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.gives.energy=1" for i in range(8))]
 
 TWO = ["species.a.body.radius=10", "species.b.body.radius=10"]
 NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
@@ -37,10 +37,10 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
             "food.normal.initial_count = 20: must be at most food.normal.capacity = 10",
         ),
         (["motor.min_force=80"], "motor.min_force = 80.0: must be below motor.max_force = 80"),
-        (["energy.capacity=30"], "energy.initial = 40.0: must be at most energy.capacity = 30"),
+        (["energy.capacity=30"], "energy.initial = 40.0: must be at most its capacity = 30"),
         (NINE_KINDS, "food: there must be from 1 to 8 kinds of food, not 9"),
         (
-            ["sensor.touch_sectors=32", "food.b.energy=1", "food.c.energy=1"],
+            ["sensor.touch_sectors=32", "food.b.gives.energy=1", "food.c.gives.energy=1"],
             "sensor.touch_sectors = 32: must be at most 25 with 5 types to touch",
         ),
         (
@@ -136,7 +136,7 @@ def test_each_contradiction(overrides: list[str], line: str) -> None:
 @pytest.mark.parametrize("kind", ["agent", "wall", "obstacle", "action", "Big", "1st", "a-b"])
 def test_names_of_kinds(kind: str) -> None:
     with pytest.raises(ConfigError, match=f"food.{kind}: a kind's name must have only a-z"):
-        load_config("baseline", overrides=[f"food.{kind}.energy=1"])
+        load_config("baseline", overrides=[f"food.{kind}.gives.energy=1"])
 
 
 def test_all_contradictions_come_at_once() -> None:

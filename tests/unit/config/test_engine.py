@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from two_stores import FED
 
 from hedon.config import engine_config, load_config, walls
 from hedon.config.config import Config
@@ -22,8 +23,8 @@ CONFIG = load_config(
         "sensor.smells=['poison']",
         "reward.smell.poison.coef=0.1",
         "reward.family=by_age",
-        "food.poison.nutrient=1.0",
-        "food.normal.toxin=1.0",
+        *FED,
+        "food.poison.needs.nutrient=1.0",
         "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
         "genome.mutation.w_action.scale=0.1",
@@ -49,7 +50,7 @@ def changed(config: Any, path: str, value: Any) -> Any:
     """A config, or a part of one, with one setting replaced, unchecked."""
     name, _, rest = path.partition(".")
     if isinstance(config, dict):
-        return {**config, name: changed(config[name], rest, value)}
+        return {**config, name: changed(config[name], rest, value) if rest else value}
     return replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
 
 
@@ -90,7 +91,7 @@ def test_the_engine_has_settings_at_their_own_paths() -> None:
     places = engine_paths(CONFIG)
     assert places["physics.dt"] == ["physics.dt"]
     assert places["world.rollout_steps"] == ["world.rollout_steps"]
-    assert places["food.poison.energy"] == ["food[1].energy"]
+    assert places["food.poison.gives.energy"] == ["layout[0].gives[3]"]
     assert places[OWN + "hazard.beta_age"] == ["species[0].hazard.beta_age"]
     assert places["food.poison.gene.initial_sd"] == ["layout[0].genes[2].law.initial_sd"]
     assert places[OWN + "genome.mutation.w_action.scale"] == ["layout[0].genes[4].mutation.scale"]

@@ -46,7 +46,7 @@ def test_every_preset_loads_with_every_fidelity(preset: str, fidelity: str) -> N
 def test_presets_are_the_conditions_of_the_paper(preset: str, size: tuple[int, int], foods: dict) -> None:
     config = load_config(preset)
     assert (config.arena.width, config.arena.height) == size
-    assert {k: (f.energy, f.capacity, f.placement.form) for k, f in config.food.items()} == foods
+    assert {k: (f.gives["energy"], f.capacity, f.placement.form) for k, f in config.food.items()} == foods
     assert list(config.food) == list(foods)
     for food in config.food.values():
         assert (food.growth_rate, food.initial_count, food.candidates) == (0.2, 20, 10)
@@ -119,10 +119,10 @@ def test_fidelity_of_the_call_wins_over_the_files(write: Write) -> None:
 
 
 def test_file_adds_and_removes_kinds_of_food(write: Write) -> None:
-    path = write('preset = "poor"\nfidelity = "released"\n[food]\npoor = false\n[food.fungus]\nenergy = 0.5\n')
+    path = write('preset = "poor"\nfidelity = "released"\n[food]\npoor = false\n[food.fungus]\ngives.energy = 0.5\n')
     config = load_config(path)
     assert list(config.food) == ["normal", "fungus"]
-    assert config.food["fungus"].energy == 0.5
+    assert config.food["fungus"].gives == {"energy": 0.5}
     assert config.food["fungus"].growth_rate == 1.0, "the overlay holds for every kind"
 
 
@@ -145,7 +145,7 @@ def test_unknown_kind_is_not_silently_a_new_one() -> None:
 def test_removed_kinds_can_be_too_many() -> None:
     assert "food: there must be from 1 to 8 kinds" in problems("small", overrides=["food.normal=false"])
     message = problems("small", overrides=["food.normal=false", "food.normal.capacity=3"])
-    assert "a new kind must give its energy" in message
+    assert "a new kind must say what it gives" in message
 
 
 def test_unknown_preset_names_the_nearest() -> None:
@@ -248,5 +248,5 @@ def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Wri
     assert not is_modified(load_config("poison", overrides=['food.poison.color="#112233"']))
     assert not is_modified(load_config(write('preset = "small"\nfidelity = "text"\n')))
     assert is_modified(load_config("poison", overrides=["energy.initial=7"]))
-    assert is_modified(load_config(write("[food.mushroom]\nenergy = 3.0\n")))
+    assert is_modified(load_config(write("[food.mushroom]\ngives.energy = 3.0\n")))
     assert is_modified(dataclasses.replace(Config(), preset="mine"))

@@ -15,8 +15,9 @@ from hedon.config.dump import flatten
 from hedon.config.evolution import GeneConfig
 from hedon.config.field import sections, settings
 from hedon.config.load import migrated_file, parse_config
-from hedon.config.migrate import MOVED, VALUES
+from hedon.config.migrate import MOVED, STORES, VALUES
 from hedon.config.species import SpeciesConfig
+from hedon.config.store import StoreConfig
 from hedon.config.world import WorldConfig
 from hedon.experiment.resume import resume
 from hedon.record.error import RecordError
@@ -46,9 +47,12 @@ def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
     before = (EARLIER / "two.toml").read_text().replace("birth.delay", "birth.logit_offset")
     after = migrated_file(EARLIER / "two.toml")
     moved = ["food_radius = 5.0", 'eaten_food = "seen"', "rollout_steps = 128"]
-    assert after.endswith("\n".join(["[world]", *moved, ""]))
-    kept = [line for line in before.splitlines() if line and line not in (*moved, "[body]")]
-    assert [line for line in after[: after.index("[world]")].splitlines() if line] == kept
+    assert "\n".join(["[world]", *moved, ""]) in after
+    stores = ["[nutrient]", "initial = 30.0", "hazard_share = 0.3", "[toxin]", "threshold = 4.0"]
+    gone = (*moved, "[body]", *stores, "nutrient.observed = false")
+    kept = [line for line in before.splitlines() if line and line not in gone]
+    named = ["[food.normal.gives]", "[species.predator.store]", "nutrient = false", "toxin = false"]
+    assert [line for line in after[: after.index("[world]")].splitlines() if line and line not in named] == kept
     assert "nutrient = 1.0 # a second store" in after
     file = tmp_path / "again.toml"
     file.write_text(after)
@@ -73,6 +77,8 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
 def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: str) -> None:
     new = MOVED[old]
     known = {f"{place}.{name}" for place, each in sections(SpeciesConfig).items() for name in settings(each.type)}
+    known |= {f"store.{store}.{name}" for store in STORES for name in (*settings(StoreConfig), *sections(StoreConfig))}
+    known |= {"energy.set_point"}
     assert old not in known
     assert new in known | {f"world.{name}" for name in settings(WorldConfig)}
     said = f"{old}: is called {new} now"

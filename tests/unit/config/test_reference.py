@@ -12,7 +12,7 @@ from hedon.config.reference import reference
 
 EVERY_TABLE = """
 [food.fungus]
-energy = 1.0
+gives = { energy = 1.0 }
 schedule.growth_rate.points = [[0, 1.0]]
 [obstacle]
 schedule.harmful.points = [[0, 1.0]]
@@ -28,6 +28,8 @@ see.fungus = {}
 smell.fungus = {}
 [sensor]
 smells = ["*"]
+[store.water]
+capacity = 100.0
 """
 """A config that has each table of the page, and says in it only what must be said."""
 SAID = {
@@ -41,6 +43,7 @@ SAID = {
 """Where it differs from the defaults: by what it says, and by its name."""
 KINDS = {
     "food.<kind>": "food.fungus",
+    "store.<kind>": "store.water",
     "food.<kind>.schedule.<kind>": "food.fungus.schedule.growth_rate",
     "obstacle.schedule.<kind>": "obstacle.schedule.harmful",
     "hazard.schedule.<kind>": "hazard.schedule.scale",

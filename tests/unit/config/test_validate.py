@@ -4,10 +4,10 @@ from typing import Any
 import pytest
 
 from hedon.config import Config, ConfigError, diff, load_config, validated
-from hedon.config.energy import EnergyConfig
 from hedon.config.evolution import MutationConfig
 from hedon.config.layer import settle_species
 from hedon.config.species import SpeciesConfig
+from hedon.config.store import EnergyConfig
 from hedon.config.validate import build
 
 
@@ -99,7 +99,8 @@ def test_one_setting_is_changed_by_its_path() -> None:
     one = two.with_("species.prey.birth.kappa", 0.5)
     assert diff(two, one) == [("species.prey.birth.kappa", 1e-3, 0.5)]
     assert [own.birth.kappa for own in two.with_("birth.kappa", 0.5).species.values()] == [0.5, 0.5]
-    assert [food.energy for food in load_config("poison").with_("food.*.energy", 2.0).food.values()] == [2.0, 2.0]
+    poison = load_config("poison").with_("food.*.gives.energy", 2.0)
+    assert [food.gives["energy"] for food in poison.food.values()] == [2.0, 2.0]
     scaled = two.with_("species.prey.genome.mutation.w_action.scale", 0.1).species["prey"].genome
     assert scaled.mutation["w_action"] == MutationConfig("student_t", 0.1, 2.0, 1.0, 10.0)
     assert two.with_("genome.mutation", {}) == two
@@ -112,7 +113,7 @@ def test_one_setting_is_changed_by_its_path() -> None:
         ("energy.inital", 1.0, "energy.inital: unknown name; did you mean initial?"),
         ("enery.initial", 1.0, "enery: unknown name; did you mean energy?"),
         ("energy.initial.x", 1.0, "energy.initial.x: there is no such setting"),
-        ("food.norml.energy", 1.0, "food.norml.energy: there is no such setting"),
+        ("food.norml.gives.energy", 1.0, "food.norml.gives.energy: there is no such setting"),
         ("species.prey.energy.initial", 1.0, "species.prey.energy.initial: there is no such setting"),
         ("energy.", 1.0, "'energy.': must be the path of a setting, as in energy.initial"),
     ],

@@ -49,7 +49,7 @@ def test_settings_that_cannot_live_or_die() -> None:
     assert "cannot die" in warnings("hazard.kappa=0.0", "hazard.alpha_age=0.0")
     assert "need not die" in warnings("hazard.alpha_age=0.0", "hazard.beta_energy=100.0")
     assert "cannot" not in warnings()
-    assert "without eating" not in warnings('energy.starvation="death"')
+    assert "without eating" not in warnings('energy.at_zero="death"')
     assert "without eating" not in warnings("birth.kappa=3e-4")  # R0 0.76 at energy 0
     assert "stand still: food pays for 511 agents" in warnings("food.normal.growth_rate=1.0")
     assert "10 of 50 founders; the others starve." in warnings("food.normal.growth_rate=0.02")

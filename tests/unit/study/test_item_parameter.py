@@ -36,8 +36,9 @@ def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_
     assert sorted(rows) == sorted(flatten(config))
     page, have = page_rows({"food.<kind>": "food.normal"}), flatten(config)
     for path, row in rows.items():
+        told = page[path.removesuffix(".energy") if ".gives." in path else path]
         assert row["value"] == format_value(have[path]), path
-        assert (row["meaning"], row["unit"], row["origin"]) == (page[path].meaning, page[path].unit, page[path].source)
+        assert (row["meaning"], row["unit"], row["origin"]) == (told.meaning, told.unit, told.source)
 
 
 def test_fidelities_are_told_exactly_where_they_differ() -> None:
@@ -61,7 +62,7 @@ def test_conditions_tell_what_presets_change() -> None:
     changes = {(row["preset"], row["setting"]): (row["baseline"], row["value"]) for row in rows}
     assert len(changes) == len(rows)
     assert changes["small", "arena.width"] == ("480.0", "360.0")
-    assert changes["poison", "food.poison.energy"] == ("1.0", "-0.6")
+    assert changes["poison", "food.poison.gives.energy"] == ("1.0", "-0.6")
     assert ("poison", "food.poison.growth_rate") not in changes  # as that of normal food, also as released
     assert not any(preset == "baseline" for preset, _ in changes)
     for preset in ("small", "large", "centered", "relocation"):

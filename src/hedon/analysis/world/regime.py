@@ -110,7 +110,7 @@ def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[st
     ends, lengths = rows["step"].to_numpy(), rows["steps"].to_numpy()
     own = config.species[species]
     factors = diet(config, own)
-    energies = {kind: factors.get(kind, 0.0) * food.energy for kind, food in config.food.items()}
+    energies = {kind: factors.get(kind, 0.0) * food.gives.get("energy", 0.0) for kind, food in config.food.items()}
     feeding = {kind: config.food[kind] for kind, energy in energies.items() if energy > 0}
     grown = sum(
         energies[kind] * food.growth_rate * float(factor_at(food.schedule, "growth_rate", ends) @ lengths)

@@ -78,7 +78,9 @@ def _draw_panel(axes: Axes, panel: ArenaPanel) -> None:
             draw_agents(axes, snapshot)
         state = f"{len(snapshot.x)} agents, {len(snapshot.food_x)} foods"
     width, height = config.arena.width, config.arena.height
-    foods = "; ".join(f"{kind} {food.energy:+g} (≤ {food.capacity})" for kind, food in config.food.items())
+    foods = "; ".join(
+        f"{kind} {food.gives.get('energy', 0.0):+g} (≤ {food.capacity})" for kind, food in config.food.items()
+    )
     axes.set_title(panel.label, pad=30)
     for line, text in enumerate((f"{width:g} \N{MULTIPLICATION SIGN} {height:g} u, {state}", foods)):
         axes.annotate(

@@ -1,10 +1,11 @@
-"""Inner states beside energy, against their equations in NumPy."""
+"""Stores beside energy, against their equations in NumPy."""
 
 import math
 
 import numpy as np
 import polars as pl
 import pytest
+from two_stores import STORES
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 from hedon.config import ConfigError, load_config
@@ -12,9 +13,15 @@ from hedon.config.layout import observation_columns
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
 from hedon.record.reader import open_run
+from hedon.record.schema import CAUSES
 
-NUTRIENT = ("food.normal.nutrient=1", "nutrient.basic_cost=0.05", "nutrient.action_cost=1e-3")
-TOXIN = ("food.normal.toxin=10",)
+NUTRIENT = (
+    *STORES[:3],
+    "food.normal.gives.nutrient=1",
+    "store.nutrient.basic_cost=0.05",
+    "store.nutrient.action_cost=1e-3",
+)
+TOXIN = (*STORES[3:], "food.normal.gives.toxin=10")
 ALL_EAT = ("sensor.mouth_spread=180",)
 ALONE = (*QUICK, *DEATHLESS, *CHILDLESS, "food.normal.growth_rate=0")
 
@@ -24,9 +31,9 @@ def sigmoid(x: float) -> float:
 
 
 def test_the_stores_follow_their_equations():
-    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *ALL_EAT, *NUTRIENT, *TOXIN, "nutrient.capacity=40.5")
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *ALL_EAT, *NUTRIENT, *TOXIN, "store.nutrient.capacity=40.5")
     simulation = make_simulation(
-        *settings, "food.normal.growth_rate=3", "toxin.decay=0.3", "food.normal.initial_count=100"
+        *settings, "food.normal.growth_rate=3", "store.toxin.basic_cost=0.3", "food.normal.initial_count=100"
     )
     world = simulation.worlds[0]
     nutrient, toxin = np.full(world.alive, 40.0), np.zeros(world.alive)
@@ -51,7 +58,7 @@ def test_the_stores_follow_their_equations():
 
 
 def test_toxin_takes_its_share_of_the_force():
-    simulation = make_simulation(*ALONE, *ALL_EAT, *TOXIN, "learning.policy=external", "toxin.decay=0")
+    simulation = make_simulation(*ALONE, *ALL_EAT, *TOXIN, "learning.policy=external", "store.toxin.basic_cost=0")
     set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
     world = simulation.worlds[0]
     capacity = len(world.view("alive"))
@@ -72,9 +79,9 @@ def test_an_empty_store_raises_the_hazard():
 
     def died(share: float) -> int:
         settings = ("population.capacity=150", "population.initial_count=150", "arena.width=900", "arena.height=900")
-        hazard = ("hazard.alpha_age=0", "hazard.kappa=0.05", "energy.basic_cost=0", "nutrient.initial=0")
+        hazard = ("hazard.alpha_age=0", "hazard.kappa=0.05", "energy.basic_cost=0", "store.nutrient.initial=0")
         simulation = make_simulation(
-            *QUICK, *STILL, *CHILDLESS, *settings, *hazard, *NUTRIENT, f"nutrient.hazard_share={share}"
+            *QUICK, *STILL, *CHILDLESS, *settings, *hazard, *NUTRIENT, f"store.nutrient.hazard_weight={share}"
         )
         simulation.run(64)
         return 150 - simulation.worlds[0].alive
@@ -87,7 +94,14 @@ def test_an_empty_store_raises_the_hazard():
 
 
 def test_a_child_gets_its_share_and_no_toxin():
-    settings = ("birth.kappa=1", "birth.beta=10", *NUTRIENT, *TOXIN, "nutrient.basic_cost=0", "nutrient.action_cost=0")
+    settings = (
+        "birth.kappa=1",
+        "birth.beta=10",
+        *NUTRIENT,
+        *TOXIN,
+        "store.nutrient.basic_cost=0",
+        "store.nutrient.action_cost=0",
+    )
     simulation = make_simulation(*QUICK, *STILL, *DEATHLESS, *settings, "food.normal.growth_rate=0")
     set_scene(simulation, [(200, 200, 0.0)])
     simulation.run(1)
@@ -111,7 +125,7 @@ def test_what_is_observed(scaling, factors):
     lives = world.agents()
     assert seen["nutrient"] == pytest.approx(lives["nutrient"][0] * factors[0], rel=1e-6)
     assert seen["toxin"] == pytest.approx(9.99 * factors[1], rel=1e-6)
-    blind = load_config("baseline", overrides=[*NUTRIENT, *TOXIN, "toxin.observed=false"])
+    blind = load_config("baseline", overrides=[*NUTRIENT, *TOXIN, "store.toxin.observed=false"])
     assert "toxin" not in observation_columns(blind, "agent")
     assert "nutrient" in observation_columns(blind, "agent")
 
@@ -119,8 +133,8 @@ def test_what_is_observed(scaling, factors):
 def test_drive_reduction_counts_all_states():
     """Homeostasis over energy, nutrient and toxin: the need before less the need after, with set points as genes."""
     settings = ("reward.drive_reduction_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
-    points = {"set_point": 0.3, "set_point_nutrient": 0.5, "set_point_toxin": 0.1}
-    genes = [f"genome.{name}.initial_{what}" for name in points for what in ("mean", "sd")]
+    points = {"energy": 0.3, "store.nutrient": 0.5, "store.toxin": 0.1}
+    genes = [f"{name}.set_point.initial_{what}" for name in points for what in ("mean", "sd")]
     values = [value for mean in points.values() for value in (mean, 0.0)]
     simulation = make_simulation(
         *ALONE, *ALL_EAT, *NUTRIENT, *TOXIN, *settings, *(f"{g}={v}" for g, v in zip(genes, values, strict=True))
@@ -148,8 +162,8 @@ def test_records_and_checkpoints_hold_the_stores(tmp_path):
     from hedon.record.schema import columns_of
 
     config = load_config("baseline", overrides=[*NUTRIENT, *TOXIN])
-    assert columns_of(config).inner == ("nutrient", "toxin")
-    assert columns_of(load_config("baseline")).inner == ()
+    assert columns_of(config).stores == ("nutrient", "toxin")
+    assert columns_of(load_config("baseline")).stores == ()
     one, two = (make_simulation(*QUICK, *ALL_EAT, *NUTRIENT, *TOXIN, threads=threads) for threads in (1, 2))
     one.run(192)
     two.run(100)
@@ -161,10 +175,16 @@ def test_records_and_checkpoints_hold_the_stores(tmp_path):
 
 def test_a_species_without_a_store_holds_none_of_it(tmp_path):
     small = ("population.capacity=20", "population.initial_count=6")
-    species = ("species.grazer.body.radius=10", "species.moth.diet.eats=[]", *DEATHLESS, "birth.kappa=0.02")
-    config = load_config("baseline", overrides=(*QUICK, *small, "food.normal.nutrient=1", *species))
+    species = (
+        "species.grazer.body.radius=10",
+        "species.moth.diet.eats=[]",
+        "species.moth.store.nutrient=false",
+        *DEATHLESS,
+        "birth.kappa=0.02",
+    )
+    config = load_config("baseline", overrides=(*QUICK, *small, *STORES[:3], "food.normal.gives.nutrient=1", *species))
     run(RunPlan(config, (1,), 128, tmp_path / "run", 1))
-    simulation = make_simulation(*QUICK, *small, "food.normal.nutrient=1", *species)
+    simulation = make_simulation(*QUICK, *small, *STORES[:3], "food.normal.gives.nutrient=1", *species)
     simulation.run(128)
     agents = simulation.worlds[0].agents()
     assert set(agents["species"]) == {0, 1}
@@ -176,13 +196,53 @@ def test_a_species_without_a_store_holds_none_of_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("setting", "message"),
+    ("settings", "message"),
     [
-        ("genome.set_point_nutrient.initial_mean=0.2", "nobody here has nutrient"),
-        ("toxin.threshold=0", "toxin.threshold"),
-        ("food.normal.toxin=-1", "food.normal.toxin"),
+        (["store.water.basic_cost=1"], r"store\.water: there is no such store \(known: none\); .* its capacity"),
+        ([*STORES, "store.toxn.basic_cost=1"], r"store\.toxn: .*known: nutrient, toxin.*did you mean toxin"),
+        (["food.normal.gives.watr=1", "store.water.capacity=3"], r"food\.normal\.gives\.watr: .*did you mean water"),
+        (["food.normal.needs.water=-1", "store.water.capacity=3"], r"food\.normal\.needs.water = -1.*from 0"),
+        (["store.water={capacity=3, initial=4}"], r"store\.water\.initial = 4\.0: must be at most its capacity = 3"),
+        (["store.age.capacity=3"], r"store\.age: .*not be one of energy, age"),
+        ([f"store.s{i}.capacity=3" for i in range(8)], "at most 8 stores with energy, not 9"),
+        ([f"store.s{i}.capacity=3" for i in range(7)] + ["sensor.smells=['*']", "sensor.noses=2"], None),
+        (
+            ["species.a.store.water.capacity=3", "species.b={}", "food.normal.needs.water=1"],
+            r"species\.b\.diet\.eats: it needs water, which it could never hold",
+        ),
+        (["food.normal.nutrient=1"], r"food\.normal\.nutrient: is called food\.normal\.gives\.nutrient now"),
+        (["nutrient.initial=1"], r"nutrient\.initial: is called store\.nutrient\.initial now"),
     ],
 )
-def test_contradictions_are_refused_by_name(setting, message):
+def test_contradictions_are_refused_by_name(settings, message):
+    if message is None:
+        load_config("baseline", overrides=settings)
+        return
     with pytest.raises(ConfigError, match=message):
-        load_config("baseline", overrides=[setting])
+        load_config("baseline", overrides=settings)
+
+
+def test_who_lacks_what_a_food_needs_leaves_it():
+    settings = ("store.salt={capacity=9, initial=1.0, basic_cost=0.25}", "food.normal.gives.salt=0.1")
+    for need, eats in ((1.0, True), (1.001, False)):
+        simulation = make_simulation(*ALONE, *ALL_EAT, *STILL, *settings, f"food.normal.needs.salt={need}")
+        set_scene(simulation, [(100, 100, 0.0)], [(100, 110)])
+        simulation.run(1)
+        world = simulation.worlds[0]
+        assert world.agents()["eaten"][0, 0] == eats
+        assert len(world.foods()["x"]) == 1 - eats
+        assert world.agents()["salt"][0] == pytest.approx(0.75 + 0.1 * eats, rel=1e-6)
+
+
+def test_a_store_can_decay_and_kill():
+    settings = ("store.air={capacity=9, initial=8.0, decay=0.5, basic_cost=0.1, at_zero='death'}",)
+    simulation = make_simulation(*ALONE, *STILL, *settings)
+    set_scene(simulation, [(100, 100, 0.0)])
+    world, air = simulation.worlds[0], 8.0
+    while air * 0.5 - 0.1 >= 0:
+        simulation.run(1)
+        air = air * 0.5 - 0.1
+        assert world.agents()["air"] == pytest.approx([air])
+    simulation.run(1)
+    assert world.alive == 0
+    assert world.deaths()["cause"].tolist() == [CAUSES.index("starved")]
