@@ -234,21 +234,25 @@ struct HazardSchedule {
   static constexpr Limit LIMITS[] = {Limit::from(0, 1000)};
 };
 
+HEDON_ENUM(HazardForm, age_energy, gompertz, constant)
 struct HazardConfig {
+  HazardForm form;
   float kappa;  ///< [1/step]
   float alpha_energy;
   float beta_energy;  ///< [1/energy]
   float alpha_age;  ///< [1/step]
   float beta_age;  ///< [1/step]
   HazardSchedule schedule;
-  HEDON_FIELDS(HazardConfig, kappa, alpha_energy, beta_energy, alpha_age, beta_age, schedule)
-  static constexpr Limit LIMITS[] = {Limit::from(0, 1), Limit::from(0, 1000000), Limit::from(0, 100), Limit::from(0, 1),
-      Limit::from(0, 1), Limit()};
+  HEDON_FIELDS(HazardConfig, form, kappa, alpha_energy, beta_energy, alpha_age, beta_age, schedule)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 1), Limit::from(0, 1000000), Limit::from(0, 100),
+      Limit::from(0, 1), Limit::from(0, 1), Limit()};
 };
 
+HEDON_ENUM(BirthForm, logistic, threshold)
 HEDON_ENUM(BirthNetwork, none, initial, learned)
 HEDON_ENUM(BirthMating, none, pairs)
 struct BirthConfig {
+  BirthForm form;
   float kappa;  ///< [1/step]
   float beta;  ///< [1/energy]
   float logit_offset;
@@ -258,10 +262,10 @@ struct BirthConfig {
   BirthMating mating;
   int32_t mating_window;  ///< [step]
   float mating_range;  ///< [u]
-  HEDON_FIELDS(BirthConfig, kappa, beta, logit_offset, attempts, network, network_noise, mating, mating_window,
+  HEDON_FIELDS(BirthConfig, form, kappa, beta, logit_offset, attempts, network, network_noise, mating, mating_window,
       mating_range)
-  static constexpr Limit LIMITS[] = {Limit::from(0, 1), Limit::from(0, 100), Limit::from(-1000, 1000), Limit::from(1,
-      1000), Limit(), Limit::from(0, 10), Limit(), Limit::from(0, 1000000), Limit::from(0, 10000)};
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 1), Limit::from(0, 100), Limit::from(-1000, 1000),
+      Limit::from(1, 1000), Limit(), Limit::from(0, 10), Limit(), Limit::from(0, 1000000), Limit::from(0, 10000)};
 };
 
 HEDON_ENUM(RewardFamily, linear, sinh, scaled, fed, hungry, by_age)

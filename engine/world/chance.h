@@ -22,23 +22,49 @@ HEDON_FN double hazard_by_age(const HazardConfig& config, double age) {
   return config.alpha_age * exp_double(config.beta_age * age);
 }
 
-/// Probability of having a child in a step at energy `energy`.
+/// Probability of having a child in a step at energy `energy`, by its form.
 HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
-  return config.kappa / (1.0 + exp_double(config.logit_offset - static_cast<double>(config.beta) * energy));
+  switch (config.form) {
+    case BirthForm::logistic:
+      return config.kappa / (1.0 + exp_double(config.logit_offset - static_cast<double>(config.beta) * energy));
+    case BirthForm::threshold:
+      return static_cast<double>(config.beta) * energy >= config.logit_offset ? config.kappa : 0.0;
+  }
+  return 0.0;
 }
 
-/// Probability that the agent in `slot` dies at the end of this step.
-HEDON_FN double death_chance(const World& world, int32_t slot) {
+/// The parts of the hazard by all stores of the agent in `slot`, and by its age [step].
+HEDON_FN double hazard_by_stores_and_age(const World& world, int32_t slot, double age) {
   const Species& species = world.species(slot);
   const HazardConfig& config = species.config->hazard;
-  const double age = static_cast<double>(world.head().step + 1 - world.state.life[slot].birth_step);
   const auto by_store = [&](int32_t store) {
     const double weight = store_of(*species.config, store).hazard_weight;
     return weight > 0.0 ? weight * hazard_by_store(config, world.held(slot, store)) : 0.0;
   };
   double chance = by_store(ENERGY) + hazard_by_age(config, age);
   for (int32_t i = 1; i < species.stores(); ++i) chance += by_store(i);
-  return factor_at(config.schedule.scale, world.head().step) * chance;
+  return chance;
+}
+
+/// Probability of dying in a step at age `age` [step], by the form of the hazard.
+HEDON_FN double hazard(const World& world, int32_t slot, double age) {
+  const HazardConfig& config = world.species(slot).config->hazard;
+  switch (config.form) {
+    case HazardForm::age_energy:
+      return hazard_by_stores_and_age(world, slot, age);
+    case HazardForm::gompertz:
+      return hazard_by_age(config, age);
+    case HazardForm::constant:
+      return config.kappa;
+  }
+  return 0.0;
+}
+
+/// Probability that the agent in `slot` dies at the end of this step.
+HEDON_FN double death_chance(const World& world, int32_t slot) {
+  const HazardConfig& config = world.species(slot).config->hazard;
+  const double age = static_cast<double>(world.head().step + 1 - world.state.life[slot].birth_step);
+  return factor_at(config.schedule.scale, world.head().step) * hazard(world, slot, age);
 }
 
 /// Probability that the agent in `slot` has a child at the end of this step.

@@ -34,13 +34,16 @@ def by_store(hazard: Any, store: float) -> float:
 def death_chance(species: Species, agent: Agent, step: int) -> float:
     """Of dying at the end of this step; its age counts this step."""
     hazard, age = species.hazard, step + 1 - agent.birth_step
-    chance = hazard.alpha_age * math.exp(hazard.beta_age * age)
-    chance += sum(store.hazard_weight * by_store(hazard, agent.held[name]) for name, store in species.stores.items())
+    by_stores = (store.hazard_weight * by_store(hazard, agent.held[name]) for name, store in species.stores.items())
+    by_age = hazard.alpha_age * math.exp(hazard.beta_age * age)
+    chance = {"age_energy": sum(by_stores) + by_age, "gompertz": by_age, "constant": hazard.kappa}[hazard.form]
     return factor_at(hazard.schedule, "scale", step) * chance
 
 
 def birth_chance(species: Species, energy: float) -> float:
     birth = species.birth
+    if birth.form == "threshold":
+        return birth.kappa if birth.beta * energy >= birth.logit_offset else 0.0
     return birth.kappa / (1 + math.exp(birth.logit_offset - birth.beta * energy))
 
 

@@ -148,6 +148,16 @@ INNER = {
         ),
         {"eaten": 10, "starved": 3, "refused": 5, "poisoned": 20},
     ),
+    "forms": Case(
+        "chances of death by age alone, or always the same; births from a threshold of energy on",
+        (
+            *each("aging", 'hazard.form="gompertz"', "hazard.alpha_age=5e-3", "hazard.beta_age=0.03"),
+            *each("ageless", 'hazard.form="constant"', "hazard.kappa=0.02"),
+            *each("patient", 'birth.form="threshold"', "birth.beta=1", "birth.logit_offset=2.5"),
+            *("population.capacity=16", "population.initial_count=12", "birth.kappa=0.1"),
+        ),
+        {"births": 20, "deaths": 20},
+    ),
     "homeostasis": Case(
         "relief alone pays: energy, nutrient and toxin come closer to set points, which are genes",
         (
@@ -159,12 +169,8 @@ INNER = {
                 "store.nutrient.basic_cost=0.01",
             ),
             *("food.normal.gives.toxin=1", "store.toxin.basic_cost=0.1", "energy.capacity=6"),
-            *(
-                "reward.drive_reduction_coef=2",
-                "reward.meal_coef=0",
-                "reward.action_coef=0",
-                "energy.set_point.initial_sd=0.3",
-            ),
+            *("reward.drive_reduction_coef=2", "reward.meal_coef=0", "reward.action_coef=0"),
+            "energy.set_point.initial_sd=0.3",
             *("store.nutrient.set_point.initial_mean=0.8", "store.toxin.set_point.initial_sd=0.2"),
             *("energy.set_point.initial_mean=0.7", "store.nutrient.set_point.initial_sd=0.3"),
             *("store.toxin.set_point.initial_mean=0.3", "genome.mutation.set_point.scale=0.1"),

@@ -1,22 +1,39 @@
 """Birth and death: their probabilities per step, by age and energy."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from hedon.config.arena import ArenaConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
 from hedon.config.room import MAX_FACTOR
 from hedon.config.schedule import ScheduleConfig
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
 
 @dataclass(frozen=True, slots=True)
 class HazardConfig:
-    """Probability of death: kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age).
+    """Probability of death, a part by energy and a part by age, of which `form` says what they are.
 
+    `age_energy` is kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age); the weights of
+    stores (`hazard_weight`) are on the first part. `gompertz` is the part by age alone, `constant` is kappa for all.
     `[hazard.schedule.scale]` makes the whole of it follow time.
     """
 
-    kappa: float = setting(0.01, "scale of the part that depends on energy", "1/step", EITHER, ge=0, le=1)
+    form: Literal["age_energy", "gompertz", "constant"] = setting(
+        "age_energy", "what the probability depends on", "", PAPER + "; the others are ours"
+    )
+    kappa: float = setting(
+        0.01,
+        "scale of the part that depends on energy; with constant the probability itself",
+        "1/step",
+        EITHER,
+        ge=0,
+        le=1,
+    )
     alpha_energy: float = setting(0.02, "weight of the exponential of energy", "", EITHER, ge=0, le=1e6)
     beta_energy: float = setting(0.2, "how fast energy lowers the probability", "1/energy", EITHER, ge=0, le=100)
     alpha_age: float = setting(2e-7, "the part that depends on age, at age 0", "1/step", EITHER, ge=0, le=1)
@@ -33,14 +50,26 @@ class HazardConfig:
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
-    """Probability of a child: kappa/(1 + exp(logit_offset − beta·energy)); it is born at a free place by its parent."""
+    """Probability of a child, which is born at a free place by its parent.
 
+    `logistic` is kappa/(1 + exp(logit_offset − beta·energy)); `threshold` is kappa where beta·energy reaches
+    logit_offset, and 0 below.
+    """
+
+    form: Literal["logistic", "threshold"] = setting(
+        "logistic", "how the probability follows energy", "", PAPER + "; threshold is ours"
+    )
     kappa: float = setting(4e-4, "probability at high energy", "1/step", EITHER, ge=0, le=1)
     beta: float = setting(
         0.1, "how fast energy raises the probability", "1/energy", PAPER + ", with the sign of the code", ge=0, le=100
     )
     logit_offset: float = setting(
-        0.0, "beta times the energy at which the probability is half of kappa", "", OURS, ge=-1e3, le=1e3
+        0.0,
+        "beta times the energy at which the probability is half of kappa, or steps to it",
+        "",
+        OURS,
+        ge=-1e3,
+        le=1e3,
     )
     rule: str = setting(
         "",
@@ -94,3 +123,43 @@ def distance_sd(arena: ArenaConfig, birth: BirthConfig) -> float:
         birth: with the distance and its unit.
     """
     return birth.distance_sd * (arena.width if birth.distance_unit == "arena_width" else 1.0)
+
+
+def logistic_hazard(config: HazardConfig, energy: "NDArray[np.float64]") -> "NDArray[np.float64]":
+    """The part of `age_energy` by energy [1/step].
+
+    Args:
+        config: the constants.
+        energy: [energy], any shape.
+    """
+    import numpy as np
+
+    odds = config.alpha_energy * np.exp(-config.beta_energy * energy)
+    return config.kappa * odds / (1.0 + odds)
+
+
+HAZARD_FORMS: dict[str, tuple[Callable[[HazardConfig, Any], Any], bool]] = {
+    "age_energy": (logistic_hazard, True),
+    "gompertz": (lambda config, energy: 0.0 * energy, True),
+    "constant": (lambda config, energy: config.kappa + 0.0 * energy, False),
+}
+"""The part of each form of the hazard that does not depend on age, and whether it has the part by age."""
+
+
+def logistic_birth(config: BirthConfig, energy: "NDArray[np.float64]") -> "NDArray[np.float64]":
+    """The chance of a child of the form `logistic` [1/step].
+
+    Args:
+        config: the constants.
+        energy: [energy], any shape.
+    """
+    import numpy as np
+
+    return config.kappa / (1.0 + np.exp(config.logit_offset - config.beta * energy))
+
+
+BIRTH_FORMS: dict[str, Callable[[BirthConfig, Any], Any]] = {
+    "logistic": logistic_birth,
+    "threshold": lambda config, energy: config.kappa * (config.beta * energy >= config.logit_offset),
+}
+"""The chance of a child [1/step] by each form of it."""

@@ -15,7 +15,7 @@ from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
-from hedon.demography.schedule import factor_at, factor_range, mean_factor, mean_hazard, scaled_hazard
+from hedon.demography.schedule import factor_at, factor_range, hazard_of, mean_factor, mean_hazard, scaled_hazard
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(32)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -164,7 +164,7 @@ def _feeding(config: Config, species: str) -> dict[str, float]:
 
 
 def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
-    hazard = mean_hazard(own.hazard)
+    hazard = mean_hazard(own)
     lifetime = float(expected_lifetime(hazard, energy))
     r0 = float(reproduction_number(hazard, own.birth, energy)) if own.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
@@ -218,7 +218,7 @@ def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
     own = config.species[species]
     low, high = factor_range(own.hazard.schedule, "scale")
     if low < high:
-        ends = [scaled_hazard(own.hazard, factor) for factor in (low, high)]
+        ends = [scaled_hazard(hazard_of(own), factor) for factor in (low, high)]
         lives = [_steps(float(expected_lifetime(end, energy))) for end in ends]
         r0 = [float(reproduction_number(end, own.birth, energy)) if own.birth.kappa else 0.0 for end in ends]
         which = _which(own.hazard.schedule, "scale")
@@ -295,7 +295,8 @@ def _beyond(config: Config, species: str) -> Iterator[str]:
             "on what agents learn, and is not forecast."
         )
     for name, store in own.store.items():
-        empty = store.hazard_weight * float(energy_hazard(own.hazard, 0.0))
+        weight = store.hazard_weight if own.hazard.form == "age_energy" else 0.0
+        empty = weight * float(energy_hazard(own.hazard, 0.0))
         if empty:
             yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
         if store.at_zero == "death":

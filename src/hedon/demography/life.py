@@ -2,7 +2,7 @@
 
 The functions take ages in steps and treat time as continuous, where the simulation draws once per step with
 the same chances; the two agree to a relative error of about the chance per step. Source: Kanagawa & Doya
-(2024); the hazard's age part is Gompertz's (1825).
+(2024); the hazard's age part is Gompertz's (1825). `hedon.config.life` has the forms of both chances.
 """
 
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.life import BIRTH_FORMS, HAZARD_FORMS, BirthConfig, HazardConfig
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,11 +29,10 @@ def hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDAr
         energy: [energy], any shape.
 
     Returns:
-        kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·energy))) + alpha_age·exp(beta_age·age) [1/step], in the
-        shape of both together.
+        Chances by the form of the hazard [1/step], in the shape of both together.
     """
     age = np.asarray(age, dtype=np.float64)
-    return energy_hazard(config, energy) + config.alpha_age * np.exp(config.beta_age * age)
+    return energy_hazard(config, energy) + _alpha_age(config) * np.exp(config.beta_age * age)
 
 
 def energy_hazard(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
@@ -44,14 +43,13 @@ def energy_hazard(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.floa
         energy: [energy], any shape.
 
     Returns:
-        kappa·odds/(1 + odds), odds = alpha_energy·exp(−beta_energy·energy) [1/step], in the shape of `energy`.
+        Chances by the form of the hazard [1/step], in the shape of `energy`.
     """
-    odds = config.alpha_energy * np.exp(-config.beta_energy * np.asarray(energy, dtype=np.float64))
-    return config.kappa * odds / (1.0 + odds)
+    return HAZARD_FORMS[config.form][0](config, np.asarray(energy, dtype=np.float64))
 
 
 def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
-    """Chance of trying to have a child: kappa/(1 + exp(logit_offset − beta·energy)) [1/step].
+    """Chance of trying to have a child, by the form of births [1/step].
 
     Args:
         config: the constants of births.
@@ -60,7 +58,7 @@ def birth_rate(config: BirthConfig, energy: "ArrayLike") -> "NDArray[np.float64]
     Returns:
         Chances per step, in the shape of `energy`.
     """
-    return config.kappa / (1.0 + np.exp(config.logit_offset - config.beta * np.asarray(energy, dtype=np.float64)))
+    return BIRTH_FORMS[config.form](config, np.asarray(energy, dtype=np.float64))
 
 
 def cumulative_hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":
@@ -76,7 +74,7 @@ def cumulative_hazard(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike
     """
     age = np.asarray(age, dtype=np.float64)
     by_age = age if config.beta_age == 0 else np.expm1(config.beta_age * age) / config.beta_age
-    return energy_hazard(config, energy) * age + config.alpha_age * by_age
+    return energy_hazard(config, energy) * age + _alpha_age(config) * by_age
 
 
 def survival(config: HazardConfig, age: "ArrayLike", energy: "ArrayLike") -> "NDArray[np.float64]":
@@ -106,9 +104,9 @@ def expected_lifetime(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.
         relative error below 1e-10.
     """
     flat = energy_hazard(config, energy)
-    if config.alpha_age == 0 or config.beta_age == 0:
+    if _alpha_age(config) == 0 or config.beta_age == 0:
         with np.errstate(divide="ignore"):
-            return 1.0 / (flat + config.alpha_age)
+            return 1.0 / (flat + _alpha_age(config))
     return _integrated_survival(config, energy, _oldest(config, flat))
 
 
@@ -129,11 +127,16 @@ def reproduction_number(
     return placed * birth_rate(birth, energy) * expected_lifetime(hazard, energy)
 
 
+def _alpha_age(config: HazardConfig) -> float:
+    """The part by age at age 0 [1/step]; 0 for a form that has none."""
+    return config.alpha_age if HAZARD_FORMS[config.form][1] else 0.0
+
+
 def _oldest(config: HazardConfig, flat: "NDArray[np.float64]") -> "NDArray[np.float64]":
     """An age [step] by which the cumulative hazard has passed its limit, but not twice; infinite if never."""
     with np.errstate(divide="ignore"):
         by_energy = _MAX_CUMULATIVE_HAZARD / flat
-        by_age = np.float64(_MAX_CUMULATIVE_HAZARD) / config.alpha_age
+        by_age = np.float64(_MAX_CUMULATIVE_HAZARD) / _alpha_age(config)
     if config.beta_age > 0:
         by_age = np.log1p(config.beta_age * by_age) / config.beta_age
     return np.minimum(by_energy, by_age)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hedon.config.life import HazardConfig
 from hedon.config.schedule import ScheduleConfig
+from hedon.config.species import SpeciesConfig
 
 
 def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLike) -> NDArray[np.float64]:
@@ -60,9 +61,15 @@ def factor_range(schedules: Mapping[str, ScheduleConfig], name: str) -> tuple[fl
     return min(factors, default=1.0), max(factors, default=1.0)
 
 
-def mean_hazard(hazard: HazardConfig) -> HazardConfig:
-    """A hazard whose chances are those of its schedule's mean factor."""
-    return scaled_hazard(hazard, mean_factor(hazard.schedule, "scale"))
+def hazard_of(own: SpeciesConfig) -> HazardConfig:
+    """The hazard of a species by energy and age, with its weight of energy."""
+    weight = own.energy.hazard_weight if own.hazard.form == "age_energy" else 1.0
+    return replace(own.hazard, kappa=weight * own.hazard.kappa)
+
+
+def mean_hazard(own: SpeciesConfig) -> HazardConfig:
+    """The hazard of a species at the mean factor of its schedule."""
+    return scaled_hazard(hazard_of(own), mean_factor(own.hazard.schedule, "scale"))
 
 
 def scaled_hazard(hazard: HazardConfig, factor: float) -> HazardConfig:

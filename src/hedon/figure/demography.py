@@ -30,7 +30,7 @@ def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figu
         populations: tables `population` of the worlds; none where there was no run.
     """
     energy = _energies(own)
-    lifetime = expected_lifetime(mean_hazard(own.hazard), energy)
+    lifetime = expected_lifetime(mean_hazard(own), energy)
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
@@ -62,7 +62,7 @@ def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
         The line R0 = 1, with its label, for the legend.
     """
     energy = _energies(own)
-    r0 = reproduction_number(mean_hazard(own.hazard), own.birth, energy)
+    r0 = reproduction_number(mean_hazard(own), own.birth, energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
     one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
     axes.set_title("children tried in a life, R0")

@@ -67,6 +67,18 @@ def test_limits_of_the_lifetime() -> None:
     assert np.isinf(life.expected_lifetime(immortal, 0.0))
 
 
+def test_forms_of_death_and_birth() -> None:
+    aging = dataclasses.replace(HAZARD, form="gompertz", beta_age=0.0, alpha_age=1e-3)
+    assert life.hazard(aging, 7.0, 0.0) == pytest.approx(1e-3)
+    np.testing.assert_allclose(life.expected_lifetime(aging, ENERGIES), 1000.0)
+    steady = dataclasses.replace(HAZARD, form="constant", kappa=0.02, alpha_age=0.5)
+    np.testing.assert_allclose(life.hazard(steady, 1e6, ENERGIES), 0.02)
+    np.testing.assert_allclose(life.expected_lifetime(steady, ENERGIES), 50.0)
+    np.testing.assert_allclose(life.survival(steady, 50.0, 0.0), np.exp(-1.0))
+    birth = BirthConfig(form="threshold", kappa=0.1, beta=0.5, logit_offset=10.0)
+    np.testing.assert_array_equal(life.birth_rate(birth, np.array([19.9, 20.0, 300.0])), [0.0, 0.1, 0.1])
+
+
 def test_shapes_follow_the_energy() -> None:
     energy = np.linspace(0, 40, 6).reshape(2, 3)
     assert life.expected_lifetime(HAZARD, energy).shape == (2, 3)
