@@ -1,6 +1,8 @@
 """Configs of earlier versions: what was renamed or moved since, and how such a config is read and rewritten."""
 
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from copy import deepcopy
 from typing import Any
 
@@ -124,18 +126,38 @@ def migrated(tables: Table) -> Table:
 
 
 def migrate_text(text: str, below: Table) -> str:
-    """A short file of an earlier version with the names of this one; comments and order stay.
+    """A short file of an earlier version with the names of this one.
+
+    Comments and order stay, but where dotted keys leave no place for what is moved: such a file is written anew.
 
     Args:
         text: of the file.
         below: the tables of its preset.
     """
     import tomlkit
+    from tomlkit.exceptions import TOMLKitError
 
-    document: Any = tomlkit.parse(text)
-    _rename(document, [document, *_tables(document.get("species")).values()], tomlkit.table)
-    _name_stores(document, below, False, tomlkit.table)
-    return tomlkit.dumps(document)
+    meant = tomlkit.parse(text).unwrap()
+    _rewrite(meant, below)
+    for row in (tomlkit.table, tomlkit.inline_table):
+        document: Any = tomlkit.parse(text)
+        with suppress(TOMLKitError, LookupError, tomllib.TOMLDecodeError):  # tables that stand at several places
+            _rewrite(document, below, tomlkit.table, row)
+            if _told(tomllib.loads(tomlkit.dumps(document))) == _told(meant):
+                return tomlkit.dumps(document)
+    return tomlkit.dumps(meant)
+
+
+def _rewrite(root: Any, below: Table, table: Callable[[], Any] = dict, row: Callable[[], Any] = dict) -> None:
+    """Gives the tables of a short file the names of this version, in place; `row` makes an empty table of one line."""
+    _rename(root, [root, *_tables(root.get("species")).values()], table, row)
+    _name_stores(root, below, False, table)
+
+
+def _told(table: Table) -> Table:
+    """A table without the empty ones in it."""
+    within = {name: _told(value) if isinstance(value, dict) else value for name, value in table.items()}
+    return {name: value for name, value in within.items() if value != {}}
 
 
 def _tables(value: Any) -> dict[str, Any]:
@@ -147,7 +169,7 @@ def _law(genome: Table, mean: str = "") -> Table:
     return {"initial_mean": genome.get(mean, 0.0), "initial_sd": genome["initial_sd"]}
 
 
-def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict) -> None:
+def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, row: Callable[[], Any] = dict) -> None:
     """Gives settings and choices the names of this version, in place."""
     for old, new in MOVED.items():
         (section, name), (target, *between, now) = old.split("."), new.split(".")
@@ -165,7 +187,7 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict) -
         for name in GIVEN:
             if name in food:
                 value = food.pop(name)
-                food.setdefault("gives", table())[name] = value
+                food.setdefault("gives", row())[name] = value
     for path, names in VALUES.items():
         section, name = path.split(".")
         for owner in owners:

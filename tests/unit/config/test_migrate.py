@@ -1,11 +1,15 @@
 """Configs of 0.4: complete ones are read, short ones are refused with the new names and rewritten."""
 
+import random
 import re
 import shutil
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+import tomlkit
 from command import hedon
 from project_files import ROOT
 
@@ -15,7 +19,7 @@ from hedon.config.dump import flatten
 from hedon.config.evolution import GeneConfig
 from hedon.config.field import sections, settings
 from hedon.config.load import migrated_file, parse_config
-from hedon.config.migrate import MOVED, STORES, VALUES
+from hedon.config.migrate import MOVED, STORES, VALUES, migrate_text, renamed
 from hedon.config.species import SpeciesConfig
 from hedon.config.store import StoreConfig
 from hedon.config.world import WorldConfig
@@ -57,6 +61,42 @@ def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
     file = tmp_path / "again.toml"
     file.write_text(after)
     assert migrated_file(file) == after
+
+
+LINES = (
+    "food.normal.energy = 1.5",
+    "food.normal.toxin = 1.0",
+    "food.normal.nutrient = 2.0",
+    "food.normal.capacity = 80",
+    "nutrient.capacity = 300.0",
+    "toxin.threshold = 4.0",
+    "species.prey.birth.delay = 3.0",
+    "species.prey.nutrient.initial = 30.0",
+    "species.prey.population.capacity = 90",
+    "learning.rollout_steps = 512",
+    "birth.kappa = 0.002",
+)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_dotted_keys_in_any_order_mean_the_same(number: int) -> None:
+    """With a header for the food, or none."""
+    draw = random.Random(number)
+    lines = draw.sample(LINES, draw.randrange(1, len(LINES) + 1))
+    text = "\n".join(lines)
+    if number % 2:
+        food = [line.removeprefix("food.normal.") for line in lines if line.startswith("food.")]
+        text = "\n".join([*(line for line in lines if not line.startswith("food.")), "[food.normal]", *food])
+    given = tomllib.loads(text)
+    found = tomllib.loads(migrate_text(text, {}))
+    assert found == tomllib.loads(migrate_text(tomlkit.dumps(given), {}))
+    assert not list(renamed(found))
+    assert sum(1 for _ in leaves_of(found)) >= len(lines)
+
+
+def leaves_of(table: dict[str, Any]) -> Iterator[Any]:
+    for value in table.values():
+        yield from leaves_of(value) if isinstance(value, dict) else [value]
 
 
 def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
