@@ -15,6 +15,7 @@ inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each sp
 inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together
 inline constexpr int LEARNING_GENES = std::size(EnumNames<GenomeLearning>::text);
 inline constexpr int FAMILY_GENES = std::size(EnumNames<GenomeFamily>::text);
+inline constexpr int MAX_CHANNELS = 32;  ///< more than a rule's record or an observation has
 inline constexpr int RULE_USES = std::size(EnumNames<RuleUse>::text);
 
 /// The first store of every species.
@@ -72,6 +73,16 @@ struct RewardTerm {
                                      Limit::from(0, MAX_GENES - 1), Limit::from(-1e3, 1e3)};
 };
 
+/// A number that can be known of an agent in a step: see `hedon.config.channel`.
+struct Channel {
+  ChannelSource source;
+  int32_t index;  ///< which number of the source
+  float scale;    ///< the number is divided by this
+
+  HEDON_FIELDS(Channel, source, index, scale)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 2 * MAX_TYPES - 1), Limit::over(0, 1e6)};
+};
+
 /// What follows from the names in a species' settings, and from lengths and forces in other units. Types are numbered:
 /// the species, the food kinds, walls, then obstacles.
 struct SpeciesLayout {
@@ -91,9 +102,11 @@ struct SpeciesLayout {
   FixedList<int32_t, FAMILY_GENES> family;    ///< gene that multiplies each setting by ten to its power; -1 for none
   FixedList<int32_t, MAX_STORES> set_points;  ///< gene of the set point of each store; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
+  FixedList<Channel, MAX_CHANNELS> observed;  ///< what it observes beside rays and touch, in order
+  FixedList<Channel, MAX_CHANNELS> recorded;  ///< what a rule gets beside inputs, genes and memory, in order
 
   HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
-               needs, rules, genes, learning, family, set_points, terms)
+               needs, rules, genes, learning, family, set_points, terms, observed, recorded)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
@@ -111,6 +124,8 @@ struct SpeciesLayout {
                                      Limit(),
                                      GENE,
                                      GENE,
+                                     Limit(),
+                                     Limit(),
                                      Limit()};
 
   /// The gene that multiplies a setting of the family of the reward; -1 for none.

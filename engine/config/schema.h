@@ -175,7 +175,6 @@ struct MotorConfig {
   static constexpr Limit LIMITS[] = {Limit::from(0, 180)};
 };
 
-HEDON_ENUM(SensorScaling, raw, unit)
 HEDON_ENUM(SensorRayInside, hit, behind)
 struct SensorConfig {
   int32_t ray_count;
@@ -186,12 +185,11 @@ struct SensorConfig {
   float nose_angle;  ///< [degree]
   int32_t touch_sectors;
   float mouth_spread;  ///< [degree]
-  SensorScaling scaling;
   SensorRayInside ray_inside;
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, smell_decay, noses, nose_angle, touch_sectors,
-      mouth_spread, scaling, ray_inside)
+      mouth_spread, ray_inside)
   static constexpr Limit LIMITS[] = {Limit::from(1, 32), Limit::from(0, 180), Limit::over(0, 100000), Limit::from(0.001,
-      10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit(), Limit()};
+      10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit()};
 };
 
 struct PopulationConfig {
@@ -219,13 +217,11 @@ struct StoreConfig {
   StoreAtZero at_zero;
   float hazard_weight;
   float motor_threshold;  ///< [amount]
-  int32_t observed;
-  float scale;  ///< [amount]
   HEDON_FIELDS(StoreConfig, initial, capacity, basic_cost, action_cost, decay, child_share, at_zero, hazard_weight,
-      motor_threshold, observed, scale)
+      motor_threshold)
   static constexpr Limit LIMITS[] = {Limit::from(0, 1000000), Limit::over(0, 1000000), Limit::from(0, 10000),
-      Limit::from(0, 10000), Limit::from(0, 1), Limit::from(0, 1), Limit(), Limit::from(0, 10000), Limit::from(0, 1000),
-      Limit::from(0, 1), Limit::from(0.001, 1000000)};
+      Limit::from(0, 10000), Limit::from(0, 1), Limit::from(0, 1), Limit(), Limit::from(0, 10000), Limit::from(0,
+      1000)};
 };
 
 struct HazardSchedule {
@@ -337,5 +333,7 @@ struct Settings {
 HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
+HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, smell, age, moved, nearness,
+      force, position, step, alive)
 
 }  // namespace hedon

@@ -19,7 +19,7 @@ struct alignas(64) PackedObservation {
   float ray[PACKED_RAYS];         ///< reading + 1 of the channel that the ray hit, in [1, 2]; 0 if it hit nothing
   uint8_t ray_type[PACKED_RAYS];  ///< that channel; 0 if the ray hit nothing
   uint64_t touch;                 ///< bit type * sectors + sector
-  float dense[MAX_DENSE];         ///< velocity (2), heading (1, or sine and cosine), angular velocity, energy
+  float dense[MAX_DENSE];         ///< the first channels that the species observes
 };
 static_assert(sizeof(PackedObservation) == 192);
 

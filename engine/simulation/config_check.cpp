@@ -6,6 +6,8 @@
 #include <iterator>
 #include <type_traits>
 
+#include "learning/observation.h"
+
 namespace hedon {
 namespace {
 
@@ -130,6 +132,17 @@ void check_terms(Complaint& complaint, const std::string& path, const Config& co
   }
 }
 
+/// Channels are numbers that there are.
+void check_channels(Complaint& complaint, const std::string& path, const FixedList<Channel, MAX_CHANNELS>& list,
+                    int32_t stores, int32_t scents) {
+  for (int32_t i = 0; i < list.count; ++i) {
+    int32_t numbers = 2;
+    if (list[i].source == ChannelSource::store || list[i].source == ChannelSource::store_before) numbers = stores;
+    if (list[i].source == ChannelSource::smell) numbers = scents;
+    complaint.need(list[i].index < numbers, item(path, i) + ".index", list[i].index, "a number of its source");
+  }
+}
+
 void check_layout(Complaint& complaint, const std::string& path, const Config& config, int32_t s) {
   const SpeciesLayout& own = config.layout[s];
   const SensorConfig& sensor = config.species[s].sensor;
@@ -138,10 +151,10 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   check_types(complaint, path + "touches", own.touches, types);
   check_types(complaint, path + "smells", own.smells, config.species.count + config.food.count);
   const int32_t stores = 1 + config.species[s].store.count;
-  int32_t observed = own.smells.count * sensor.noses;
-  for (int32_t i = 0; i < stores; ++i) observed += store_of(config.species[s], i).observed;
-  complaint.need(observed <= MAX_OBSERVED, path + "smells", own.smells.count,
-                 "with the observed stores at most " + std::to_string(MAX_OBSERVED));
+  complaint.need(own.observed.count <= MAX_DENSE + MAX_EXTRA_DENSE, path + "observed", own.observed.count,
+                 "at most " + std::to_string(MAX_DENSE + MAX_EXTRA_DENSE));
+  check_channels(complaint, path + "observed", own.observed, stores, own.smells.count * sensor.noses);
+  check_channels(complaint, path + "recorded", own.recorded, stores, own.smells.count * sensor.noses);
   check_terms(complaint, path + "terms", config, own);
   for (int32_t i = 0; i < own.learning.count; ++i)
     check_gene(complaint, path + "learning.gene", own, own.learning[i].gene);

@@ -8,6 +8,7 @@
 #include "base/device.h"
 #include "evolution/reward.h"
 #include "world/chance.h"
+#include "world/channel.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -43,13 +44,6 @@ HEDON_FN RewardInputs reward_inputs(const World& world, int32_t slot, int64_t t)
   return inputs;
 }
 
-/// Mean reading of all rays, 0 for those that met nothing.
-HEDON_FN float nearness(const RewardInputs& inputs) {
-  float sum = 0.0f;
-  for (int32_t r = 0; r < inputs.rays; ++r) sum += inputs.ray[r] > 0.0f ? inputs.ray[r] - 1.0f : 0.0f;
-  return sum / static_cast<float>(inputs.rays);
-}
-
 /// What the config itself would give in place of a rule.
 HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use, const RewardInputs& inputs) {
   switch (use) {
@@ -71,27 +65,10 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   const SpeciesConfig& config = *species.config;
   const SpeciesLayout& layout = *species.layout;
   const RewardInputs inputs = reward_inputs(world, slot, world.window_step());
-  const Life& life = world.state.life[slot];
-  const BodyState& body = world.state.physics.bodies;
-  const Vec2 moved{body.x[slot] - world.scratch.start_x[slot], body.y[slot] - world.scratch.start_y[slot]};
   for (int32_t i = 0; i < layout.terms.count; ++i)
     *record++ = static_cast<double>(reward_input(config.reward, layout, layout.terms[i], world.genome(slot), inputs));
   for (int32_t g = 0; g < layout.genes.count; ++g) *record++ = static_cast<double>(world.genome(slot)[g]);
-  *record++ = inputs.age;
-  *record++ = inputs.before[ENERGY];
-  *record++ = life.energy;
-  *record++ = static_cast<double>(length(moved));
-  *record++ = static_cast<double>(nearness(inputs));
-  *record++ = static_cast<double>(world.scratch.force_left[slot]);
-  *record++ = static_cast<double>(world.scratch.force_right[slot]);
-  *record++ = static_cast<double>(body.x[slot]);
-  *record++ = static_cast<double>(body.y[slot]);
-  *record++ = static_cast<double>(world.head().step);
-  *record++ = static_cast<double>(species.capacity() - world.state.free_count[s]);
-  for (int32_t i = 1; i < species.stores(); ++i) {
-    *record++ = inputs.before[i];
-    *record++ = inputs.now[i];
-  }
+  for (int32_t i = 0; i < layout.recorded.count; ++i) *record++ = channel_value(world, slot, layout.recorded[i]);
   *record++ = own_answer(world, slot, use, inputs);
   const double* memory = &world.state.memory[int64_t{slot} * world.shape->memory];
   for (int32_t m = 0; m < config.reward.memory; ++m) *record++ = memory[m];

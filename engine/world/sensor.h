@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/device.h"
+#include "world/channel.h"
 #include "world/food.h"
 #include "world/ray.h"
 #include "world/smell.h"
@@ -23,46 +24,21 @@ HEDON_FN void note_start(World& world, int32_t slot) {
   scratch.start_y[slot] = body.y[slot];
 }
 
-/// Writes the entries after the agent's motion and heading: the stores that it observes, then smells.
-HEDON_FN void observe_more(const World& world, int32_t slot, Vec2 forward, PackedObservation& out) {
-  const Species& species = world.species(slot);
-  const SensorConfig& sensor = species.config->sensor;
-  const bool raw = sensor.scaling == SensorScaling::raw;
-  int32_t at = motion_entries(species);
-  for (int32_t i = 0; i < species.stores(); ++i) {
-    const StoreConfig& store = store_of(*species.config, i);
-    if (store.observed == 0) continue;
-    const float held = static_cast<float>(world.held(slot, i));
-    set_dense(out, at++, raw ? held : held / store.scale);
-  }
-  const int32_t scents = species.layout->smells.count * sensor.noses;
-  if (scents == 0) return;
-  smell(world, slot, forward);
-  const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
-  for (int32_t i = 0; i < scents; ++i) set_dense(out, at + i, smelled[i]);
-}
-
 /// The heading of the agent in `slot` at the start of the step, a unit vector.
 HEDON_FN Vec2 forward_of(const World& world, int32_t slot) {
   return {-world.scratch.heading_sine[slot], world.scratch.heading_cosine[slot]};
 }
 
-/// Writes the part of an observation that needs no rays: touch, motion, heading, stores, smells.
+/// Writes the part of an observation that needs no rays: touch, and channels.
 HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& out) {
-  const WorldState& state = world.state;
-  const BodyState& body = state.physics.bodies;
-  const float sine = world.scratch.heading_sine[slot], cosine = world.scratch.heading_cosine[slot];
-  out.touch = state.touch[slot];
-  if (world.species(slot).network.observation.wide()) extra_of(out).touch = state.touch_more[slot];
-  const float vx = body.velocity_x[slot], vy = body.velocity_y[slot], omega = body.angular_velocity[slot];
-  if (world.species(slot).config->sensor.scaling == SensorScaling::raw) {
-    const float dense[MAX_DENSE] = {vx, vy, body.angle[slot], omega, 0.0f, 0.0f};
-    for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
-  } else {
-    const float dense[MAX_DENSE] = {vx / 1.5f, vy / 1.5f, sine, cosine, omega / 0.2f, 0.0f};
-    for (int32_t d = 0; d < MAX_DENSE; ++d) out.dense[d] = dense[d];
-  }
-  observe_more(world, slot, {-sine, cosine}, out);
+  const Species& species = world.species(slot);
+  const FixedList<Channel, MAX_CHANNELS>& observed = species.layout->observed;
+  out.touch = world.state.touch[slot];
+  if (species.network.observation.wide()) extra_of(out).touch = world.state.touch_more[slot];
+  if (species.layout->smells.count > 0) smell(world, slot, forward_of(world, slot));
+  for (int32_t d = observed.count; d < MAX_DENSE; ++d) out.dense[d] = 0.0f;
+  for (int32_t d = 0; d < observed.count; ++d)
+    set_dense(out, d, static_cast<float>(channel_value(world, slot, observed[d])) / observed[d].scale);
 }
 
 /// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the

@@ -12,7 +12,7 @@
 
 namespace hedon {
 
-/// The channel by which a sense tells each type apart; -1 for types that it does not meet.
+/// The number by which a sense tells each type apart; -1 for types that it does not meet.
 struct Channels {
   int8_t of_type[MAX_TYPES];
   bool in_order;  ///< every type has the channel of its own number: the channel is the type
@@ -77,18 +77,6 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
-/// Entries of an observation for the agent's own motion and heading.
-HEDON_FN int32_t motion_entries(const Species& species) {
-  return species.config->sensor.scaling == SensorScaling::raw ? 4 : 5;
-}
-
-/// The same, and for the stores that it observes.
-HEDON_FN int32_t own_entries(const Species& species) {
-  int32_t entries = motion_entries(species);
-  for (int32_t i = 0; i < species.stores(); ++i) entries += store_of(*species.config, i).observed != 0;
-  return entries;
-}
-
 /// types   of a world that senses may tell apart
 HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& layout, int32_t first_slot,
                               int32_t types) {
@@ -105,11 +93,10 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   species.has_network = species.learns || config.learning.policy == LearningPolicy::fixed;
   species.observes = species.has_network;
   species.observes |= layout.has_rule();
-  species.record = layout.terms.count + layout.genes.count + 12 + 2 * config.store.count + config.reward.memory;
+  species.record = layout.terms.count + layout.genes.count + layout.recorded.count + 1 + config.reward.memory;
   for (int32_t i = 0; i < layout.terms.count; ++i) species.observes |= is_sensed(layout.terms[i].input);
-  const int32_t dense = own_entries(species) + layout.smells.count * config.sensor.noses;
   species.network = {{config.sensor.ray_count, layout.sees.count, layout.touches.count * config.sensor.touch_sectors,
-                      dense, NARROW_LINES}};
+                      layout.observed.count, NARROW_LINES}};
   double sine, cosine;
   sincos_double(config.motor.angle * (PI / 180.0), &sine, &cosine);
   species.motor_arm = static_cast<float>(config.body.radius * sine);

@@ -8,6 +8,8 @@ import pytest
 
 from hedon import _engine
 from hedon.config import FIDELITIES, PRESETS, engine_config, load_config
+from hedon.config.engine import engine_input
+from hedon.error import EngineError
 
 
 def flat(tree, path=""):
@@ -68,3 +70,19 @@ def test_what_does_not_fit_is_named(section, name, value, message):
         table[name] = value
     with pytest.raises((KeyError, ValueError, TypeError), match=re.escape(message)):
         _engine.read_config(given)
+
+
+@pytest.mark.parametrize(
+    ("which", "i", "index"),
+    [("observed", 0, 2), ("observed", 4, 1), ("recorded", 1, 1), ("recorded", 5, 2)],
+    ids=["velocity", "store", "store_before", "force"],
+)
+def test_the_engine_refuses_a_channel_whose_source_has_no_such_number(which, i, index):
+    given = engine_input(load_config("baseline"))
+    for number in (index - 1, index):
+        given.settings["layout"][0][which][i]["index"] = number
+        if number < index:
+            assert _engine.memory_needed(given.settings, len(given.walls), 1, 1)
+            continue
+        with pytest.raises(EngineError, match=re.escape(f"layout[0].{which}[{i}].index = {number}: must be")):
+            _engine.memory_needed(given.settings, len(given.walls), 1, 1)

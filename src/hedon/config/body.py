@@ -75,7 +75,13 @@ class SensorConfig:
         le=10,
     )
     noses: int = setting(
-        1, "noses on the rim: one ahead, or two, one to each side of the heading", "", OURS, ge=1, le=2
+        1,
+        "noses on the rim: one ahead, or two, one to each side of the heading",
+        "",
+        OURS,
+        ge=1,
+        le=2,
+        shapes=True,
     )
     nose_angle: float = setting(45.0, "angle between the heading and each of two noses", "degree", OURS, ge=0, le=180)
     touch_sectors: int = setting(
@@ -89,6 +95,7 @@ class SensorConfig:
         "observation as in the released code, or each part scaled to about 1, with the heading as sine and cosine",
         "",
         OURS,
+        derived=True,
     )
     ray_inside: Literal["hit", "behind"] = setting(
         "hit",

@@ -11,7 +11,6 @@ from hedon.config.layout import (
     chosen,
     diet,
     layout_of,
-    observed_stores,
     rule_columns,
     smelled,
     store_columns,
@@ -129,7 +128,7 @@ def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -
         for name in config.food[kind].needs.keys() & set(store_columns(config)) - set(species.store):
             rule = f"it needs {name}, which it could never hold: give it store.{name}, or take {kind} out of diet.eats"
             check.add(f"{path}diet.eats", rule)
-    observed, noses = len(observed_stores(species)), species.sensor.noses
+    observed, noses = sum(store.observed for store in species.stores.values()), species.sensor.noses
     most = max(MAX_OBSERVED - observed, 0) // noses
     smells = len(smelled(config, species.sensor.smells))
     rule = f"must name at most {most} with sensor.noses = {noses} and {observed} stores that it observes"

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from hedon.config.arena import outer_count, walls
+from hedon.config.channel import Channel
 from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
@@ -151,7 +152,14 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
             }
             for term in layout.terms
         ],
+        "observed": [_channel(path, each) for each in layout.observed],
+        "recorded": [_channel(path, each) for each in layout.recorded],
     }
+
+
+def _channel(path: str, channel: Channel) -> dict[str, Any]:
+    scale = _Path(path + channel.place) if channel.place else channel.scale
+    return {"source": channel.source, "index": channel.index, "scale": scale}
 
 
 def _of_stores(config: Config, what: str, stores: tuple[str, ...]) -> list[Any]:

@@ -11,6 +11,7 @@ from dataclasses import is_dataclass
 from typing import Any, get_args
 
 from hedon.config import room
+from hedon.config.channel import SOURCES
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
 from hedon.config.field import Setting, engine_sections, engine_settings
 from hedon.config.settings import Settings
@@ -54,7 +55,8 @@ def _structs() -> Iterator[str]:
         yield from lines
     yield f"HEDON_ENUM(GenomeLearning, {', '.join(LEARNING_GENES)})"
     yield f"HEDON_ENUM(GenomeFamily, {', '.join(FAMILY_GENES)})"
-    yield f"HEDON_ENUM(RuleUse, {', '.join(RULE_USES)})\n"
+    yield f"HEDON_ENUM(RuleUse, {', '.join(RULE_USES)})"
+    yield _wrapped(f"HEDON_ENUM(ChannelSource, {', '.join(SOURCES)})") + "\n"
 
 
 def _add(section: type, made: dict[str, list[str]]) -> str:

@@ -6,6 +6,7 @@ The engine gets these layouts as data, the records carry them, and columns, labe
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from hedon.config.channel import Channel, observed_channels, recorded_channels
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, OF_ALL_GENES, GeneConfig, MutationConfig
 from hedon.config.field import value_at
 from hedon.config.problem import nearest
@@ -87,6 +88,8 @@ class SpeciesLayout:
         terms: The reward, in order.
         sees: What its rays tell apart, in the order of their channels.
         stores: Names of its stores, in the engine's order: energy first.
+        observed: What it observes beside rays and touch, in order.
+        recorded: What a rule gets beside the reward's inputs, genes and memory, in order.
         smells: What it smells, in the order of the channels of smell.
         touches: What it collides with and feels, in the order of the channels of touch.
     """
@@ -97,6 +100,8 @@ class SpeciesLayout:
     touches: tuple[str, ...]
     smells: tuple[str, ...]
     stores: tuple[str, ...]
+    observed: tuple[Channel, ...]
+    recorded: tuple[Channel, ...]
 
     @property
     def gene_names(self) -> tuple[str, ...]:
@@ -131,30 +136,16 @@ def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
         name: of the species.
     """
     species, layout = config.species[name], layout_of(config, config.species[name])
-    heading = ("heading",) if species.sensor.scaling == "raw" else ("heading_sine", "heading_cosine")
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
         *(f"touch_{kind}_{i}" for kind in layout.touches for i in range(species.sensor.touch_sectors)),
-        *("velocity_x", "velocity_y", *heading, "angular_velocity", *observed_stores(species)),
-        *(f"smell_{kind}_{i}" for kind in layout.smells for i in range(species.sensor.noses)),
+        *(channel.name for channel in layout.observed),
     )
-
-
-def observed_stores(species: SpeciesConfig) -> tuple[str, ...]:
-    """Names of the stores that a species observes, in order."""
-    return tuple(name for name, store in species.stores.items() if store.observed)
 
 
 def store_columns(config: Settings) -> tuple[str, ...]:
     """Names of the stores of all species but energy, each once, in order."""
     return tuple(dict.fromkeys(name for species in config.species.values() for name in species.store))
-
-
-RULE_INPUTS = (
-    *("age", "energy_before", "energy", "moved", "nearness", "force_left", "force_right"),
-    *("x", "y", "step", "alive"),
-)
-"""What a rule gets of every agent beside its reward's inputs, its genes and its memory, in the engine's order."""
 
 
 def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str, ...]:
@@ -171,10 +162,10 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
         use: of the rule: "reward", "hazard" or "birth".
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
-    stores = (column for store in config.species[name].store for column in (f"{store}_before", store))
     inputs = (term.name for term in layout.terms)
     own = "linear" if use == "reward" else "chance"
-    return (*inputs, *layout.gene_names, *RULE_INPUTS, *stores, own, *(f"memory_{i + 1}" for i in range(memory)))
+    channels = (channel.name for channel in layout.recorded)
+    return (*inputs, *layout.gene_names, *channels, own, *(f"memory_{i + 1}" for i in range(memory)))
 
 
 def choose_species(name: str | None, config: Settings) -> str:
@@ -340,4 +331,6 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
         touches=touches,
         smells=smells,
         stores=tuple(species.stores),
+        observed=observed_channels(species, smells),
+        recorded=recorded_channels(species),
     )

@@ -39,9 +39,15 @@ class StoreConfig:
     motor_threshold: float = setting(
         0.0, "amount that takes about half of both motors' force; 0: it takes none", "amount", OURS, ge=0, le=1e3
     )
-    observed: bool = setting(True, "whether agents observe it", "", OURS)
+    observed: bool = setting(True, "whether agents observe it", "", OURS, derived=True)
     scale: float = setting(
-        100.0, 'what its observation is divided by with sensor.scaling = "unit"', "amount", OURS, ge=1e-3, le=1e6
+        100.0,
+        'what its observation is divided by with sensor.scaling = "unit"',
+        "amount",
+        OURS,
+        ge=1e-3,
+        le=1e6,
+        derived=True,
     )
     set_point: GeneConfig = section(lambda: GeneConfig(initial_mean=0.5), derived=True)
 

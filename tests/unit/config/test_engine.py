@@ -21,6 +21,7 @@ CONFIG = load_config(
     overrides=[
         "reward.see.poison.coef=0.1",
         "sensor.smells=['poison']",
+        "sensor.scaling=unit",
         "reward.smell.poison.coef=0.1",
         "reward.family=by_age",
         *FED,
