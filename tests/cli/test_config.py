@@ -80,3 +80,22 @@ def test_typing_errors_name_the_nearest(args: tuple[str, ...], text: str) -> Non
 def test_version() -> None:
     answer = subprocess.run(["hedon", "--version"], capture_output=True, text=True, check=False)
     assert (answer.returncode, answer.stdout, answer.stderr) == (0, f"hedon {version('hedon')}\n", "")
+
+
+def test_a_check_reads_rules_as_a_run_does(tmp_path: Path) -> None:
+    """Their text is part of the digest, and a file that is not there, fails or lacks the function is an error."""
+
+    def check(text: str | None, name: str = "paid") -> subprocess.CompletedProcess[str]:
+        (tmp_path / "rule.py").write_text(text) if text else (tmp_path / "rule.py").unlink()
+        return hedon("config", "check", "baseline", "--set", f'reward.rule="rule.py:{name}"', cwd=tmp_path)
+
+    once, twice = (check(f"def paid(agent):\n    return {factor} * agent.linear\n") for factor in (1, 2))
+    assert (once.returncode, twice.returncode) == (0, 0)
+    assert once.stdout != twice.stdout
+    near = check("def paid(agent):\n    return 1.0\n", "payed")
+    assert near.returncode == 2
+    assert near.stderr.endswith("rule.py:payed: the file has no function payed; did you mean paid?\n")
+    assert "its file fails" in check("raise SystemExit(3)").stderr
+    missing = check(None)
+    assert (missing.returncode, missing.stdout) == (2, "")
+    assert "cannot read" in missing.stderr

@@ -102,15 +102,21 @@ def diff(
 def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
     """Check a config: print its digest, or everything that is wrong.
 
+    Files of rules are run, as they are in a run, and their text counts in the digest.
+
     \b
     Example:
       hedon config check my.toml
     """
     from hedon.config import digest
+    from hedon.experiment.rule import pinned, rules, rules_beside
 
     config = load_config(source, fidelity, overrides or ())
+    found = rules(config, rules_beside(source))
+    for rule in found:
+        _ = rule.function  # whatever is wrong with its file is said here
     typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
-    typer.echo(f"digest {digest(config)}")
+    typer.echo(f"digest {digest(pinned(config, found))}")
 
 
 @app.command()

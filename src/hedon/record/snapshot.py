@@ -130,7 +130,8 @@ def load_snapshot(folder: Path) -> Snapshot | None:
         snapshot = Snapshot(**{**values, **scalars, **names})
         _require_drawable(snapshot)
     except Exception as error:  # a file that is not from hedon can raise any exception
-        raise RecordError(f"damaged snapshot {path}: {brief(str(error))}") from error
+        mend = f"`hedon resume {folder}` writes it again, and without this file a report leaves its picture out"
+        raise RecordError(f"damaged snapshot {path}: {brief(str(error))}; {mend}") from error
     return snapshot
 
 
