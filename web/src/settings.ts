@@ -41,6 +41,14 @@ function changedLines(toml: string, changes: Map<string, string>, written: (path
   const line = (text: string): string => {
     const name = /^\[(.*)\]$/.exec(text);
     if (name) table = `${name[1]}.`;
+    const row = /^([\w-]+) = \{([^}]*)\}/.exec(text);
+    if (row) {
+      const number = (whole: string, each: string) => {
+        const changed = changes.get(`${table}${row[1]}.${each}`);
+        return changed === undefined ? whole : `${each} = ${changed}`;
+      };
+      return text.replace(row[0], `${row[1]} = {${row[2]!.replace(/([\w-]+) = [^,]+/g, number)}}`);
+    }
     const key = /^([\w-]+) = /.exec(text);
     const value = key ? changes.get(table + key[1]) : undefined;
     return value === undefined ? text : `${key![1]} = ${written(table + key![1], value)}`;

@@ -176,8 +176,13 @@ def sections(section: type) -> Mapping[str, Section]:
     return MappingProxyType(found)
 
 
-def _number_of(table: Setting, name: str) -> Setting:
-    """One number of a table of them, as a setting."""
+def number_of(table: Setting, name: str) -> Setting:
+    """One number of a table of them, as a setting.
+
+    Args:
+        table: The setting that is a table.
+        name: Of the number in it.
+    """
     low, high = table.doc.range.each or (-math.inf, math.inf)
     return Setting(name, float, 0.0, replace(table.doc, range=Range(ge=low, le=high)))
 
@@ -244,7 +249,7 @@ def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
         value = getattr(section, name)
         if isinstance(value, dict):
             for each, number in value.items():
-                yield f"{path}{name}.{each}", _number_of(setting, each), number
+                yield f"{path}{name}.{each}", number_of(setting, each), number
         else:
             yield f"{path}{name}", setting, value
     for place, _, own in inner_sections(section, path):

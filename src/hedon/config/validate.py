@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any, TypeVar, get_args, get_origin
 
 from hedon.config.check import contradictions
-from hedon.config.field import Setting, sections, settings
+from hedon.config.field import Setting, number_of, sections, settings
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest, single
 from hedon.config.settings import Settings
 from hedon.config.species import PER_SPECIES
@@ -80,7 +80,8 @@ def _plain(value: Any) -> Any:
 def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Problem]:
     """What is wrong with one value: its type, its length, or a number in it."""
     limits, must = setting.doc.range, f"must be {setting.allowed}"
-    wrong: dict[str, Any] = dict(_misfits(setting.type, value))
+    table = get_origin(setting.type) is dict and isinstance(value, dict)
+    wrong: dict[str, Any] = {} if table else dict(_misfits(setting.type, value))
     number = setting.type in (int, float)
     if not wrong and (value not in limits if number else limits.max_items and len(value) > limits.max_items):
         wrong = {"": value}
@@ -88,6 +89,10 @@ def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Probl
         near = nearest(part, setting.choices) if isinstance(part, str) else None
         yield Problem(path + place, must, format_value(part), near)
     if wrong:
+        return
+    if table:
+        for name, part in value.items():
+            yield from _setting_problems(number_of(setting, name), part, f"{path}.{name}")
         return
     if setting.type is float and single(value) not in limits:
         yield Problem(path, f"is {single(value):g} in the engine's 32-bit numbers, but {must}", format_value(value))
@@ -106,12 +111,7 @@ def _misfits(kind: Any, value: Any, place: str = "") -> Iterator[tuple[str, Any]
     elif not items:
         if not _is_a(kind, value):
             yield place, value
-    elif get_origin(kind) is dict:
-        for name, part in value.items() if isinstance(value, dict) else ():
-            yield from _misfits(items[1], part, f"{place}.{name}")
-        if not isinstance(value, dict):
-            yield place, value
-    elif not isinstance(value, list | tuple):
+    elif get_origin(kind) is dict or not isinstance(value, list | tuple):
         yield place, value
     elif items[1:] != (Ellipsis,) and len(value) != len(items):
         yield f"{place}[{len(value)}]" if len(value) < len(items) else place, value
@@ -130,9 +130,7 @@ def _is_a(kind: type, value: Any) -> bool:
 
 
 def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers in a table, or in a list and in the lists in it, each with its place."""
-    for name, item in value.items() if isinstance(value, dict) else ():
-        yield f"{place}.{name}", item
+    """The numbers in a list and in the lists in it, each with its place."""
     for i, item in enumerate(value) if isinstance(value, list | tuple) else ():
         yield from _numbers(item, f"{place}[{i}]")
     if isinstance(value, int | float):
