@@ -80,8 +80,7 @@ def _plain(value: Any) -> Any:
 def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Problem]:
     """What is wrong with one value: its type, its length, or a number in it."""
     limits, must = setting.doc.range, f"must be {setting.allowed}"
-    table = get_origin(setting.type) is dict and isinstance(value, dict)
-    wrong: dict[str, Any] = {} if table else dict(_misfits(setting.type, value))
+    wrong: dict[str, Any] = dict(_misfits(setting.type, value))
     number = setting.type in (int, float)
     if not wrong and (value not in limits if number else limits.max_items and len(value) > limits.max_items):
         wrong = {"": value}
@@ -90,12 +89,10 @@ def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Probl
         yield Problem(path + place, must, format_value(part), near)
     if wrong:
         return
-    if table:
-        for name, part in value.items():
-            yield from _setting_problems(number_of(setting, name), part, f"{path}.{name}")
-        return
     if setting.type is float and single(value) not in limits:
         yield Problem(path, f"is {single(value):g} in the engine's 32-bit numbers, but {must}", format_value(value))
+    for name, part in value.items() if get_origin(setting.type) is dict else ():
+        yield from _setting_problems(number_of(setting, name), part, f"{path}.{name}")
     low, high = limits.each or (-math.inf, math.inf)
     for place, part in _numbers(value):
         if not low <= part <= high:
@@ -111,7 +108,10 @@ def _misfits(kind: Any, value: Any, place: str = "") -> Iterator[tuple[str, Any]
     elif not items:
         if not _is_a(kind, value):
             yield place, value
-    elif get_origin(kind) is dict or not isinstance(value, list | tuple):
+    elif get_origin(kind) is dict:
+        if not isinstance(value, dict):
+            yield place, value
+    elif not isinstance(value, list | tuple):
         yield place, value
     elif items[1:] != (Ellipsis,) and len(value) != len(items):
         yield f"{place}[{len(value)}]" if len(value) < len(items) else place, value
