@@ -9,8 +9,12 @@ from command import hedon
 from resumed_run import WINDOW, assert_same_run, small_run
 
 from hedon import _engine
+from hedon.config import load_config
 from hedon.experiment.branch import branch
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import lock, resume
+from hedon.experiment.run import run
 from hedon.record.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS, checkpoint_paths, part_path, part_paths
@@ -287,3 +291,14 @@ def test_the_command_says_what_it_does(half, whole):
         assert answer.returncode == 2
         assert words in answer.stderr
         assert "Traceback" not in answer.stderr
+
+
+def test_a_world_that_dies_out_before_the_checkpoint_of_its_window_is_computed_again(tmp_path):
+    short = ("hazard.form=constant", "hazard.kappa=0.04", "population.initial_count=4", "birth.kappa=0")
+    config = load_config("baseline", overrides=["world.rollout_steps=64", "learning.minibatch_size=64", *short])
+    first = run(RunPlan(config, list(range(1, 9)), 40, tmp_path / "run", 1))
+    assert None in first.extinct_steps
+    assert any(first.extinct_steps)
+    resume(tmp_path / "run", 90, threads=1)
+    found, note = replay_run(tmp_path / "run", 1)
+    assert (found, note.split(" to ")[0]) == ((), "computed again from step 40")

@@ -7,6 +7,7 @@ from pathlib import Path
 import polars as pl
 
 from hedon.check.finding import Finding
+from hedon.config.load import parse_config
 from hedon.error import HedonError
 from hedon.experiment.branch import plan_branch, start_branch
 from hedon.record.folder import checkpoint_paths
@@ -47,10 +48,12 @@ def _compare(run: Run, again: Run, manifest: Manifest, start: int) -> Iterator[F
     for world, (old, new) in enumerate(zip(run.manifest.world_digests, manifest.world_digests, strict=True)):
         if old != new:
             yield Finding("manifest.json", f"world {world}: computed again, its digest is {new}, not {old}")
+    # A world that died out in the checkpoint's window, before it, has its row of that window in both.
+    window = start - start % parse_config(run.config_text, str(run.path)).world.rollout_steps
     later = pl.col("death_step").is_null() | (pl.col("death_step") > start)
     tables = {
         "agents": (run.agents().filter(later), again.agents(), ["world", "agent_id"]),
-        "population": (run.population().filter(pl.col("step") > start), again.population(), ["world", "step"]),
+        "population": (run.population().filter(pl.col("step") > window), again.population(), ["world", "step"]),
         "frames": (run.frames().filter(pl.col("step") > start).collect(), again.frames().collect(), ["world", "step"]),
     }
     for name, (old, new, keys) in tables.items():
