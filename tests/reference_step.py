@@ -13,6 +13,7 @@ from reference.heredity import first_log_sd, inherited_network
 from reference.meal import can_digest
 from reference.model import Model
 from reference.reward import inputs
+from reference.rule_book import neighbors
 from reference.sense import body_sense, smells
 from reference.setting import Rules
 from reference.state import Agent, Outcome, World
@@ -114,6 +115,7 @@ class Judge:
             switched=sum(a.center != b.center for a, b in zip(before.stocks, expected.world.stocks, strict=True)),
             told=sum(rules.of(turn.agent).learning.policy == "external" and any(turn.deed.action) for turn in turns),
             passed=_overlaps(rules, before),
+            kin=_kin(rules, expected.world),
         )
         for turn in turns:
             self.count(**{f"paid_{name}": value != 0 for name, value in inputs(rules, turn).items()})
@@ -223,6 +225,12 @@ def _held(rules: Rules, world: World) -> dict[str, float]:
         "sated": sum(amount == store.capacity for amount, store in held),
         "empty": sum(amount == 0 for amount, store in held if not store.motor_threshold),
     }
+
+
+def _kin(rules: Rules, world: World) -> int:
+    """How many kin the queries of rules find."""
+    asked = ((agent, query) for agent in world.agents for query in rules.of(agent).neighbor.values())
+    return sum(int(neighbors(rules, world, agent, query)["kin"]) for agent, query in asked)
 
 
 def _overlaps(rules: Rules, world: World) -> int:

@@ -20,3 +20,20 @@ def swamp(agent):
 def crowded(agent):
     """No child in a crowd, and none in every fifth step."""
     return 3.0 * agent.chance if agent.alive < 20.0 and agent.step % 5.0 > 0.0 else 0.0
+
+
+def kind(agent):
+    """Pays for kin, and for others by where the nearest is."""
+    toward = 1.0 if abs(agent.near_bearing) < 1.0 and agent.near_distance < 25.0 else 0.0
+    crowd = 0.1 * agent.extra_patience * agent.near_count - 0.01 * agent.guard_count
+    return agent.linear + agent.extra_kindness * agent.near_kin + toward + crowd + 0.01 * agent.near_bearing
+
+
+def lonely(agent):
+    """Kills those who are alone, and those whose nearest lies behind."""
+    return min(agent.chance + (0.01 if agent.near_count == 0.0 or abs(agent.near_bearing) > 2.0 else 0.0), 1.0)
+
+
+def apart(agent):
+    """No child near kin."""
+    return 0.0 if agent.all_kin > 1.0 else agent.chance

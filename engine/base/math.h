@@ -112,6 +112,28 @@ HEDON_FN void sincos_double(double x, double* sine, double* cosine) {
   }
 }
 
+/// The angle of (x, y) to the x axis, in [-π, π]; 0 for (0, 0). Three times it halves the angle, whose tangent then has
+/// a short series.
+HEDON_FN double atan2_double(double y, double x) {
+  const double longer = fabs(x) > fabs(y) ? fabs(x) : fabs(y);
+  if (!(longer > 0.0)) return 0.0;
+  double t = (fabs(x) > fabs(y) ? fabs(y) : fabs(x)) / longer;
+  for (int32_t half = 0; half < 3; ++half) t = t / (1.0 + sqrt(1.0 + t * t));
+  const double z = t * t;
+  double p = 1.0 / 17.0;
+  p = 1.0 / 15.0 - p * z;
+  p = 1.0 / 13.0 - p * z;
+  p = 1.0 / 11.0 - p * z;
+  p = 1.0 / 9.0 - p * z;
+  p = 1.0 / 7.0 - p * z;
+  p = 1.0 / 5.0 - p * z;
+  p = 1.0 / 3.0 - p * z;
+  double angle = 8.0 * (t - t * z * p);
+  if (fabs(y) > fabs(x)) angle = 0.5 * PI - angle;
+  if (x < 0.0) angle = PI - angle;
+  return y < 0.0 ? -angle : angle;
+}
+
 HEDON_FN float exp_float(float x) { return static_cast<float>(exp_double(x)); }
 HEDON_FN float log_float(float x) { return static_cast<float>(log_double(x)); }
 HEDON_FN float sigmoid(float x) { return static_cast<float>(1.0 / (1.0 + exp_double(-static_cast<double>(x)))); }

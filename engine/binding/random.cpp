@@ -64,6 +64,15 @@ void bind_random(nb::module_& module) {
         return own(std::move(out));
       },
       nb::arg("seed"), nb::arg("form"), nb::arg("count"), "`count` draws of a distribution.");
+  random.def(
+      "atan2",
+      [](FloatsIn y, FloatsIn x) {
+        if (y.shape(0) != x.shape(0)) throw nb::value_error("y and x must be equally long");
+        std::vector<double> out(y.shape(0));
+        for (size_t i = 0; i < out.size(); ++i) out[i] = atan2_double(y.data()[i], x.data()[i]);
+        return own(std::move(out));
+      },
+      nb::arg("y"), nb::arg("x"));
   random.def("exp", [](FloatsIn x) { return map(x, exp_double); }, nb::arg("x"));
   random.def("log", [](FloatsIn x) { return map(x, log_double); }, nb::arg("x"));
   random.def(

@@ -15,7 +15,7 @@ inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each sp
 inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together
 inline constexpr int LEARNING_GENES = std::size(EnumNames<GenomeLearning>::text);
 inline constexpr int FAMILY_GENES = std::size(EnumNames<GenomeFamily>::text);
-inline constexpr int MAX_CHANNELS = 32;  ///< more than a rule's record or an observation has
+inline constexpr int MAX_CHANNELS = 48;  ///< more than a rule's record or an observation has
 inline constexpr int RULE_USES = std::size(EnumNames<RuleUse>::text);
 
 /// The first store of every species.
@@ -83,6 +83,18 @@ struct Channel {
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 2 * MAX_TYPES - 1), Limit::over(0, 1e6)};
 };
 
+/// Numbers that answer a query of a rule.
+inline constexpr int QUERY_NUMBERS = 4;
+
+/// Who near an agent a rule asks about.
+struct NeighborQuery {
+  int32_t species;  ///< bit s: those of species s count
+  float range;      ///< between centers [u]
+
+  HEDON_FIELDS(NeighborQuery, species, range)
+  static constexpr Limit LIMITS[] = {Limit::from(0, (1 << MAX_SPECIES) - 1), Limit::over(0, 1e4)};
+};
+
 /// What follows from the names in a species' settings, and from lengths and forces in other units. Types are numbered:
 /// the species, the food kinds, walls, then obstacles.
 struct SpeciesLayout {
@@ -104,9 +116,10 @@ struct SpeciesLayout {
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
   FixedList<Channel, MAX_CHANNELS> observed;  ///< what it observes beside rays and touch, in order
   FixedList<Channel, MAX_CHANNELS> recorded;  ///< what a rule gets beside inputs, genes and memory, in order
+  FixedList<NeighborQuery, MAX_QUERIES> neighbors;
 
   HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
-               needs, rules, genes, learning, family, set_points, terms, observed, recorded)
+               needs, rules, genes, learning, family, set_points, terms, observed, recorded, neighbors)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
@@ -124,6 +137,7 @@ struct SpeciesLayout {
                                      Limit(),
                                      GENE,
                                      GENE,
+                                     Limit(),
                                      Limit(),
                                      Limit(),
                                      Limit()};

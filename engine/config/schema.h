@@ -18,6 +18,7 @@ inline constexpr int MAX_OBSTACLES = 256;
 inline constexpr int MAX_RAYS = 32;
 inline constexpr int MAX_TOUCH_BITS = 128;
 inline constexpr int MAX_STORES = 8;
+inline constexpr int MAX_QUERIES = 4;
 inline constexpr int MAX_OBSERVED = 15;
 inline constexpr int MAX_GENES = 64;
 inline constexpr float MAX_FORCE = 1000000.0;
@@ -334,6 +335,6 @@ HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
 HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, smell, age, moved, nearness,
-      force, position, step, alive)
+      force, position, step, alive, neighbor)
 
 }  // namespace hedon

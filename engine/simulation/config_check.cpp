@@ -134,11 +134,12 @@ void check_terms(Complaint& complaint, const std::string& path, const Config& co
 
 /// Channels are numbers that there are.
 void check_channels(Complaint& complaint, const std::string& path, const FixedList<Channel, MAX_CHANNELS>& list,
-                    int32_t stores, int32_t scents) {
+                    int32_t stores, int32_t scents, int32_t near) {
   for (int32_t i = 0; i < list.count; ++i) {
     int32_t numbers = 2;
     if (list[i].source == ChannelSource::store || list[i].source == ChannelSource::store_before) numbers = stores;
     if (list[i].source == ChannelSource::smell) numbers = scents;
+    if (list[i].source == ChannelSource::neighbor) numbers = near;
     complaint.need(list[i].index < numbers, item(path, i) + ".index", list[i].index, "a number of its source");
   }
 }
@@ -153,8 +154,9 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   const int32_t stores = 1 + config.species[s].store.count;
   complaint.need(own.observed.count <= MAX_DENSE + MAX_EXTRA_DENSE, path + "observed", own.observed.count,
                  "at most " + std::to_string(MAX_DENSE + MAX_EXTRA_DENSE));
-  check_channels(complaint, path + "observed", own.observed, stores, own.smells.count * sensor.noses);
-  check_channels(complaint, path + "recorded", own.recorded, stores, own.smells.count * sensor.noses);
+  check_channels(complaint, path + "observed", own.observed, stores, own.smells.count * sensor.noses, 0);
+  check_channels(complaint, path + "recorded", own.recorded, stores, own.smells.count * sensor.noses,
+                 own.has_rule() ? own.neighbors.count * QUERY_NUMBERS : 0);
   check_terms(complaint, path + "terms", config, own);
   for (int32_t i = 0; i < own.learning.count; ++i)
     check_gene(complaint, path + "learning.gene", own, own.learning[i].gene);
@@ -168,6 +170,8 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   count("set_points", own.set_points.count, stores, "one for each store");
   count("gives", own.gives.count, config.food.count * stores, "one for each kind of food and each store");
   count("needs", own.needs.count, config.food.count * stores, "one for each kind of food and each store");
+  complaint.need(own.has_rule() || own.neighbors.count == 0, path + "neighbors", own.neighbors.count,
+                 "none for a species without rules");
   for (int32_t i = 0; i < own.family.count; ++i) check_gene(complaint, path + "family", own, own.family[i]);
   for (int32_t i = 0; i < own.set_points.count; ++i) check_gene(complaint, path + "set_points", own, own.set_points[i]);
   complaint.need(own.min_force < own.max_force, path + "min_force", own.min_force, "below max_force");

@@ -54,6 +54,8 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const Channel& c
       return static_cast<double>(world.head().step);
     case ChannelSource::alive:
       return static_cast<double>(world.species(slot).capacity() - state.free_count[world.shape->species_of(slot)]);
+    case ChannelSource::neighbor:
+      return scratch.near[int64_t{slot} * world.shape->near + i];
   }
   return 0.0;
 }

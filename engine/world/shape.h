@@ -57,6 +57,7 @@ struct WorldShape {
   bool ruled;              ///< rules of the caller pay some species, or decide when it dies or breeds
   int32_t memory;          ///< most numbers that a rule keeps for each agent
   int32_t record;          ///< of the longest record that a rule gets
+  int32_t near;            ///< most numbers that answer the queries of a rule about one agent
   int32_t scents;          ///< of the longest row of smells: channels times noses
   bool packed;             ///< some species acts with weights in pairs
   bool instinct;           ///< some species passes on the networks that it was born with
@@ -138,6 +139,7 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
       shape.ruled = true;
       grow(shape.memory, own.reward.memory);
       grow(shape.record, species.record);
+      grow(shape.near, layout.neighbors.count * QUERY_NUMBERS);
     }
     shape.networks |= species.has_network;
     shape.learning |= species.learns;

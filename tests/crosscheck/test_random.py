@@ -60,3 +60,12 @@ def test_elementary_functions_agree_with_the_c_library(name, low, high, toleranc
     expected = getattr(np, name)(x)
     scale = np.abs(expected) if name == "exp" else np.maximum(np.abs(expected), 1.0)
     assert np.max(np.abs(getattr(random, name)(x) - expected) / scale) < tolerance
+
+
+def test_the_angle_of_a_vector_agrees_with_the_c_library():
+    turn = np.linspace(-np.pi, np.pi, 100_001)
+    for long in (1e-30, 1.0, 1e30):
+        y, x = long * np.sin(turn), long * np.cos(turn)
+        assert np.max(np.abs(random.atan2(y, x) - np.arctan2(y, x))) < 2e-15
+    y, x = np.array([0.0, 0.0, 1.0, -1.0]), np.array([0.0, -1.0, 0.0, 0.0])
+    np.testing.assert_allclose(random.atan2(y, x), [0.0, np.pi, np.pi / 2, -np.pi / 2], rtol=1e-15)

@@ -135,6 +135,10 @@ JUDGED_ELSEWHERE = {
 """Settings that no case of the model judges, and why."""
 
 
+NAMED = ("food", "store", "neighbor", "see", "smell", "schedule", "mutation", "family", "learning", "extra")
+"""Sections whose parts users name."""
+
+
 def general(path: str) -> str:
     """The path of a setting without the names of species and kinds: as `every_setting` has it."""
     parts = path.split(".")
@@ -143,9 +147,7 @@ def general(path: str) -> str:
     if parts[0] == "food" and parts[2] in ("gives", "needs"):
         parts = parts[:3]
     for i, part in enumerate(parts[:-1]):
-        if part in ("food", "store", "see", "smell", "schedule", "mutation", "family", "learning") and i + 2 < len(
-            parts
-        ):
+        if part in NAMED and i + 2 < len(parts):
             parts[i + 1] = "<kind>"
     return ".".join(parts)
 

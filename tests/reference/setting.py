@@ -75,6 +75,8 @@ class Species:
         }
         if gene.startswith("neutral_"):
             return genome.neutral
+        if gene.startswith("extra_"):
+            return genome.extra[gene.removeprefix("extra_")]
         if gene.startswith("set_point"):
             return self.stores[gene.removeprefix("set_point").removeprefix("_") or "energy"].set_point
         if gene.startswith("g_"):

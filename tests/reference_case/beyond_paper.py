@@ -1,12 +1,9 @@
 """A world for each mechanism beyond the first paper, and some in which mechanisms meet."""
 
-from pathlib import Path
-
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER
+from reference_case.ruled import RULED
 from two_stores import STORES
-
-RULES = Path(__file__).parents[1] / "rule_example.py"
 
 SPECIES = {
     "hunters": Case(
@@ -284,14 +281,6 @@ FAMILIES = {
         ),
         {"births": 20, "eaten": 10},
     ),
-    "rules": Case(
-        "functions in Python that pay, kill and let breed",
-        (
-            *(f'reward.rule="{RULES}:curious"', f'hazard.rule="{RULES}:swamp"', f'birth.rule="{RULES}:crowded"'),
-            *("reward.memory=2", "hazard.kappa=0.05", "population.capacity=34", "birth.kappa=0.1"),
-        ),
-        {"births": 5, "deaths": 5},
-    ),
 }
 
 POLICIES = {
@@ -395,4 +384,4 @@ COMBINED = {
     ),
 }
 
-CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | POLICIES | FOOD | COMBINED
+CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | RULED | POLICIES | FOOD | COMBINED

@@ -8,6 +8,7 @@ import type { Frame } from "./types";
 
 const HEIGHT = 130;
 const LINES = ["#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#999933"];
+const GENES = { reward: "mean weights", learning: "mean genes of learning", rule: "mean genes of rules" }; // by role
 const RANGE = 1.96; // standard deviations of the neutral genes' means that the band shows on each side
 
 interface Plot {
@@ -40,8 +41,11 @@ export class Plots {
     for (const species of layout.species) {
       const genes = (role: string) => species.genes.map((g) => layout.genes[g]!).filter((gene) => gene.role === role);
       const means = (role: string) => genes(role).map((gene) => columnOf(layout, species, `${gene.name}_mean`));
-      const title = `mean weights${several ? ` of ${species.name}` : ""}, and the band of the neutral genes`;
-      add(title, means("reward"), genes("reward").map((gene) => gene.name), LINES, means("neutral"));
+      for (const [role, title] of Object.entries(GENES)) {
+        if (genes(role).length === 0) continue;
+        const whose = `${title}${several ? ` of ${species.name}` : ""}, and the band of the neutral genes`;
+        add(whose, means(role), genes(role).map((gene) => gene.name), LINES, means("neutral"));
+      }
     }
     add("food present", layout.foods.map((food) => `food_${food.name}`), layout.foods.map((food) => food.name), layout.foods.map((food) => food.color));
     if (series.get(`eaten_${layout.foods[0]?.name}`).length > 0) {

@@ -2,7 +2,7 @@
 
 export interface Gene {
   name: string;
-  role: "reward" | "neutral";
+  role: "reward" | "learning" | "rule" | "neutral";
   input: string;
 }
 

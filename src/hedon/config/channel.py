@@ -7,6 +7,7 @@ them as data and reads all of them in one function, `channel_value` in `engine/w
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from hedon.config.neighbor import NUMBERS
 from hedon.config.species import SpeciesConfig
 from hedon.config.store import ENERGY
 
@@ -25,6 +26,7 @@ SOURCES = {
     "position": "place along x, along y [u]",
     "step": "the step of the world",
     "alive": "living agents of its species",
+    "neighbor": "what a query of its rules found, by query",
 }
 """Where the engine reads a channel, with its meaning. What a source has several of, `Channel.index` counts."""
 VELOCITY_SCALE, ANGULAR_VELOCITY_SCALE = 1.5, 0.2
@@ -86,10 +88,11 @@ def observed_channels(species: SpeciesConfig, smells: Sequence[str]) -> tuple[Ch
 def recorded_channels(species: SpeciesConfig) -> tuple[Channel, ...]:
     """What a rule gets of every agent beside its reward's inputs, its genes and its memory, in order.
 
-    Where there are other stores than energy, each is there as it was at the start of the step and as it is.
+    Where there are other stores than energy, each is there as it was at the start of the step and as it is; then what
+    each query about neighbors found.
 
     Args:
-        species: with its stores.
+        species: with its stores and its queries.
     """
     return (
         Channel("age", "age"),
@@ -107,5 +110,10 @@ def recorded_channels(species: SpeciesConfig) -> tuple[Channel, ...]:
             channel
             for i, name in enumerate(species.store, 1)
             for channel in (Channel(f"{name}_before", "store_before", i), Channel(name, "store", i))
+        ),
+        *(
+            Channel(f"{name}_{number}", "neighbor", i * len(NUMBERS) + n)
+            for i, name in enumerate(species.neighbor)
+            for n, number in enumerate(NUMBERS)
         ),
     )

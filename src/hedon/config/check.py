@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from hedon.config.arena import ArenaConfig, is_inside
-from hedon.config.check_species import MAX_COVERAGE, check_species
+from hedon.config.check_species import MAX_COVERAGE, NAME, check_species
 from hedon.config.field import inner_sections
 from hedon.config.food import FoodConfig
 from hedon.config.layout import store_columns
@@ -20,8 +20,6 @@ MIN_WALL = 0.01
 """Length of the shortest wall whose direction float32 can still hold [u]."""
 RESERVED_KINDS = ("agent", "wall", "obstacle", "action")
 """Names with another meaning in sensor channels or in the columns of records."""
-NAME = r"[a-z][a-z0-9_]{0,31}"
-"""What kinds of food and species may be called."""
 
 
 def contradictions(config: Settings) -> list[Problem]:

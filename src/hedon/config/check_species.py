@@ -16,7 +16,7 @@ from hedon.config.layout import (
     store_columns,
 )
 from hedon.config.problem import Check, nearest, single
-from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
+from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_QUERIES, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
@@ -31,6 +31,9 @@ RESERVED_STORES = (
     *("energy_gained", "energy_spent"),
 )
 """Names of other numbers of an agent, which no store can have."""
+NAME = r"[a-z][a-z0-9_]{0,31}"
+"""What kinds of food, species, stores, and genes and queries of rules may be called."""
+NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -45,6 +48,7 @@ def check_species(check: Check) -> None:
         _life(check, config, species, path)
         _lists(check, config, species, path)
         _stores(check, config, species, path)
+        _for_rules(check, config, species, path)
         before = len(check.problems)
         _sight(check, config, species, path)
         if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
@@ -59,9 +63,9 @@ def _names(check: Check, config: Settings) -> None:
     if not 1 <= len(config.species) <= MAX_SPECIES:
         check.add("species", f"there must be from 1 to {MAX_SPECIES} species, not {len(config.species)}")
     for name in config.species:
-        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in (*config.food, *SOLID, "action"):
-            rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
-            check.add(f"species.{name}", f"{rule} and be no kind of food and not {' or '.join((*SOLID, 'action'))}")
+        if not re.fullmatch(NAME, name) or name in (*config.food, *SOLID, "action"):
+            rule = f"{NAME_RULE} and be no kind of food and not {' or '.join((*SOLID, 'action'))}"
+            check.add(f"species.{name}", rule)
 
 
 def _body(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
@@ -121,9 +125,8 @@ def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -
         rule = f"must be at most its capacity = {store.capacity:g}"
         check.need(store.initial <= store.capacity, f"{place}.initial", rule)
     for name in species.store:
-        if not re.fullmatch(r"[a-z][a-z0-9_]{0,31}", name) or name in RESERVED_STORES:
-            rule = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
-            check.add(f"{path}store.{name}", f"{rule} and not be one of " + ", ".join(RESERVED_STORES))
+        if not re.fullmatch(NAME, name) or name in RESERVED_STORES:
+            check.add(f"{path}store.{name}", f"{NAME_RULE} and not be one of " + ", ".join(RESERVED_STORES))
     for kind in diet(config, species).keys() & config.food.keys():
         for name in config.food[kind].needs.keys() & set(store_columns(config)) - set(species.store):
             rule = f"it needs {name}, which it could never hold: give it store.{name}, or take {kind} out of diet.eats"
@@ -141,6 +144,22 @@ def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) 
         check.need(name in known or name == EVERYTHING, path, rule, name, nearest(name, known))
 
 
+def _for_rules(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
+    """What only rules read: genes of their own, and queries about neighbors."""
+    ruled = any(getattr(species, use).rule for use in RULE_USES)
+    rule = "only a rule in Python reads this: give " + " or ".join(f"{use}.rule" for use in RULE_USES)
+    for section, table in (("genome.extra", species.genome.extra), ("neighbor", species.neighbor)):
+        for name in table:
+            if not re.fullmatch(NAME, name):
+                check.add(f"{path}{section}.{name}", NAME_RULE)
+        if table and not ruled:
+            check.add(f"{path}{section}", rule)
+    for name, query in species.neighbor.items():
+        _known(check, f"{path}neighbor.{name}.of", query.of, list(config.species))
+    if len(species.neighbor) > MAX_QUERIES:
+        check.add(f"{path}neighbor", f"there must be at most {MAX_QUERIES} queries, not {len(species.neighbor)}")
+
+
 def _rules(check: Check, config: Settings, name: str, path: str) -> None:
     reward = config.species[name].reward
     for use in RULE_USES:
@@ -149,7 +168,7 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
         check.match(f"({RULE_PATTERN})?", place, "must be FILE.py:NAME, a Python file and a function in it")
         columns = rule_columns(config, name, use) if rule else ()
         for column in {each for each in columns if columns.count(each) > 1}:
-            check.need(False, place, f"two things that it reads are called {column}: rename a food")
+            check.need(False, place, f"two things that it reads are called {column}: rename a food or a query")
     check.need(
         not reward.memory or bool(reward.rule), f"{path}reward.memory", "is kept by a rule: give reward.rule too"
     )

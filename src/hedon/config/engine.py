@@ -11,7 +11,7 @@ from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
 from hedon.config.layout import Gene, diet, layout_of, set_point_of, types
 from hedon.config.life import distance_sd
-from hedon.config.species import RULE_USES, SpeciesConfig
+from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
 
 if TYPE_CHECKING:
     import numpy as np
@@ -154,6 +154,13 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         ],
         "observed": [_channel(path, each) for each in layout.observed],
         "recorded": [_channel(path, each) for each in layout.recorded],
+        "neighbors": [
+            {
+                "species": sum(1 << i for i, each in enumerate(config.species) if {each, EVERYTHING} & {*query.of}),
+                "range": _Path(f"{path}neighbor.{asked}.range"),
+            }
+            for asked, query in species.neighbor.items()
+        ],
     }
 
 

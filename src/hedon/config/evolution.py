@@ -50,7 +50,7 @@ class MutationConfig:
 
 @dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """The weights of the reward, genes that set learning, then neutral markers that have no effect.
+    """The weights of the reward, genes that set learning, genes for rules, then neutral markers that have no effect.
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
     that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
@@ -58,6 +58,7 @@ class GenomeConfig:
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
+    `[genome.extra.NAME]` makes a gene extra_NAME that only rules in Python read (guide/rule.md).
     `[genome.mutation.GENE]` gives one gene a mutation of its own.
     """
 
@@ -82,6 +83,7 @@ class GenomeConfig:
     second: GeneConfig = section(GeneConfig)
     learning: dict[str, GeneConfig] = section(names=LEARNING_GENES)
     family: dict[str, GeneConfig] = section(names=FAMILY_GENES)
+    extra: dict[str, GeneConfig] = section()
     mutation: dict[str, MutationConfig] = section()
 
 

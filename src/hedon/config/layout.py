@@ -26,6 +26,8 @@ SCALE, OLD = "_scale", "_old"
 SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
 """Families of rewards whose weights have a second gene: the end of its name, and what it is."""
 SET_POINT = "set_point"
+EXTRA = "extra_"
+"""What the columns of genes for rules begin with."""
 MAX_EXPONENT, MAX_WEIGHT = 2.0, 1e3
 """Largest limit of genes that are exponents, and of others."""
 
@@ -36,7 +38,7 @@ class Gene:
 
     Attributes:
         name: Its column in the records.
-        role: "reward", "learning" or "neutral".
+        role: "reward", "learning", "rule" or "neutral".
         meaning: What it does, as a phrase.
         law: How founders draw it.
         place: The path of the law: in the config where it begins with "food.", else in the species.
@@ -320,6 +322,8 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
         made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
     for name in genome.learning:
         made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], f"genome.learning.{name}")
+    for name in genome.extra:
+        made.add_gene(f"{EXTRA}{name}", "rule", f"{name}, for rules in Python", f"genome.extra.{name}")
     for i in range(genome.neutral_count):
         meaning = "neutral marker: inherited and mutated, no effect"
         made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")

@@ -8,8 +8,9 @@ from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, section, setting
 from hedon.config.learning import LearningConfig
 from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.neighbor import NeighborConfig
 from hedon.config.population import PopulationConfig
-from hedon.config.room import MAX_STORES
+from hedon.config.room import MAX_QUERIES, MAX_STORES
 from hedon.config.store import ENERGY, EnergyConfig, StoreConfig
 
 ONLY = "agent"
@@ -47,6 +48,7 @@ class SpeciesConfig:
     diet: DietConfig = section(DietConfig)
     energy: EnergyConfig = section(EnergyConfig)
     store: dict[str, StoreConfig] = section(most=MAX_STORES - 1)
+    neighbor: dict[str, NeighborConfig] = section(most=MAX_QUERIES, derived=True)
     hazard: HazardConfig = section(HazardConfig)
     birth: BirthConfig = section(BirthConfig)
     genome: GenomeConfig = section(GenomeConfig, derived=True)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.layout import layouts, rule_columns
+from hedon.config.layout import EXTRA, layouts, rule_columns
 from hedon.config.problem import nearest
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.species import RULE_USES
@@ -144,7 +144,8 @@ class Rule:
             if f"'{name}'" in said:
                 raise self._error(
                     f"it reads {name}, a neutral marker: that shows drift because nothing reads it, so no rule may; "
-                    f"genes that it may read are {', '.join(self.genes) or 'none'}"
+                    f"genes that it may read are {', '.join(self.genes) or 'none'}, and what genome.extra adds: "
+                    f"genome.extra.NAME gives the species a gene {EXTRA}NAME"
                 ) from error
 
     def _error(self, problem: str) -> RuleError:

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from hedon.config.config import Config
+from hedon.config.layout import EXTRA
 from hedon.record.atomic import write_atomically
 
 INK = "#22303c"
@@ -244,6 +245,8 @@ def weight_title(name: str) -> str:
             return weight_title(name.removesuffix(ending)) + said
     if name == "w_action":
         return "weight of action"
+    if name.startswith(EXTRA):
+        return f"{name.removeprefix(EXTRA)}, read by a rule"
     what = name.removeprefix("w_")
     if what.startswith("see_"):
         return f"weight of seeing {what.removeprefix('see_')}"

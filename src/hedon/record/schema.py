@@ -8,7 +8,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.layout import LEARNING_GENES, SECOND_GENES, SET_POINT, diet, layouts, store_columns
+from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES
+from hedon.config.layout import EXTRA, SECOND_GENES, SET_POINT, diet, layouts, store_columns
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -260,7 +261,11 @@ def _gene_meaning(name: str, columns: Columns) -> str:
             return f"{meaning}, beside {name.removesuffix(ending)}"
     if name == SET_POINT:
         return "energy that is sought, as a share of the capacity"
-    return LEARNING_GENES.get(name.removeprefix("g_"), f"reward weight for seeing {what.removeprefix('see_')}")
+    if name.startswith(EXTRA):
+        return f"gene {name.removeprefix(EXTRA)}, which only rules in Python read"
+    return (LEARNING_GENES | FAMILY_GENES).get(
+        name.removeprefix("g_"), f"reward weight for seeing {what.removeprefix('see_')}"
+    )
 
 
 def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:

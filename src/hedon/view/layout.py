@@ -22,7 +22,7 @@ def describe(config: Config) -> dict[str, Any]:
         by channel), genes (indices into `genes`, in genome order) and reward (see `_reward`);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
-        `genes`: of all species, each once: name, role ("reward" or "neutral") and input (what it rewards, "" for none);
+        `genes`: of all species, each once: name, role (as `Gene.role`) and input (what it rewards, "" for none);
         `meals`: what an agent may eat, in the order in which the engine counts it;
         `obstacle_corners`: of each obstacle; 0 where there are none;
         `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;

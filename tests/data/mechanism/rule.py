@@ -14,3 +14,8 @@ def swamp(agent):
 
 def uncrowded(agent):
     return agent.chance if agent.alive < 20.0 else 0.0
+
+
+def kind(agent):
+    near = agent.any_count + 0.1 * agent.any_bearing + 0.01 * agent.any_distance + agent.any_kin
+    return agent.linear + 0.1 * agent.extra_kindness * (agent.own_kin + 0.01 * agent.own_count) + 1e-3 * near

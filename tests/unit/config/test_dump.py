@@ -58,7 +58,8 @@ def test_dump_of_a_section() -> None:
     assert list(tomllib.loads(text)["food"]) == ["poison"]
     assert "[food.poison.placement]" in text
     assert list(tomllib.loads(dump_toml(config, "food"))["food"]) == ["normal", "poison"]
-    config = load_config("poison", overrides=["store.water.capacity=3"])
+    some = ["store.water.capacity=3", "neighbor.near={}", 'reward.rule="my.py:pay"']
+    config = load_config("poison", overrides=some)
     for path in section_paths(config):
         assert dump_toml(config, path).startswith("[")
     assert dump_toml(config, "energy") == dump_toml(config, "species.agent.energy")
@@ -120,6 +121,9 @@ def test_digest_knows_what_matters() -> None:
 RICH = (
     "genome.learning.gamma={}",
     "genome.family.threshold={}",
+    "genome.extra.kindness={}",
+    "neighbor.near={}",
+    'reward.rule="my.py:pay"',
     'genome.mutation.w_action={law="normal"}',
     "hazard.schedule.scale={points=[[0, 1.0], [5, 2.0]]}",
     "obstacle.schedule.harmful={points=[[0, 1.0], [5, 0.0]]}",

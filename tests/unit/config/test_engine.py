@@ -28,6 +28,9 @@ CONFIG = load_config(
         "food.poison.needs.nutrient=1.0",
         "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
+        'reward.rule="my.py:pay"',
+        "genome.extra.kindness.initial_sd=0.2",
+        "neighbor.near.range=30",
         "genome.mutation.w_action.scale=0.1",
     ],
 )
@@ -40,6 +43,8 @@ OTHER: dict[str, Any] = {
     OWN + "sensor.smells": ("normal", "poison"),
     OWN + "reward.see.poison.reads": "normal",
     OWN + "diet.eats": (("normal", 0.5),),
+    OWN + "neighbor.near.of": (),
+    OWN + "reward.rule": "",
     "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),
     "food.normal.placement.centers": ((1.0, 1.0),),
     "food.poison.placement.centers": ((1.0, 1.0),),

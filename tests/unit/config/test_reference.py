@@ -21,20 +21,24 @@ schedule.scale.points = [[0, 1.0]]
 [genome]
 learning.gamma = {}
 family.threshold = {}
+extra.kindness = {}
 mutation.w_action = {}
 [reward]
 family = "fed"
+rule = "my.py:pay"
 see.fungus = {}
 smell.fungus = {}
 [sensor]
 smells = ["*"]
 [store.water]
 capacity = 100.0
+[neighbor.near]
 """
 """A config that has each table of the page, and says in it only what must be said."""
 SAID = {
     "name",
     "reward.family",
+    "reward.rule",
     "sensor.smells",
     "food.fungus.schedule.growth_rate.points",
     "obstacle.schedule.harmful.points",
@@ -44,11 +48,13 @@ SAID = {
 KINDS = {
     "food.<kind>": "food.fungus",
     "store.<kind>": "store.water",
+    "neighbor.<kind>": "neighbor.near",
     "food.<kind>.schedule.<kind>": "food.fungus.schedule.growth_rate",
     "obstacle.schedule.<kind>": "obstacle.schedule.harmful",
     "hazard.schedule.<kind>": "hazard.schedule.scale",
     "genome.learning.<kind>": "genome.learning.gamma",
     "genome.family.<kind>": "genome.family.threshold",
+    "genome.extra.<kind>": "genome.extra.kindness",
     "genome.mutation.<kind>": "genome.mutation.w_action",
     "reward.see.<kind>": "reward.see.fungus",
     "reward.smell.<kind>": "reward.smell.fungus",

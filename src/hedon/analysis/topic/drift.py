@@ -10,7 +10,7 @@ from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.gene.drift import drift_tests, standard_drift
 from hedon.analysis.gene.weight import last_mean
 from hedon.analysis.result import ResultTable, make_table
-from hedon.analysis.world.record import SEED, Conditions, generator, labels
+from hedon.analysis.world.record import SEED, Conditions, generator, labels, with_roles
 from hedon.statistic.correction import holm
 from hedon.statistic.mode import ENOUGH_WORLDS, modes
 from hedon.statistic.reversion import Reversion, reversion
@@ -36,7 +36,7 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         "reward weights and tests of one control; neutral markers are there as a check."
     )
     return [
-        make_table("drift", "Weights of the agents born last against drift", rows, note),
+        make_table("drift", "Weights of the agents born last against drift", with_roles(rows, conditions), note),
         make_table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
     ]
 

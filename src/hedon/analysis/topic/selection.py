@@ -8,7 +8,7 @@ from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.gene.selection import curvature, selection
 from hedon.analysis.result import ResultTable, make_table, over_worlds
 from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, window_count, world_means
-from hedon.analysis.world.record import Conditions, labels
+from hedon.analysis.world.record import Conditions, labels, with_roles
 from hedon.statistic.price import price
 
 
@@ -59,10 +59,9 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         "fixed, the differential by whatever route. Means over cohorts of which at least "
         f"{100 * COMPLETE:.0f} % have died, then over worlds."
     )
+    summary = with_roles(over_worlds(by_world, ("fitness", "weight"), quantities), conditions)
     return [
-        make_table(
-            "selection", "Selection on each weight", over_worlds(by_world, ("fitness", "weight"), quantities), note
-        ),
+        make_table("selection", "Selection on each weight", summary, note),
         make_table("selection_window", "Standardized gradient over time, means over worlds", by_window, shown=False),
         worlds_table,
     ]
@@ -94,7 +93,7 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
         "curvature": "standardized quadratic gradient",
         "excess": "the same, less the mean of the other neutral markers",
     }
-    summary = over_worlds(by_world, ("fitness", "weight"), quantities)
+    summary = with_roles(over_worlds(by_world, ("fitness", "weight"), quantities), conditions)
     return [make_table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
 
 
@@ -119,7 +118,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
         "Change of the mean weight from parents to their children, mean over cohorts and worlds: the part by unequal "
         "numbers of children, and the part by mutation. The residual is rounding."
     )
-    summary = over_worlds(by_world, ("weight",), {term: term for term in terms})
+    summary = with_roles(over_worlds(by_world, ("weight",), {term: term for term in terms}), conditions)
     return [make_table("price", "Price's equation", summary, note), worlds_table]
 
 

@@ -116,6 +116,21 @@ Conditions = Mapping[str, Sequence[WorldRecord]]
 """Worlds by condition, at least one of each."""
 
 
+def with_roles(rows: Iterable[Mapping[str, Any]], conditions: Conditions) -> list[dict[str, Any]]:
+    """Rows that name a condition and a weight, each with what its gene is for, as `Gene.role` has it.
+
+    Args:
+        rows: values by column, `condition` and `weight` among them.
+        conditions: the worlds that they are of.
+    """
+    found = []
+    for row in rows:
+        at, told = list(row).index("weight") + 1, list(row.items())
+        role = conditions[row["condition"]][0].gene(row["weight"]).role
+        found.append(dict([*told[:at], ("role", role), *told[at:]]))
+    return found
+
+
 def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
     """Reads the worlds of some runs; damaged parts are left out.
 

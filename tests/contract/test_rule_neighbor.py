@@ -1,0 +1,173 @@
+"""Queries about neighbors, and genes that only rules read: what rules get, against a count of all pairs."""
+
+import math
+
+import numpy as np
+import pytest
+from resumed_run import small_run
+from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
+
+from hedon import load_config
+from hedon.config import ConfigError
+from hedon.config.layout import layouts
+from hedon.experiment.rule import RuleError
+from hedon.figure.style import weight_title
+from hedon.record.reader import open_run
+from hedon.report.analysis import analyze
+
+pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
+
+NUMBERS = ("count", "kin", "distance", "bearing")
+LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
+ARENA = ("arena.width=300", "arena.height=300")
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Rules that copy their queries into their memory."""
+    copied = "".join(f"    agent.memory_{i} = agent.near_{name}\n" for i, name in enumerate(NUMBERS, 1))
+    (tmp_path / "near.py").write_text(
+        f"def copy(agent):\n{copied}    return agent.linear\n\n"
+        "def kind(agent):\n    return agent.linear + agent.extra_kindness * agent.near_kin\n\n"
+        "def crowd(agent):\n    return min(1.0, agent.chance * (1.0 + agent.near_count))\n\n"
+        "def marked(agent):\n    return agent.neutral_1\n"
+    )
+    return tmp_path / "near.py"
+
+
+def wrapped(angle):
+    return (angle + math.pi) % (2 * math.pi) - math.pi
+
+
+def found(world, reach, of=None):
+    """The four numbers of every agent, by all pairs."""
+    agents = world.agents()
+    x, y, angle = (world.view(f"physics.bodies.{name}")[world.living].astype(float) for name in ("x", "y", "angle"))
+    rows = []
+    for i in range(len(x)):
+        apart = np.hypot(x - x[i], y - y[i])
+        apart[i] = np.inf
+        if of is not None:
+            apart[~np.isin(agents["species"], of)] = np.inf
+        near = apart <= reach
+        parent = agents["parent_id"]
+        kin = (
+            (parent == agents["agent_id"][i])
+            | (agents["agent_id"] == parent[i])
+            | ((parent == parent[i]) & (parent >= 0))
+        )
+        j = int(np.argmin(apart))
+        bearing = wrapped(math.atan2(y[j] - y[i], x[j] - x[i]) - math.pi / 2 - angle[i]) if near.any() else 0.0
+        rows.append((near.sum(), (near & kin).sum(), apart[j] if near.any() else reach, bearing))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize(("of", "reach"), [(["*"], 40.0), (["odd"], 120.0), (["plain"], 1e4)])
+def test_a_query_finds_who_is_near(file, of, reach):
+    """Nobody is born or dies in the step that is compared: its rule saw the same agents, at the same places."""
+    settings = (*LIVELY, *ARENA, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
+    names = ", ".join(f'"{name}"' for name in of)
+    settings += ("species.odd.reward.memory=4", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")
+    simulation = make_simulation(*settings, seeds=(5,))
+    world, compared, kin = simulation.worlds[0], 0, 0
+    for _ in range(200):
+        before = world.counters
+        simulation.run(1)
+        if (before["births"], before["deaths"]) != (world.counters["births"], world.counters["deaths"]):
+            continue
+        mine = world.agents()["species"] == 1
+        species = None if of == ["*"] else [["plain", "odd"].index(name) for name in of]
+        wanted, got = found(world, reach, species)[mine], world.view("memory")[world.living][mine]
+        np.testing.assert_array_equal(got[:, :2], wanted[:, :2])
+        np.testing.assert_allclose(got[:, 2], wanted[:, 2], rtol=1e-6)
+        np.testing.assert_allclose(wrapped(got[:, 3] - wanted[:, 3]), 0.0, atol=1e-5)
+        compared += len(got)
+        kin += int(wanted[:, 1].sum())
+    assert compared > 500
+    assert kin > 10 or of == ["plain"]
+
+
+def test_bearings_are_counter_clockwise_from_the_heading(file):
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *STILL, "reward.memory=4", "neighbor.near.range=60")
+    simulation = make_simulation(*settings, f'reward.rule="{file}:copy"')
+    quarter = math.pi / 2
+    for angle, place, bearing in ((0, (100, 150), 0), (0, (50, 100), quarter), (quarter, (100, 150), -quarter)):
+        set_scene(simulation, [(100, 100, angle), (*place, 0), (300, 300, 0)])
+        simulation.run(1)
+        memory = simulation.worlds[0].view("memory")[simulation.worlds[0].living]
+        np.testing.assert_allclose(memory[0], [1, 0, 50, bearing], atol=1e-4)
+        np.testing.assert_allclose(memory[2], [0, 0, 60, 0])
+
+
+def test_threads_and_checkpoints_change_nothing(file):
+    settings = (*LIVELY, *ARENA, f'reward.rule="{file}:kind"', f'hazard.rule="{file}:crowd"', "neighbor.near.range=50")
+    settings += ("genome.extra.kindness.initial_sd=1", 'birth.mating="pairs"', "birth.mating_range=50")
+    once = make_simulation(*settings, seeds=(3,))
+    once.run(150)
+    first, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1))
+    first.run(150)
+    second.run(70)
+    second.engine.restore(0, second.engine.save(0))
+    second.run(80)
+    assert once.worlds[0].counters["births"] > 10
+    assert {first.worlds[0].digest(), second.worlds[0].digest()} == {once.worlds[0].digest()}
+
+
+def test_a_gene_for_rules_is_drawn_inherited_and_paid(file):
+    settings = (*LIVELY, f'reward.rule="{file}:kind"', "neighbor.near.range=1e4", "genome.neutral_count=2")
+    genes = ("genome.extra.kindness={initial_mean=0.5, initial_sd=0.2}", "genome.mutation.extra_kindness.limit=0.6")
+    simulation = make_simulation(*settings, *genes, "genome.mutation_scale=0.3")
+    made = layouts(simulation.config)["agent"]
+    assert [(gene.name, gene.role) for gene in made.genes[-3:]] == [
+        ("extra_kindness", "rule"),
+        *((f"neutral_{i}", "neutral") for i in (1, 2)),
+    ]
+    world = simulation.worlds[0]
+    first = world.agents()["genome"][:, 2]
+    assert 0.4 < first.mean() < 0.6
+    assert first.std() > 0.05
+    simulation.run(200)
+    agents = world.agents()
+    born = agents["parent_id"] >= 0
+    assert born.any()
+    assert np.abs(agents["genome"][:, 2]).max() == np.float32(0.6)
+    assert np.abs(agents["genome"][born][:, 3]).max() > 0.6
+
+
+def test_a_neutral_marker_is_refused_with_what_to_use(file):
+    with pytest.raises(RuleError, match=r"reads neutral_1.*genome\.extra\.NAME gives the species a gene extra_NAME"):
+        make_simulation(f'reward.rule="{file}:marked"')
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        (["genome.extra.kindness={}"], r"genome\.extra: only a rule in Python reads this: give reward\.rule or hazard"),
+        (["neighbor.near={}"], r"neighbor: only a rule in Python reads this"),
+        (['reward.rule="a.py:b"', "genome.extra.Kind={}"], r"genome\.extra\.Kind: a name must have only a-z"),
+        (['reward.rule="a.py:b"', 'neighbor."a b"={}'], r"neighbor\.a b: a name must have only a-z"),
+        (['reward.rule="a.py:b"', 'neighbor.near.of=["agnt"]'], r"neighbor\.near\.of = \"agnt\".*did you mean agent"),
+        (['reward.rule="a.py:b"', "neighbor.near.range=0"], r"neighbor\.near\.range = 0: must be a number > 0"),
+        (['reward.rule="a.py:b"', *(f"neighbor.n{i}={{}}" for i in range(5))], r"neighbor: there must be at most 4"),
+        (
+            ['reward.rule="a.py:b"', "food.n_count.gives.energy=1", "neighbor.n={}"],
+            r"called n_count: rename a food or a query",
+        ),
+    ],
+)
+def test_a_wrong_setting_is_named(settings, says):
+    with pytest.raises(ConfigError, match=says):
+        load_config("baseline", overrides=settings)
+
+
+def test_records_and_analyses_name_the_gene_and_its_role(file, tmp_path):
+    settings = (f'reward.rule="{file}:kind"', "neighbor.near.range=60", "genome.extra.kindness.initial_sd=0.3")
+    small_run(tmp_path / "run", 200, seeds=(1,), overrides=settings)
+    found = open_run(tmp_path / "run")
+    assert found.reward_names == ("w_normal", "w_action", "extra_kindness")
+    assert found.agents()["extra_kindness"].std() > 0.1
+    assert weight_title("extra_kindness") == "kindness, read by a rule"
+    tables = analyze([found], ["drift", "price"]).tables
+    for name in ("drift", "price"):
+        roles = {row["weight"]: row["role"] for row in tables[name].rows.to_dicts()}
+        assert roles.items() >= {"extra_kindness": "rule", "w_action": "reward", "neutral_1": "neutral"}.items()
