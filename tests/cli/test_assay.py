@@ -85,6 +85,22 @@ def test_an_interrupted_assay_goes_on_to_the_same_summary(folder: Path) -> None:
     assert (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns == before, "a finished one is only read"
 
 
+def test_an_assay_grows_by_seeds_and_keeps_what_it_has(folder: Path) -> None:
+    command = ("landscape", "baseline", *SHORT[2:], "--out", "grown")
+    assert call(folder, *command, "--seeds", "1-2").returncode == 0
+    before = (folder / "grown" / "run" / "manifest.json").read_bytes()
+    answer = call(folder, *command, "--seeds", "1-4")
+    assert answer.returncode == 0, answer.stderr
+    assert "4 worlds of 3,072 steps: 1 run to make, 6,144 world-steps" in answer.stdout
+    assert (folder / "grown" / "run" / "manifest.json").read_bytes() == before
+    whole, grown = (json.loads((folder / name / "landscape.json").read_text()) for name in ("whole", "grown"))
+    assert [run["seeds"] for run in grown["runs"]] == [[1, 2], [3, 4]]
+    assert grown["tables"] == whole["tables"], "worlds that were made together or apart are the same"
+    (folder / "grown" / "landscape.json").unlink()
+    assert call(folder, *command, "--seeds", "1-3").returncode == 0, "fewer are read alone"
+    assert "3 worlds, 3,072 steps" in (folder / "grown" / "landscape.md").read_text(encoding="utf-8")
+
+
 def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: Path) -> None:
     answer = call(folder, "compete", "action=-8", "action=8", *SHORT, "--out", "compete")
     assert answer.returncode == 0, answer.stderr

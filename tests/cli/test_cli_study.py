@@ -132,7 +132,7 @@ def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
         (("run", "hazard", "--fidelity", "relesed"), "--fidelity: 'relesed' is not one of corrected, released, text"),
         (("run", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("report", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
-        (("run", "weights-poor", "--seeds", "5-1"), "--seeds: '5-1' is not a range of seeds"),
+        (("run", "weights-poor", "--seeds", "5-1"), "seeds: '5-1' is not a range of seeds"),
         (("script", "fear"), "say for which system: --slurm is the only one"),
         (("script", "hazard", "--slurm"), "these items need no worlds"),
         (("run", "fear", "--part", "3/2"), "--part = '3/2': must be I/N"),

@@ -14,13 +14,11 @@ import polars as pl
 from scipy.integrate import trapezoid
 
 from hedon.analysis.descent.genealogy import Genealogy, depth, founder, genealogy, living_at
-from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord
 from hedon.assay.landscape import AssayError
 from hedon.assay.resample import PERMUTATIONS, Estimate, Floats, Ints, bounded, chance, world_draws, world_interval
-from hedon.config.config import Config
+from hedon.assay.sample import Sample
 from hedon.record.founder import Founders
-from hedon.record.founder_table import load_founders
-from hedon.record.reader import Run
 
 TIMES = 101
 """Moments at which the living are counted."""
@@ -71,7 +69,6 @@ class Contest:
         p: chance of so large a change of the share if both groups are alike: founders exchange their groups.
         fixed, lost: worlds in which only the first group, or only the second, is left.
         generations: mean over worlds, at the end.
-        config: of the run.
         steps: of each world [step].
     """
 
@@ -84,7 +81,6 @@ class Contest:
     fixed: int
     lost: int
     generations: float
-    config: Config
     steps: int
 
     def course(self) -> tuple[np.ndarray, Floats, Floats]:
@@ -167,32 +163,29 @@ def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]
     return np.asarray(np.mean(values == np.array([a[gene] for gene in genes], np.float32), axis=1, dtype=np.float64))
 
 
-def run_lines(run: Run, groups: tuple[str, str], species: str) -> tuple[list[Lines], Config]:
-    """The numbers of two groups in each world of a run, and the config of their species.
+def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[Lines]:
+    """The numbers of two groups in each world.
 
     Args:
-        run: of an assay; its table of founders has the two groups.
+        sample: worlds whose table of founders has the two groups.
         groups: names of the first and the second.
         species: whose groups they are.
 
     Raises:
-        AssayError: The run has no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be told apart.
     """
-    worlds = [world for world in read_worlds([run]) if world.species == species]
-    founders = load_founders(run.path, worlds[0].config)
+    founders = sample.need.founders
     if founders is None:
-        raise AssayError(f"{run.path}: has no table of founders, so it is not a contest")
-    steps = max(run.manifest.steps_done)
-    return [_lines(world, founders, groups, steps) for world in worlds], worlds[0].config
+        raise AssayError(f"{sample.need.name}: has no table of founders, so it is not a contest")
+    return [_lines(world, founders, groups, sample.steps) for world in sample.of_species(species)]
 
 
-def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, steps: int) -> Contest:
+def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Contest:
     """Estimates what the numbers of two groups in some worlds tell; see `Contest`.
 
     Args:
         groups: names of the first and the second group.
         lines: numbers over time, one entry per world.
-        config: of all the worlds.
         steps: of each world [step].
     """
     rng = np.random.default_rng(_SEED)
@@ -213,7 +206,6 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], config: Config, st
         fixed=int((ends == 1).sum()),
         lost=int((ends == 0).sum()),
         generations=float(np.mean([each.generation[-1] for each in lines])),
-        config=config,
         steps=steps,
     )
 

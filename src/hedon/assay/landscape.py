@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.analysis.world.record import WorldRecord
 from hedon.assay.gene_effect import GeneEffect, flatness, gene_effects
 from hedon.assay.outcome import MEASURES, founder_outcomes
 from hedon.assay.resample import Floats, relative
+from hedon.assay.sample import Sample
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
 from hedon.config.gene import limit_of
 from hedon.config.layout import layouts
 from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
-from hedon.record.reader import Run
 
 NEUTRAL = 16
 """Neutral markers of an assay: genes that are known to do nothing."""
@@ -74,7 +74,6 @@ class Landscape:
     """What a landscape assay found.
 
     Attributes:
-        config: of its run.
         steps: of each world [step].
         seeds: of its worlds.
         extinct: seeds of worlds that died out.
@@ -84,7 +83,6 @@ class Landscape:
         outcomes: a row per founder: seed, agent_id, genes, measures.
     """
 
-    config: Config
     steps: int
     seeds: tuple[int, ...]
     extinct: tuple[int, ...]
@@ -129,43 +127,42 @@ def spread_founders(config: Config, spread: Spread, species: str, rows: int = RO
     return make_founders([prefix + name for name in names], values, ["spread"] * rows)
 
 
-def _read_outcomes(runs: Sequence[Run], species: str | None = None) -> tuple[list[WorldRecord], pl.DataFrame]:
-    """The worlds of an assay, or one species of them, and a row per founder: world (from 0 on), seed, agent_id, genes,
-    measures."""
-    worlds = [world for world in read_worlds(runs) if species in (None, world.species)]
+def _read_outcomes(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
+    """A row per founder: world (from 0 on), seed, agent_id, genes, measures."""
     tables = [
         founder_outcomes(world.agents, world.weight_names, world.last_step).select(
             pl.lit(i, pl.Int64).alias("world"), pl.lit(world.seed, pl.Int64).alias("seed"), pl.all()
         )
         for i, world in enumerate(worlds)
     ]
-    return worlds, pl.concat(tables)
+    return pl.concat(tables)
 
 
-def measure_landscape(run: Run, genes: tuple[str, str], species: str | None = None) -> Landscape:
-    """Fits the surfaces to a finished run.
+def measure_landscape(sample: Sample, genes: tuple[str, str], species: str | None = None) -> Landscape:
+    """Fits the surfaces to finished worlds.
 
     Args:
-        run: of the assay.
+        sample: the worlds.
         genes: the two columns of the surface.
         species: whose; None for all, where there is only one.
 
     Raises:
         AssayError: all worlds died out before anything could be measured.
     """
-    worlds, outcomes = _read_outcomes([run], species)
-    names = worlds[0].weight_names
+    worlds = sample.of_species(species)
+    outcomes, names = _read_outcomes(worlds), worlds[0].weight_names
     surfaces = {}
     for measure in MEASURES:
         found = _measure(outcomes, measure, genes, names)
         if found is not None:
             surfaces[measure] = found
     if not surfaces:
-        raise AssayError(f"{run.path}: nothing can be measured: no founder has living descendants, children or food")
+        raise AssayError(
+            f"{worlds[0].run}: nothing can be measured: no founder has living descendants, children or food"
+        )
     return Landscape(
-        config=worlds[0].config,
-        steps=max(run.manifest.steps_done, default=0),
-        seeds=run.manifest.seeds,
+        steps=sample.steps,
+        seeds=tuple(world.seed for world in worlds),
         extinct=tuple(world.seed for world in worlds if world.extinct_step is not None),
         founders=worlds[0].own.population.initial_count,
         genes=genes,

@@ -9,7 +9,8 @@ from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.config.evolution import GenomeConfig
 from hedon.config.layout import choose_species
-from hedon.experiment.plan import RunPlan, seed_span
+from hedon.experiment.plan import RunPlan
+from hedon.jobs.requirement import RunRequirement
 from hedon.record.folder import CONFIG
 from hedon.record.founder import Founders, column_of, join, unknown_gene
 from hedon.record.founder_source import read_source, source_label
@@ -65,34 +66,31 @@ def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
     return spread
 
 
-def assay_plan(
-    kind: str,
-    config: Config,
-    seeds: Sequence[int],
-    steps: int,
-    out: Path | None,
-    threads: int,
-    checkpoint: float,
-    founders: Founders | None,
-    part: str = "run",
-) -> RunPlan:
-    """A run of an assay, in a folder of its own within the assay's.
+def assay_worlds(
+    config: Config, seeds: Sequence[int], steps: int, founders: Founders | None, part: str = "run"
+) -> RunRequirement:
+    """Worlds that an assay needs, checked.
 
     Args:
-        kind: of the assay, for the name of its folder.
         config: of the worlds.
         seeds: of the worlds.
         steps: of each world [step].
-        out: the assay's folder; None for one whose name depends on what is asked, so that the same command finds it.
-        threads: as for a run.
-        checkpoint: as for a run [s].
         founders: to begin with; None for those that the config draws.
-        part: name of the run's folder.
+        part: name of their run's folder.
     """
-    plan = RunPlan(config, seeds, steps, Path("unnamed"), threads, 0, checkpoint, founders)
-    name = f"{kind}-{config.name}-{config.fidelity}-{seed_span(plan.seeds)}-{digest(plan.config)[:8]}"
-    folder = (out or Path("assays") / name) / part
-    return RunPlan(plan.config, seeds, steps, folder, threads, 0, checkpoint, founders, rules=plan.rules)
+    plan = RunPlan(config, seeds, steps, part, founders=founders)
+    each = dict.fromkeys(plan.seeds, plan.steps)
+    return RunRequirement(plan.config, digest(plan.config), each, founders=founders, rules=plan.rules, name=part)
+
+
+def assay_folder(kind: str, first: RunRequirement) -> Path:
+    """The folder of an assay: more seeds and more steps of the same setting find what is there.
+
+    Args:
+        kind: of the assay.
+        first: of the worlds that it needs.
+    """
+    return Path("assays") / f"{kind}-{first.config.name}-{first.config.fidelity}-{first.digest[:8]}"
 
 
 def competitors(

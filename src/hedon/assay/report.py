@@ -10,12 +10,11 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable
 from hedon.assay.resample import Estimate
-from hedon.config.config import Config
+from hedon.assay.sample import Sample
 from hedon.config.dump import digest
 from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
-from hedon.record.reader import Run
 from hedon.report.markdown import pipe_table
 from hedon.report.summary import plain
 from hedon.report.table import cells
@@ -27,8 +26,7 @@ class Answer:
 
     Attributes:
         kind: of the assay; names the files.
-        runs: that it was read from.
-        config: of its condition.
+        samples: the worlds that it was read from.
         content: what the summary holds besides its head and the tables.
         tables: for the terminal, the summary and the page.
         intro: first lines of the page, in Markdown.
@@ -37,8 +35,7 @@ class Answer:
     """
 
     kind: str
-    runs: Sequence[Run]
-    config: Config
+    samples: Sequence[Sample]
     content: Mapping[str, Any]
     tables: Sequence[ResultTable]
     intro: str
@@ -56,7 +53,7 @@ def write_assay(folder: Path, answer: Answer) -> list[Path]:
     Raises:
         RecordError: A file cannot be written.
     """
-    kind, config, tables = answer.kind, answer.config, answer.tables
+    kind, tables, config = answer.kind, answer.tables, answer.samples[0].need.config
     head = {
         "assay": kind,
         "condition": config.name,
@@ -72,7 +69,8 @@ def write_assay(folder: Path, answer: Answer) -> list[Path]:
                 "world_digests": run.manifest.world_digests,
                 "hedon_version": run.manifest.hedon_version,
             }
-            for run in answer.runs
+            for sample in answer.samples
+            for run in sample.runs
         ],
     }
     shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
@@ -90,18 +88,9 @@ def write_assay(folder: Path, answer: Answer) -> list[Path]:
         return [*(folder / name for name in files), save_figure(answer.figure, folder / f"{kind}.png")]
 
 
-def world_line(runs: Sequence[Run]) -> str:
-    """How many worlds there were, how long they lived, and which died out, as a sentence."""
-    parts = []
-    for run in runs:
-        manifest = run.manifest
-        pairs = zip(manifest.seeds, manifest.extinct_steps, strict=True)
-        died = [f"seed {seed} at step {step:,}" for seed, step in pairs if step is not None]
-        parts.append(
-            f"`{run.path.name}`: {len(manifest.seeds)} worlds, {max(manifest.steps_done, default=0):,} steps; "
-            f"died out: {', '.join(died) or 'none'}."
-        )
-    return " ".join(parts)
+def world_line(samples: Sequence[Sample]) -> str:
+    """How many worlds there were, how long they lived, and which died out."""
+    return " ".join(sample.describe() for sample in samples)
 
 
 def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:

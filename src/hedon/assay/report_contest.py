@@ -6,32 +6,32 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.contest import Contest, estimate, run_lines
+from hedon.assay.contest import Contest, estimate, sample_lines
 from hedon.assay.report import Answer, estimate_row, world_line
+from hedon.assay.sample import Sample
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
-from hedon.record.reader import Run
 
 _SHOWN_TIMES = 10
 
 
-def contest_answer(kind: str, groups: tuple[str, str], species: str, runs: Sequence[Run]) -> Answer:
-    """What a finished run of two groups tells.
+def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Sequence[Sample]) -> Answer:
+    """What finished worlds of two groups tell.
 
     Args:
         kind: of the assay.
         groups: names of the first and the second.
         species: whose groups they are.
-        runs: one; its table of founders has the two groups.
+        samples: one; its table of founders has the two groups.
 
     Raises:
-        AssayError: The run has no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be told apart.
     """
-    lines, config = run_lines(runs[0], groups, species)
-    found = estimate(groups, lines, config, max(runs[0].manifest.steps_done))
+    (sample,) = samples
+    found = estimate(groups, sample_lines(sample, groups, species), sample.steps)
     content = {"groups": list(groups), "selection": vars(found.selection), "share": vars(found.share)}
     content |= {name: getattr(found, name) for name in ("start", "p", "fixed", "lost", "generations")}
-    intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(runs)}"
-    return Answer(kind, runs, config, content, contest_tables(found), intro, draw_contest(found))
+    intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(samples)}"
+    return Answer(kind, samples, content, contest_tables(found), intro, draw_contest(found))
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:

@@ -7,31 +7,33 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.contest import run_lines
+from hedon.assay.contest import sample_lines
 from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
 from hedon.assay.report import Answer, estimate_row, world_line
+from hedon.assay.sample import Sample
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
-from hedon.record.reader import Run
 
 
-def frequency_answer(groups: tuple[str, str], species: str, shares: Sequence[float], runs: Sequence[Run]) -> Answer:
-    """What finished runs of two groups tell, one for each share of the first.
+def frequency_answer(
+    groups: tuple[str, str], species: str, shares: Sequence[float], samples: Sequence[Sample]
+) -> Answer:
+    """What finished worlds of two groups tell, one sample for each share of the first.
 
     Args:
         groups: names of the first and the second.
         species: whose groups they are.
-        shares: of the first among the founders of each run.
-        runs: of the assay; their tables of founders have the two groups.
+        shares: of the first among the founders of each sample.
+        samples: of the assay; their tables of founders have the two groups.
 
     Raises:
-        AssayError: A run has no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be told apart.
     """
-    read = [run_lines(run, groups, species) for run in runs]
-    found = estimate_frequency(groups, {share: lines for share, (lines, _) in zip(shares, read, strict=True)})
+    pairs = zip(shares, samples, strict=True)
+    found = estimate_frequency(groups, {share: sample_lines(each, groups, species) for share, each in pairs})
     content = {"groups": list(groups), "verdict": found.verdict}
     content |= {"slope": vars(found.slope), "crossing": vars(found.crossing)}
-    intro = f"{groups[0]} against {groups[1]} from several shares, without mutation. {world_line(runs)}"
-    return Answer("frequency", runs, read[0][1], content, frequency_tables(found), intro, draw_frequency(found))
+    intro = f"{groups[0]} against {groups[1]} from several shares, without mutation. {world_line(samples)}"
+    return Answer("frequency", samples, content, frequency_tables(found), intro, draw_frequency(found))
 
 
 def frequency_tables(found: Frequency) -> list[ResultTable]:

@@ -12,30 +12,30 @@ from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape, measure_landscape
 from hedon.assay.outcome import MEASURES
 from hedon.assay.report import Answer, estimate_row, world_line
-from hedon.record.reader import Run
+from hedon.assay.sample import Sample
 
 OUTCOMES = "founders-outcome.csv"
 
 
-def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], runs: Sequence[Run]) -> Answer:
-    """What a finished run of spread founders tells: the surfaces, each gene by itself, fitness at the ends of runs.
+def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], samples: Sequence[Sample]) -> Answer:
+    """What finished worlds of spread founders tell: the surfaces, each gene by itself, fitness at the ends of runs.
 
     Args:
         genes: the two columns of the surface.
         species: whose.
         ends: mean weights at the ends of runs.
-        runs: one, of the assay.
+        samples: one, of the assay.
 
     Raises:
         AssayError: all worlds died out before anything could be measured.
     """
-    found = measure_landscape(runs[0], genes, species)
+    found = measure_landscape(samples[0], genes, species)
     tables = [_surfaces(found), _effects(found), *_ends(found, ends)]
-    first = f"{found.founders} founders in each world, no mutation. {world_line(runs)}"
+    first = f"{found.founders} founders in each world, no mutation. {world_line(samples)}"
     intro = "\n".join([first, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
     files = {OUTCOMES: found.outcomes.write_csv()}
     figure = draw_landscape(found, ends)
-    return Answer("landscape", runs, found.config, _landscape_json(found), tables, intro, figure, files)
+    return Answer("landscape", samples, _landscape_json(found), tables, intro, figure, files)
 
 
 def _landscape_json(landscape: Landscape) -> dict[str, Any]:

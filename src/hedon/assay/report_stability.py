@@ -7,22 +7,21 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.report import Answer, world_line
+from hedon.assay.sample import Sample
 from hedon.assay.stability import VERDICTS, Stability, measure_stability
-from hedon.config.load import parse_config
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
-from hedon.record.reader import Run
 
 _COLORS = (BLUE, ORANGE)
 
 
-def stability_answer(points: Sequence[str], runs: Sequence[Run]) -> Answer:
-    """What finished runs tell of the points at which they began.
+def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer:
+    """What finished worlds tell of the points at which they began.
 
     Args:
-        points: of the runs, as the user gave them.
-        runs: of the assay.
+        points: of the samples, as the user gave them.
+        samples: of the assay.
     """
-    starts = [measure_stability(run) for run in runs]
+    starts = [measure_stability(sample) for sample in samples]
     content = [
         {
             "run": start.name,
@@ -35,10 +34,9 @@ def stability_answer(points: Sequence[str], runs: Sequence[Run]) -> Answer:
         for start in starts
     ]
     lines = [f"- `{each.name}`: {each.generations:.0f} generations, {each.extinct} worlds died out" for each in starts]
-    intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(runs)}", "", *lines])
-    config = parse_config(runs[0].config_text, str(runs[0].path))
+    intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(samples)}", "", *lines])
     figure = draw_stability(starts)
-    return Answer("stability", runs, config, {"starts": content}, stability_tables(starts), intro, figure)
+    return Answer("stability", samples, {"starts": content}, stability_tables(starts), intro, figure)
 
 
 def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:

@@ -8,9 +8,9 @@ import numpy as np
 from scipy import stats
 
 from hedon.analysis.gene.course import WorldCourse, world_course
-from hedon.analysis.world.record import generator, read_worlds
+from hedon.analysis.world.record import generator
 from hedon.assay.resample import Floats
-from hedon.record.reader import Run
+from hedon.assay.sample import Sample
 from hedon.statistic.drift import rank_score
 from hedon.statistic.interval import Interval, mean_interval
 
@@ -58,7 +58,7 @@ class Stability:
     """The worlds that began at one point.
 
     Attributes:
-        name: of the run's folder.
+        name: of the start.
         point: means of the founders' reward genes, by column.
         worlds: how many.
         extinct: how many died out.
@@ -74,17 +74,16 @@ class Stability:
     courses: Mapping[str, WeightCourse]
 
 
-def measure_stability(run: Run) -> Stability:
-    """Reads a finished run."""
-    worlds = read_worlds([run])
-    steps = max(run.manifest.steps_done)
+def measure_stability(sample: Sample) -> Stability:
+    """Where the weights of finished worlds went."""
+    worlds, steps = sample.worlds, sample.steps
     found = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
     courses = [course for course in found if course is not None]
     names = worlds[0].weight_names
     step = np.arange(TIMES + 1) * steps / TIMES
     weights = {name: _weight(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
     return Stability(
-        name=run.path.name,
+        name=sample.need.name,
         point={name: worlds[0].gene(name).law.initial_mean for name in worlds[0].reward_names},
         worlds=len(worlds),
         extinct=sum(world.extinct_step is not None for world in worlds),

@@ -1,13 +1,12 @@
 """`hedon assay`: measure fitness directly, with founders of chosen genes."""
 
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hedon.cli.assay_option import SOURCES, AssayOptions, ContestOptions, Source, Species, StabilityOptions, answer
+from hedon.cli.assay_option import SOURCES, AssayOptions, ContestOptions, Source, Species, StabilityOptions
 from hedon.cli.option import with_options
 
 if TYPE_CHECKING:
@@ -71,8 +70,7 @@ def landscape(
     found = [] if len(config.species) > 1 else reported_ends(config)
     found += [end for path in ends or () for end in read_ends(path, config, own)]
     founders = spread_founders(config, parse_spread(spread, sd, config.species[own].genome), own)
-    plan = options.plan("landscape", config, founders)
-    answer([plan], partial(landscape_answer, pair, own, found))
+    options.answer("landscape", [options.worlds(config, founders)], partial(landscape_answer, pair, own, found))
 
 
 @app.command()
@@ -147,7 +145,7 @@ def _contest(
 ) -> None:
     from hedon.assay.report_contest import contest_answer
 
-    answer([options.plan(kind, config, founders)], partial(contest_answer, kind, groups, species))
+    options.answer(kind, [options.worlds(config, founders)], partial(contest_answer, kind, groups, species))
 
 
 @app.command()
@@ -178,12 +176,11 @@ def frequency(
     from hedon.assay.report_frequency import frequency_answer
 
     config, own = options.setting(a, b)
-    parts, plans, groups = parse_shares(shares, config, own), [], (a, b)
+    parts, wanted, groups = parse_shares(shares, config, own), [], (a, b)
     for share in parts:
         founders, groups = competitors((a, b), (share, 1.0 - share), config, own)
-        plans.append(options.plan("frequency", config, founders, f"share-{share:g}"))
-        options = replace(options, out=plans[0].out.parent)
-    answer(plans, partial(frequency_answer, groups, own, parts))
+        wanted.append(options.worlds(config, founders, f"share-{share:g}"))
+    options.answer("frequency", wanted, partial(frequency_answer, groups, own, parts))
 
 
 @app.command()
@@ -215,6 +212,5 @@ def stability(
     config = options.config(source)
     points = {"start": at} | ({} if beside is None else {"beside": beside})
     configs = {part: stability_config(config, parse_point(point, config)) for part, point in points.items()}
-    options = replace(options, out=options.plan("stability", configs["start"], None).out.parent)
-    plans = [options.plan("stability", each, None, part) for part, each in configs.items()]
-    answer(plans, partial(stability_answer, list(points.values())))
+    wanted = [options.worlds(each, None, part) for part, each in configs.items()]
+    options.answer("stability", wanted, partial(stability_answer, list(points.values())))

@@ -8,19 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Checkpoint, Threads, parse_seeds
-from hedon.experiment.argument import MAX_STEPS
+from hedon.cli.make import all_finished, count, make_runs
+from hedon.cli.run import Checkpoint, Threads
+from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.text import printable
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from hedon.assay.report import Answer
+    from hedon.assay.sample import Sample
     from hedon.config.config import Config
-    from hedon.experiment.plan import RunPlan
+    from hedon.jobs.requirement import RunRequirement
     from hedon.record.founder import Founders
-    from hedon.record.reader import Run
 
 SOURCES = "a table (.csv), RUN@STEP, RUN for its end, or a point such as food=5,action=0"
 STEPS = 204_800
@@ -54,19 +52,56 @@ class AssayOptions:
 
         return load_config(source, self.fidelity, self.overrides or ())
 
-    def plan(self, kind: str, config: "Config", founders: "Founders | None", part: str = "run") -> "RunPlan":
-        """A run of the assay.
+    def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "RunRequirement":
+        """Worlds that the assay needs.
+
+        Args:
+            config: Of the worlds.
+            founders: To begin with; None for those that the config draws.
+            part: Name of their run's folder.
+        """
+        from hedon.assay.option import assay_worlds
+
+        return assay_worlds(config, parse_seeds(self.seeds), self.steps, founders, part)
+
+    def answer(
+        self, kind: str, wanted: "Sequence[RunRequirement]", ask: "Callable[[Sequence[Sample]], Answer]"
+    ) -> None:
+        """Makes the worlds of an assay, or reads them, and prints and writes what they tell.
 
         Args:
             kind: Of the assay.
-            config: Of the worlds.
-            founders: To begin with; None for those that the config draws.
-            part: Name of the run's folder.
-        """
-        from hedon.assay.option import assay_plan
+            wanted: The worlds, by the setting that they begin with.
+            ask: What they tell.
 
-        seeds = parse_seeds(self.seeds)
-        return assay_plan(kind, config, seeds, self.steps, self.out, self.threads, self.checkpoint, founders, part)
+        Raises:
+            RecordError: A folder holds a run with other settings or founders.
+            JobError: A run failed.
+        """
+        from hedon.assay.option import assay_folder
+        from hedon.assay.report import write_assay
+        from hedon.assay.sample import read_samples
+        from hedon.cli.display.analysis import analysis_group
+        from hedon.jobs.plan import plan_jobs
+        from hedon.jobs.requirement import find_runs
+
+        console, folder = make_console(), self.out or assay_folder(kind, wanted[0])
+        jobs = plan_jobs(wanted, find_runs(folder, wanted)[0], folder, self.checkpoint)
+        if jobs:
+            config = wanted[0].config
+            worlds, runs = count(sum(len(need.steps) for need in wanted), "world"), count(len(jobs), "run")
+            steps = sum(job.world_steps for job in jobs)
+            console.print(
+                f"hedon: {kind}, {config.name} ({config.fidelity}), {worlds} of {self.steps:,} steps: {runs} to make, "
+                f"{steps:,} world-steps",
+                soft_wrap=True,
+            )
+        if not all_finished(jobs, make_runs(jobs, console, self.threads), console):
+            return
+        found = ask(read_samples(wanted, folder))
+        files = write_assay(folder, found)
+        console.print(analysis_group({table.name: table for table in found.tables}))
+        console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
 
 
 @dataclass(frozen=True)
@@ -107,50 +142,3 @@ class ContestOptions(AssayOptions, _Place):
 
         config = without_mutation(self.config(condition_of(self.condition, sources)))
         return config, choose_species(self.species, config)
-
-
-def answer(plans: "Sequence[RunPlan]", ask: "Callable[[Sequence[Run]], Answer]") -> None:
-    """Makes the runs of an assay, or reads them, and prints and writes what they tell; says so if one was interrupted.
-
-    Args:
-        plans: Of the runs.
-        ask: What they tell.
-
-    Raises:
-        RecordError: A folder holds a run with other settings, founders or seeds.
-        JobError: A run failed.
-    """
-    from hedon.assay.report import write_assay
-    from hedon.cli.display.analysis import analysis_group
-    from hedon.record.reader import open_run
-
-    console = make_console()
-    if not _make(plans, console):
-        console.print("Interrupted; all results so far are kept. The same command goes on.")
-        return
-    found = ask([open_run(plan.out) for plan in plans])
-    files = write_assay(plans[0].out.parent, found)
-    console.print(analysis_group({table.name: table for table in found.tables}))
-    console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
-
-
-def _make(plans: "Sequence[RunPlan]", console: "Console") -> bool:
-    """Makes the runs that are not finished; whether all are now."""
-    from hedon.cli.display.job import JobDisplay
-    from hedon.jobs.error import JobError
-    from hedon.jobs.make import make_jobs
-    from hedon.jobs.run import RunJob, unfinished
-
-    jobs = [RunJob(plan, plan.steps * len(plan.seeds)) for plan in unfinished(plans)]
-    for job in jobs:
-        config, plan = job.plan.config, job.plan
-        console.print(
-            f"hedon: {config.name} ({config.fidelity}), {len(plan.seeds)} worlds, {plan.steps:,} steps, "
-            f"into {printable(str(plan.out))}",
-            soft_wrap=True,
-        )
-    with JobDisplay(console, jobs) as display:
-        outcomes = make_jobs(jobs, display, plans[0].threads)
-    if faults := [outcome.fault for outcome in outcomes.values() if outcome.status == "failed"]:
-        raise JobError(faults[0])
-    return all(job.folder in outcomes and outcomes[job.folder].status == "finished" for job in jobs)

@@ -10,7 +10,7 @@ import typer
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
-from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, different, seed_list
+from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
 from hedon.text import brief, printable
 
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
-
-MAX_DIGITS = 40
-"""Most digits of a seed, leading zeros included."""
 
 Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th part of the work, from the I-th on.")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")]
@@ -161,28 +158,3 @@ def require_backend(backend: str | None) -> None:
         raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(known)}{hint}")
     if is_device(backend) and (problem := device_problem(backend)):
         raise RunError(problem)
-
-
-def parse_seeds(text: str) -> tuple[int, ...]:
-    """Seeds from "7", "1-5" or "1,4,7-9".
-
-    Raises:
-        RunError: The text is not such a list, or a seed is out of range.
-        ArgumentError: There are too many, or one appears twice.
-    """
-    seeds: list[int] = []
-    for item in map(str.strip, text.split(",")):
-        first, dash, last = item.partition("-")
-        if not first and last.isdecimal():
-            raise RunError(f"--seeds: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
-        if not first.isdecimal() or (dash and not last.isdecimal()):
-            raise RunError(f"--seeds: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
-        if max(len(first), len(last)) > MAX_DIGITS:
-            raise RunError(f"--seeds: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
-        low, high = int(first), int(last or first)
-        if high < low or high > MAX_SEED or high - low >= MAX_WORLDS:
-            raise RunError(
-                f"--seeds: {item!r} is not a range of seeds from 0 to {MAX_SEED}, at most {MAX_WORLDS:,} of them"
-            )
-        seeds += range(low, high + 1)
-    return different(seed_list(seeds))

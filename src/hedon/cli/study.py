@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.run import Hours, Part, Ray, Slurm, Threads, parse_seeds
+from hedon.cli.make import all_finished, count, make_runs
+from hedon.cli.run import Hours, Part, Ray, Slurm, Threads
 from hedon.error import HedonError
-from hedon.experiment.argument import MAX_STEPS
+from hedon.experiment.argument import MAX_STEPS, parse_seeds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.console import Console
 
-    from hedon.jobs.run import RunJob
     from hedon.study.request import Request
     from hedon.study.study import Study
 
@@ -31,7 +31,7 @@ app = typer.Typer(
 
 
 class RunsError(HedonError):
-    """Some runs of a study failed; the items that do not need them have been made."""
+    """Arguments of a study's command that cannot be used."""
 
 
 Names = Annotated[list[str], typer.Argument(metavar="NAME...", help="Studies, items of them, or all.")]
@@ -225,12 +225,10 @@ def _make(
     part: str | None,
     console: "Console",
 ) -> None:
-    from hedon.cli.display.job import JobDisplay
-    from hedon.jobs.make import make_jobs
     from hedon.jobs.part import parse_part
-    from hedon.study.gather import find_runs
-    from hedon.study.plan import plan_jobs
-    from hedon.study.request import needs, part_of
+    from hedon.jobs.plan import plan_jobs
+    from hedon.jobs.requirement import find_runs, part_of
+    from hedon.study.request import needs
 
     runs = runs if ray is None else runs.absolute()  # other nodes have another current folder
     wanted = part_of(needs(request), parse_part(part))
@@ -242,16 +240,11 @@ def _make(
         f"{count(len(jobs), 'run')} to make in {runs}, {sum(job.world_steps for job in jobs):,} world-steps",
         soft_wrap=True,
     )
-    for job in jobs:
-        verb = "continue" if job.begun else "begin"
-        worlds = count(len(job.plan.seeds), "world")
-        console.print(f"  {verb} {job.folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
     _require_folders(*([out] if part is None else []), *([runs] if jobs else []))
-    with JobDisplay(console, jobs) as display:
-        outcomes = make_jobs(jobs, display, threads, ray)
+    ends = make_runs(jobs, console, threads, ray)
     if part is None:
         _report(studies, request, runs, out, console)
-    _say_what_is_missing(jobs, {folder: outcome.status for folder, outcome in outcomes.items()}, console)
+    all_finished(jobs, ends, console)
 
 
 def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Path, console: "Console") -> None:
@@ -267,16 +260,6 @@ def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Pat
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
 
 
-def count(number: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs".
-
-    Args:
-        number: How many.
-        noun: In the singular.
-    """
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
-
-
 def _require_folders(*folders: Path) -> None:
     """Makes the folders that will be written to, so that a problem with them shows before the runs.
 
@@ -290,19 +273,3 @@ def _require_folders(*folders: Path) -> None:
             raise RunsError(f"cannot write {folder}: {error.strerror}") from None
         if not os.access(folder, os.W_OK):
             raise RunsError(f"cannot write {folder}: no permission")
-
-
-def _say_what_is_missing(jobs: "list[RunJob]", ends: dict[Path, str], console: "Console") -> None:
-    """Prints which runs are not finished.
-
-    Raises:
-        RunsError: a run failed.
-    """
-    failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
-    open_jobs = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
-    if open_jobs:
-        console.print(
-            f"Interrupted: {len(open_jobs)} of {len(jobs)} runs are not finished. The same command continues."
-        )
-    if failed:
-        raise RunsError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {', '.join(failed)}")

@@ -14,6 +14,8 @@ MAX_SEED = 2**63 - 1
 """Largest seed of a run: records store seeds as signed 64-bit integers."""
 MAX_WORLDS = 10_000
 MAX_STEPS = 2**31 - 1
+MAX_DIGITS = 40
+"""Most digits of a seed, leading zeros included."""
 MAX_THREADS = 1024
 MAX_SECONDS = 1e9
 
@@ -85,6 +87,30 @@ def different(seeds: tuple[int, ...]) -> tuple[int, ...]:
             raise ArgumentError(f"seeds: {seed} appears twice; equal seeds give equal worlds")
         seen.add(seed)
     return seeds
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Seeds from "7", "1-5", "1,4,7-9" or "[1, 4]".
+
+    Raises:
+        ArgumentError: The text is not such a list, a seed is out of range, there are too many, or one appears twice.
+    """
+    seeds: list[int] = []
+    for item in map(str.strip, text.strip().removeprefix("[").removesuffix("]").split(",")):
+        first, dash, last = item.partition("-")
+        if not first and last.isdecimal():
+            raise ArgumentError(f"seeds: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
+        if not first.isdecimal() or (dash and not last.isdecimal()):
+            raise ArgumentError(f"seeds: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+        if max(len(first), len(last)) > MAX_DIGITS:
+            raise ArgumentError(f"seeds: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
+        low, high = int(first), int(last or first)
+        if high < low or high > MAX_SEED or high - low >= MAX_WORLDS:
+            raise ArgumentError(
+                f"seeds: {item!r} is not a range of seeds from 0 to {MAX_SEED}, at most {MAX_WORLDS:,} of them"
+            )
+        seeds += range(low, high + 1)
+    return different(seed_list(seeds))
 
 
 def folder(name: str, value: Any) -> Path:

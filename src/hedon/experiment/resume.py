@@ -1,7 +1,7 @@
 """Continues a run that was interrupted, killed, or finished; with the same bits as if it had never stopped."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -147,7 +147,7 @@ def make(plan: RunPlan, display: Display | None = None) -> Manifest:
     """
     if not holds_run(plan.out):
         return run(plan, display)
-    require_same(plan)
+    require_setting(plan.out, digest(plan.config), plan.seeds)
     manifest = open_run(plan.out).manifest
     if is_finished(manifest, plan.steps):
         return manifest
@@ -166,18 +166,23 @@ def is_finished(manifest: Manifest, steps: int) -> bool:
     return manifest.status == "finished" and (over or max(manifest.steps_done) >= steps)
 
 
-def require_same(plan: RunPlan) -> None:
-    """Refuses a folder that holds another run than the plan's.
+def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | None = None) -> None:
+    """Refuses a folder that holds a run of another setting.
+
+    Args:
+        folder: Which may hold a run.
+        config_digest: Of the setting.
+        seeds: That the run must have; None for any.
 
     Raises:
         RecordError: It has other settings, founders or seeds.
     """
-    if not holds_run(plan.out):
+    if not holds_run(folder):
         return
-    manifest = open_run(plan.out).manifest
-    if manifest.config_digest != digest(plan.config) or manifest.seeds != plan.seeds:
+    manifest = open_run(folder).manifest
+    if manifest.config_digest != config_digest or seeds not in (None, manifest.seeds):
         raise RecordError(
-            f"{brief(str(plan.out))} holds a run with other settings, founders or seeds: give another folder with --out"
+            f"{brief(str(folder))} holds a run with other settings, founders or seeds: give another folder with --out"
         )
 
 

@@ -1,13 +1,11 @@
 """The job of making one run."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.experiment.plan import Display, RunPlan
-from hedon.experiment.resume import is_finished, make, require_same
+from hedon.experiment.resume import make
 from hedon.record.folder import checkpoint_paths, holds_run
-from hedon.record.reader import open_run
 
 
 @dataclass(frozen=True)
@@ -53,17 +51,3 @@ class RunJob:
             display: shows progress.
         """
         return make(replace(self.plan, threads=threads), display).status
-
-
-def unfinished(plans: Iterable[RunPlan]) -> list[RunPlan]:
-    """The plans whose runs are not there, or not finished.
-
-    Raises:
-        RecordError: A folder holds a run with other settings, founders or seeds.
-    """
-    found = []
-    for plan in plans:
-        require_same(plan)
-        if not holds_run(plan.out) or not is_finished(open_run(plan.out).manifest, plan.steps):
-            found.append(plan)
-    return found

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hedon.jobs.plan import plan_jobs
+from hedon.jobs.requirement import find_runs
 from hedon.jobs.run import RunJob
 from hedon.record.provenance import usable_cpus
-from hedon.study.gather import find_runs
-from hedon.study.plan import plan_jobs
 from hedon.study.request import Request, needs
 from hedon.study.speed import Speed, measure_speed
 

@@ -1,19 +1,19 @@
 """From run folders to what items are made from: the wanted worlds, as far as they are there."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 import polars as pl
 
-from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.config import ConfigError, digest, load_config
+from hedon.analysis.world.record import WorldRecord
+from hedon.config import digest
+from hedon.jobs.requirement import RunRequirement, find_runs, read_required
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, MANIFEST
-from hedon.record.reader import Run, open_run
+from hedon.record.reader import Run
 from hedon.record.snapshot import Snapshot, load_snapshot
 from hedon.study.item import Item, ItemInputs
-from hedon.study.request import Request, RunRequirement, needs, setting_name
+from hedon.study.request import Request, needs
 
 
 @dataclass(frozen=True)
@@ -73,30 +73,6 @@ class Gathered:
         ]
 
 
-def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run], list[str]]:
-    """The runs in a folder that hold worlds of the settings that are needed, from their beginning on.
-
-    Args:
-        folder: whose subfolders are searched.
-        wanted: settings with their seeds.
-
-    Returns:
-        The runs by name, and what is wrong with folders that hold a run that cannot be read.
-    """
-    seeds = {need.digest: need.steps.keys() for need in wanted}
-    runs, faults = [], []
-    for path in sorted(folder.glob(f"*/{MANIFEST}")):
-        try:
-            run = open_run(path.parent)
-            mine = seeds.get(run.manifest.config_digest or "", ())
-            if run.manifest.parent is None and any(seed in mine for seed in run.manifest.seeds):
-                load_config(run.path / CONFIG)
-                runs.append(run)
-        except (RecordError, ConfigError) as error:
-            faults.append(str(error))
-    return runs, faults
-
-
 def gather(request: Request, folder: Path) -> Gathered:
     """Reads what there is of the worlds that a request needs; what is damaged is left out and named.
 
@@ -108,26 +84,17 @@ def gather(request: Request, folder: Path) -> Gathered:
     runs, faults = find_runs(folder, wanted)
     damaged = {run.path.name: run.damaged_parts() for run in runs}
     faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
-    status = {run.path.name: run.manifest.status for run in runs}
-    needed = {need.digest: need for need in wanted}
-    digests = {run.path.name: run.manifest.config_digest or "" for run in runs}
-    kept: dict[tuple[str, int, str], WorldRecord] = {}
     # Whole runs first, since of two worlds that are equally long the first is kept.
-    for world in read_worlds(sorted(runs, key=lambda run: bool(damaged[run.path.name]))):
-        need = needed.get(digests[world.run])
-        if need is not None and world.seed in need.steps:
-            known = world if status[world.run] in ("finished", "interrupted") else world.until(world.recorded_step())
-            # Equal settings can be written in several ways, so the need names them, not each run.
-            name = setting_name(need.config) + (f": {world.species}" if len(need.config.species) > 1 else "")
-            kept[need.digest, world.seed, world.species] = replace(known, condition=name)
+    kept = read_required(wanted, sorted(runs, key=lambda run: bool(damaged[run.path.name])))
     used = {world.run for world in kept.values()}
     snapshots = _snapshots(request, runs, faults)
     shown = tuple(run for run in runs if run.path.name in used)
-    return Gathered(request, shown, kept, _frames(needed, shown), snapshots, tuple(faults))
+    return Gathered(request, shown, kept, _frames(wanted, shown), snapshots, tuple(faults))
 
 
-def _frames(needed: Mapping[str, RunRequirement], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
+def _frames(wanted: Iterable[RunRequirement], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
     """The positions of each world that an item needs, from the run that goes furthest."""
+    needed = {need.digest: need for need in wanted}
     found: dict[tuple[str, int], pl.LazyFrame] = {}
     for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
         need = needed[run.manifest.config_digest or ""]

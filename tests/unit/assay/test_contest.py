@@ -9,10 +9,8 @@ from scipy import stats
 from hedon.assay.contest import Contest, Lines, by_descent, by_gene, estimate, points_of, world_lines
 from hedon.assay.landscape import AssayError
 from hedon.assay.report_contest import contest_tables, draw_contest
-from hedon.config import ONLY, load_config
+from hedon.config import ONLY
 from hedon.record.founder import join, make_founders
-
-CONFIG = load_config("baseline")
 
 
 def lines(rng: np.random.Generator, birth: tuple[float, float], share: float = 0.5, *, count=40, steps=3000) -> Lines:
@@ -25,7 +23,7 @@ def lines(rng: np.random.Generator, birth: tuple[float, float], share: float = 0
 
 
 def contest(rng: np.random.Generator, birth: tuple[float, float], worlds: int, share: float = 0.5) -> Contest:
-    return estimate(("a", "b"), [lines(rng, birth, share) for _ in range(worlds)], CONFIG, 3000)
+    return estimate(("a", "b"), [lines(rng, birth, share) for _ in range(worlds)], 3000)
 
 
 def test_a_known_difference_is_found_with_its_size() -> None:
@@ -57,7 +55,7 @@ def test_equal_groups_do_not_win(share: float) -> None:
 def test_worlds_that_are_lost_count_and_add_no_noise() -> None:
     rng = np.random.default_rng(2)
     some = [lines(rng, (1e-3, 1e-3), 0.1, count=10) for _ in range(30)]
-    found = estimate(("a", "b"), some, CONFIG, 3000)
+    found = estimate(("a", "b"), some, 3000)
     assert found.lost > 5
     assert found.lost == sum(each.share[-1] == 0 for each in some)
     assert found.share.value == pytest.approx(0.1, abs=0.1)

@@ -11,13 +11,14 @@ from hedon.config import diff, load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
 from hedon.experiment.run import run
+from hedon.jobs.plan import folder_name, plan_jobs
+from hedon.jobs.requirement import find_runs, part_of, setting_name
 from hedon.jobs.run import RunJob
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.study.catalogue import StudyError, choose
-from hedon.study.gather import find_runs, gather
+from hedon.study.gather import gather
 from hedon.study.item import Condition, Item, Scale
-from hedon.study.plan import folder_name, plan_jobs
-from hedon.study.request import Request, needs, part_of, setting_name
+from hedon.study.request import Request, needs
 
 BASE = Condition("base", overrides=SMALL)
 FAST = Condition("fast", overrides=(*SMALL, "food.normal.growth_rate=1.0"))

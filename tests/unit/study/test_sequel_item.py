@@ -9,10 +9,11 @@ import pytest
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.population import death_rates
 from hedon.figure.named import NamedFigure
+from hedon.jobs.plan import plan_jobs
+from hedon.jobs.requirement import find_runs
 from hedon.study.catalogue import choose
-from hedon.study.gather import Gathered, find_runs, gather
+from hedon.study.gather import Gathered, gather
 from hedon.study.item import ItemInputs
-from hedon.study.plan import plan_jobs
 from hedon.study.request import Request, needs
 from hedon_studies.fear.item import FRAMES, SEQUEL
 
