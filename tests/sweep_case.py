@@ -14,13 +14,18 @@ import pytest
 from polars.testing import assert_frame_equal
 from resumed_run import SMALL
 
+from hedon.config import Config
+from hedon.config.validate import rebuild
 from hedon.experiment.plan import Moment
+from hedon.jobs.make import make_jobs
+from hedon.jobs.process import Display
 from hedon.jobs.store import Store
 from hedon.jobs.work import Job, Outcome
 from hedon.record.reader import open_run
 from hedon.sweep.collect import collect
-from hedon.sweep.plan import SweepPlan, load_plan, write_plan
+from hedon.sweep.plan import SweepFile, SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
+from hedon.sweep.run import open_tasks
 from hedon.sweep.work import WORK, make_task
 
 FACTORS = """
@@ -51,10 +56,30 @@ def planned(file: Path, location: str) -> tuple[SweepPlan, Store]:
     return write_plan(read_sweep(file), store), store
 
 
+def condition_configs(file: SweepFile) -> list[Config]:
+    """The config of each condition, from its base and what it changes."""
+    plan = file.plan
+    return [rebuild(file.bases[each.base].config, plan.changes(each), "") for each in plan.conditions]
+
+
 def table_of(location: str) -> pl.DataFrame:
     """The table of all worlds of a sweep."""
     store = Store(location)
     return collect(load_plan(store), store)
+
+
+def run_sweep(
+    plan: SweepPlan,
+    store: Store,
+    checkpoint_seconds: float = 1e9,
+    workers: int = 0,
+    ray: str | None = None,
+    display: Display | None = None,
+) -> dict[str, Outcome]:
+    """How each batch that was open ended, by name."""
+    with open_tasks(plan, store, checkpoint_seconds, on_cluster=ray is not None) as jobs:
+        outcomes = make_jobs(jobs, display or Silent(), workers, ray)
+    return {folder.name: outcome for folder, outcome in outcomes.items()}
 
 
 def under_way(place: Path) -> dict[str, tuple[int, int]]:
@@ -94,7 +119,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
             if moment.step > steps // 2:
                 raise MachineDiedError
 
-    first = remote.batches()[0]
+    first = next(remote.batches())
     with pytest.raises(MachineDiedError):
         make_task(url, remote, first, folder / "one machine", 0.0).make(1, Stopping())
     assert far.names("state") == [f"{first.name}.zip"]

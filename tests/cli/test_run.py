@@ -11,6 +11,7 @@ import pytest
 from command import hedon as answer_of
 
 import hedon
+from hedon.experiment.argument import parse_seeds
 
 QUICK = ("--set", "world.rollout_steps=256", "--set", "learning.update_epochs=1")
 LIVELY = ("--set", "birth.kappa=0.01", "--set", "hazard.kappa=0.1")
@@ -199,7 +200,7 @@ def wait_for(path, seconds=30.0):
 
 
 @pytest.mark.parametrize(
-    ("text", "seeds"), [("7", (7,)), ("1-3", (1, 2, 3)), ("1, 4,7-8", (1, 4, 7, 8)), ("0-0", (0,))]
+    ("text", "seeds"), [("7", (7,)), ("1-3", (1, 2, 3)), ("1, 4,7-8", (1, 4, 7, 8)), ("0-0", (0,)), ("[3, 5]", (3, 5))]
 )
 def test_seeds_are_read(text, seeds):
     assert parse_seeds(text) == seeds

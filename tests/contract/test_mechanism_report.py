@@ -29,7 +29,6 @@ from hedon.record.reader import Run, open_run
 from hedon.report.run import write_report
 from hedon.report.summary import summarize
 from hedon.report.summary_key import CAUSE_KEYS, FARE_KEYS, HUNT_KEYS, MEAN_KEYS, SEVERAL_KEYS, WORLD_SEVERAL_KEYS
-from hedon.sweep.plan import Batch
 from hedon.sweep.response import responses
 from hedon.sweep.row import world_rows
 
@@ -153,7 +152,7 @@ def test_a_world_knows_what_its_species_eat_and_inherit(different: Run) -> None:
 
 def test_a_sweep_has_columns_per_species(different: Run) -> None:
     summary = summarize(different)
-    rows = world_rows(Batch("000000-00", 0, 0, (1, 2)), {"energy.initial": 8}, summary, ("a", "b"))
+    rows = world_rows(summary, ("a", "b"))
     table = pl.DataFrame(rows, infer_schema_length=None)
     assert table["prey.alive"].to_list() == [world["species"]["prey"]["alive"] for world in summary["worlds"]]
     assert table["total_alive"].to_list() == [world["total"]["alive"] for world in summary["worlds"]]

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from setting_page import values
+from sweep_case import condition_configs
 
 from hedon.config import load_config
 from hedon.sweep.plan import SweepFile
@@ -101,9 +102,10 @@ def test_configs_of_a_page_are_what_they_say(page, tmp_path):
 
 def assert_every_setting_has_its_value(sweep: SweepFile, table: dict) -> None:
     counts = [each["count"] if isinstance(each, dict) else len(each) for each in table["factor"].values()]
-    assert len(sweep.conditions) == prod(counts) > 1
-    assert len({tuple(condition.settings.values()) for condition in sweep.conditions}) == prod(counts)
-    for condition in sweep.conditions:
-        have = values(condition.config)
+    conditions = sweep.plan.conditions
+    assert len(conditions) == prod(counts) > 1
+    assert len({tuple(condition.settings.values()) for condition in conditions}) == prod(counts)
+    for condition, config in zip(conditions, condition_configs(sweep), strict=True):
+        have = values(config)
         for path, value in {**table.get("set", {}), **condition.settings}.items():
             assert have[path] == value, path

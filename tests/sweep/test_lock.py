@@ -58,7 +58,7 @@ def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
 def test_a_batch_waits_for_the_process_that_its_killed_sweep_left(tmp_path):
     """The process of a batch outlives that of its sweep for a moment, and still has its folder."""
     plan, store = planned(sweep_file(tmp_path, 640), str(tmp_path / "left"))
-    batch = plan.batches()[0]
+    batch = next(plan.batches())
     task = make_task(store.location, plan, batch, tmp_path / "left" / WORK / batch.name, 1e9)
     holder = (
         "import sys, time; from pathlib import Path; from hedon.record.lock import FolderLock\n"

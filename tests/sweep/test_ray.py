@@ -18,13 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_case import Silent, assert_same_table, planned, sweep_file, table_of, under_way
+from sweep_case import assert_same_table, planned, run_sweep, sweep_file, table_of, under_way
 
 from hedon.jobs.cluster import LOCAL, import_ray
 from hedon.jobs.retry import TRIES
 from hedon.jobs.store import Store
 from hedon.sweep.plan import load_plan
-from hedon.sweep.run import run_sweep
 from hedon.sweep.work import RUNS, make_task
 
 pytestmark = pytest.mark.skipif(
@@ -101,7 +100,7 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
         killer = threading.Thread(target=kill_in_the_middle, daemon=True)
         killer.start()
         try:
-            outcomes = run_sweep(plan, store, Silent(), 0.0, ray=str(cluster.address))
+            outcomes = run_sweep(plan, store, 0.0, ray=str(cluster.address))
         finally:
             over.set()
             killer.join()
@@ -120,7 +119,7 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     """As one does that needs more memory than there is; the others are made, and it may be tried again."""
     monkeypatch.setenv("RAY_ADDRESS", "127.0.0.1:1")  # a local cluster is a new one, whatever else there is
     plan, store = planned(file_of(tmp_path), str(tmp_path / "ray"))
-    doomed, killed, over = plan.batches()[0].name, set[int](), threading.Event()
+    doomed, killed, over = next(plan.batches()).name, set[int](), threading.Event()
 
     def kill_one() -> None:
         while not over.wait(0.005):
@@ -133,7 +132,7 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     killer = threading.Thread(target=kill_one, daemon=True)
     killer.start()
     try:
-        outcomes = run_sweep(plan, store, Silent(), 1e9, 1, ray=LOCAL)
+        outcomes = run_sweep(plan, store, 1e9, 1, ray=LOCAL)
     finally:
         over.set()
         killer.join()
@@ -141,12 +140,10 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     assert {outcome.status for name, outcome in outcomes.items() if name != doomed} == {"finished"}
     assert outcomes[doomed].status == "failed"
     assert f"lost {TRIES} times in a row" in outcomes[doomed].fault
-    worlds = plan.batches()[0]
-    value = plan.settings[worlds.condition]["energy.basic_cost"]
+    worlds = next(plan.batches())
+    value = plan.conditions[worlds.condition].settings["energy.basic_cost"]
     assert f"energy.basic_cost = {value}, seed {worlds.seeds[0]}." in outcomes[doomed].fault
-    assert {name: outcome.status for name, outcome in run_sweep(plan, store, Silent(), 1e9, 1).items()} == {
-        doomed: "finished"
-    }
+    assert {name: outcome.status for name, outcome in run_sweep(plan, store, 1e9, 1).items()} == {doomed: "finished"}
     assert_same_table(table_of(store.location), whole)
 
 
@@ -166,12 +163,12 @@ def test_ctrl_c_keeps_what_was_done_on_a_cluster(tmp_path):
     finally:
         sweep.kill()
     assert sweep.returncode == 0
-    assert "Interrupted: 0 of 2 batches are done, and kept." in said
+    assert "Interrupted: 2 of 2 runs are not finished; all results so far are kept." in said
     plan, store = load_plan(Store(str(place))), Store(str(place))
-    run_sweep(plan, store, Silent(), 1e9, 2)
+    run_sweep(plan, store, 1e9, 2)
     sessions = [json.loads(path.read_text())["sessions"] for path in (place / RUNS).glob("*/manifest.json")]
     (_, second), (_,) = sorted(sessions, key=len, reverse=True)
     assert second["from_step"] > 0, "one was under way"
     alone, other = planned(file, str(tmp_path / "alone"))
-    run_sweep(alone, other, Silent(), 1e9, 2)
+    run_sweep(alone, other, 1e9, 2)
     assert_same_table(table_of(str(place)), table_of(other.location))

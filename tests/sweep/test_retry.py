@@ -38,8 +38,8 @@ def test_a_batch_is_given_up_where_it_gets_no_further(tmp_path, kind):
 
 def test_the_reason_names_the_worlds_and_what_to_do(tmp_path):
     plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place"))
-    batch = plan.batches()[0]
-    cost = plan.settings[batch.condition]["energy.basic_cost"]
+    batch = next(plan.batches())
+    cost = plan.conditions[batch.condition].settings["energy.basic_cost"]
     reason = RetryLimit().reason(
         make_task(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
     )

@@ -83,7 +83,7 @@ def told_write(self, name, content):
 
 UrlStore.write = told_write
 plan = load_plan(Store(url))
-make_task(url, plan, plan.batches()[0], Path(folder), 0.0).make(1, None)
+make_task(url, plan, next(plan.batches()), Path(folder), 0.0).make(1, None)
 """
 
 pytestmark = [

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 from sweep_case import planned, sweep_file
 
-from hedon.cli.display.sweep import SweepDisplay
+from hedon.cli.display.job import JobDisplay
 from hedon.experiment.plan import Moment
 from hedon.jobs.work import Outcome
 from hedon.sweep.work import make_task
@@ -17,26 +17,31 @@ from hedon.sweep.work import make_task
 def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, terminal):
     """A batch of another process tells its moments; one of a cluster only its end."""
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
-    told, untold = (make_task(store.location, plan, batch, tmp_path, 1.0) for batch in plan.batches())
+    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
+    told, untold = jobs
+    moment = Moment(200, 600, 1000, 1.0, ({"alive": 7}, {"alive": 5}), (None, None), 64)
     stream = io.StringIO()
-    with SweepDisplay(Console(file=stream, width=200, force_terminal=terminal), 2, 4000) as display:
-        display.update(told, Moment(first=200, step=600, steps=1000, seconds=1.0, rows=(), extinct=(), window=64))
+    with JobDisplay(Console(file=stream, width=200, force_terminal=terminal), jobs) as display:
+        display.update(told, moment)
         display.end(told, Outcome("failed", "it broke"))
         display.end(untold, Outcome("finished"))
     text = stream.getvalue()
-    assert "0 of 2 batches, 30 % of their world-steps" in text, "both worlds of the first are at step 600"
+    assert "30.0 %, 0 of 2 runs done" in text, "both worlds of the first are at step 600"
     assert re.search(r"[1-9][\d,]* world-steps/s, .* left", text)
-    assert "c00000-r00001 failed: it broke" in text or "c00001-r00001 failed: it broke" in text
-    last = re.findall(r"2 of 2 batches, 50 % of their world-steps, (\S+) world-steps/s(.*)", text)[-1]
-    assert last[0] != "0"
-    assert "left" not in last[1]
+    assert f"{told.folder}: failed, step 600, it broke" in text
+    assert f"{untold.folder}: finished" in text
 
 
-def test_a_cluster_that_tells_no_moments_has_a_speed(tmp_path):
-    plan, store = planned(sweep_file(tmp_path, 1_000_000), str(tmp_path / "place"))
+def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_path):
+    costs = f'[factor]\n"energy.basic_cost" = {[i / 1e4 for i in range(1, 31)]}\n'
+    plan, store = planned(sweep_file(tmp_path, 1000, seeds=1, rest=costs), str(tmp_path / "place"))
+    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     stream = io.StringIO()
-    with SweepDisplay(Console(file=stream, width=200), 2, 4_000_000) as display:
-        display.end(make_task(store.location, plan, plan.batches()[0], tmp_path, 1.0), Outcome("finished"))
-    assert re.search(
-        r"1 of 2 batches, 50 % of their world-steps, [1-9][\d,]+ world-steps/s, \d+ s left", stream.getvalue()
-    )
+    with JobDisplay(Console(file=stream, width=200), jobs) as display:
+        for job in jobs[:-1]:
+            display.end(job, Outcome("finished"))
+        display.end(jobs[-1], Outcome("failed", "it broke"))
+    lines = stream.getvalue().splitlines()
+    assert re.fullmatch(r"3.3 %, 1 of 30 runs done, [1-9][\d,]+ world-steps/s, .* left", lines[0])
+    assert re.fullmatch(r"96.7 %, 30 of 30 runs done, [1-9][\d,]+ world-steps/s", lines[1])
+    assert lines[2:] == [f"{jobs[-1].folder}: failed, it broke"]

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sweep_case import condition_configs
 
 from hedon.config import ConfigError
 from hedon.sweep.plan import SweepFile
@@ -17,7 +18,7 @@ def read(folder: Path, text: str) -> SweepFile:
 
 
 def settings(folder: Path, text: str) -> list[dict]:
-    return [condition.settings for condition in read(folder, "steps = 64\n" + text).conditions]
+    return [condition.settings for condition in read(folder, "steps = 64\n" + text).plan.conditions]
 
 
 def test_factors_are_crossed_and_reach_the_configs(tmp_path):
@@ -26,18 +27,18 @@ def test_factors_are_crossed_and_reach_the_configs(tmp_path):
         'steps = 64\nseeds = 3\n[set]\n"birth.kappa" = 0.01\n'
         '[factor]\n"energy.initial" = [5.0, 7.0]\npreset = ["baseline", "poison"]\n',
     )
-    assert [tuple(c.settings.values()) for c in found.conditions] == [
+    assert [tuple(c.settings.values()) for c in found.plan.conditions] == [
         (5.0, "baseline"), (5.0, "poison"), (7.0, "baseline"), (7.0, "poison")
     ]  # fmt: skip
-    assert [c.config.species["agent"].energy.initial for c in found.conditions] == [5.0, 5.0, 7.0, 7.0]
-    assert ["poison" in c.config.food for c in found.conditions] == [False, True, False, True]
-    assert {c.config.species["agent"].birth.kappa for c in found.conditions} == {0.01}
+    assert [c.species["agent"].energy.initial for c in condition_configs(found)] == [5.0, 5.0, 7.0, 7.0]
+    assert ["poison" in c.food for c in condition_configs(found)] == [False, True, False, True]
+    assert {c.species["agent"].birth.kappa for c in condition_configs(found)} == {0.01}
     assert found.plan.seeds == (1, 2, 3)
 
 
 def test_a_fidelity_can_be_a_factor(tmp_path):
     found = read(tmp_path, 'steps = 64\n[factor]\nfidelity = ["corrected", "released"]\n')
-    assert [c.config.fidelity for c in found.conditions] == ["corrected", "released"]
+    assert [c.fidelity for c in condition_configs(found)] == ["corrected", "released"]
 
 
 def test_zipped_factors_go_together_and_are_crossed_with_the_rest(tmp_path):
@@ -82,11 +83,11 @@ def test_drawn_values_fill_their_ranges(draw, tmp_path):
 
 def test_conditions_take_turns(tmp_path):
     text = 'steps = 64\nseeds = 5\nworlds = 2\n[factor]\n"energy.initial" = [1.0, 2.0, 3.0]\n'
-    batches = read(tmp_path, text).plan.batches()
+    batches = list(read(tmp_path, text).plan.batches())
     for begin in (0, 3, 6):
         assert {batch.condition for batch in batches[begin : begin + 3]} == {0, 1, 2}
     assert {batch.seeds for batch in batches[:3]} == {(1, 2)}
-    assert {(batch.seeds, batch.first) for batch in batches[6:]} == {((5,), 5)}
+    assert {batch.seeds for batch in batches[6:]} == {(5,)}
     assert len({batch.name for batch in batches}) == 9
 
 
@@ -131,4 +132,4 @@ def test_all_problems_are_told_at_once(tmp_path):
 def test_a_base_file_is_found_beside_the_sweep(tmp_path):
     (tmp_path / "own.toml").write_text('preset = "small"\n[energy]\ninitial = 3.5\n')
     found = read(tmp_path, 'steps = 64\nbase = "own.toml"\n')
-    assert found.conditions[0].config.species["agent"].energy.initial == 3.5
+    assert condition_configs(found)[0].species["agent"].energy.initial == 3.5

@@ -7,7 +7,7 @@ from sweep_case import assert_same_table, planned, sweep_file, table_of
 
 from hedon.config.problem import ConfigError
 from hedon.sweep.error import SweepError
-from hedon.sweep.plan import load_condition, load_rules
+from hedon.sweep.plan import load_config_of, load_rules
 from hedon.sweep.read import read_sweep
 from hedon.sweep.work import make_task
 
@@ -37,7 +37,8 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
     tables = []
     for name in ("first", "second"):
         plan, store = planned(file, str(tmp_path / name))
-        first = load_condition(store, 0)
+        own = plan.conditions[0]
+        first = load_config_of(store, own.digest, own.base, plan.changes(own))
         assert first.species["agent"].reward.rule == f"my.py:once@{load_rules(store, first)[0].digest}"
         if name == "second":  # the plan needs the files no more
             shutil.rmtree(home)

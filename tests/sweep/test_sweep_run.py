@@ -10,7 +10,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
-from sweep_case import FACTORS, Silent, assert_same_table, planned, sweep_file, table_of
+from sweep_case import FACTORS, assert_same_table, planned, run_sweep, sweep_file, table_of
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
@@ -20,7 +20,7 @@ from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_plan
 from hedon.sweep.read import read_sweep
-from hedon.sweep.run import open_batches, run_sweep
+from hedon.sweep.run import open_batches
 from hedon.sweep.status import sweep_status
 from hedon.sweep.work import RESULTS, WORK, make_task
 
@@ -60,11 +60,11 @@ def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
     assert not list((place / RESULTS).glob("*")), "it was to be killed before its first result"
     plan, store = load_plan(Store(str(place))), Store(str(place))
     assert 0 < max(sweep_status(plan, store).begun.values()) < 1
-    outcomes = run_sweep(plan, store, Silent(), 1e9, 2)
+    outcomes = run_sweep(plan, store, 1e9, 2)
     assert {outcome.status for outcome in outcomes.values()} == {"finished"}
     assert_same_table(table_of(str(place)), whole)
     assert not list((place / WORK).glob("*"))
-    assert run_sweep(plan, store, Silent(), 1e9, 2) == {}, "nothing finished is done again"
+    assert run_sweep(plan, store, 1e9, 2) == {}, "nothing finished is done again"
     assert sorted(zip(whole["condition"], whole["repetition"], whole["seed"], strict=True)) == [
         (0, 1, 1), (0, 2, 2), (1, 1, 1), (1, 2, 2)
     ]  # fmt: skip
@@ -94,35 +94,74 @@ def test_what_is_asked_for_is_kept(tmp_path):
     file.write_text('keep = ["agents", "population", "run"]\n' + file.read_text())
     place = tmp_path / "kept"
     table = make_all(str(place), file)
-    for name in ("c00000-r00001", "c00001-r00001"):
+    for condition, name in ((batch.condition, batch.name) for batch in load_plan(Store(str(place))).batches()):
         agents = pl.read_parquet(place / "tables" / "agents" / f"{name}.parquet")
-        births = table.filter(pl.col("condition") == int(name[1:6]))["births"].item()
+        births = table.filter(pl.col("condition") == condition)["births"].item()
         assert agents.height == 16 + births
         assert (place / "runs" / name / "manifest.json").is_file()
 
 
 def test_a_batch_that_fails_harms_no_other_and_is_tried_again(tmp_path):
-    file, place = sweep_file(tmp_path, 64, seeds=1), tmp_path / "fails"
+    """Presets are bases of their own, and the config of one is broken."""
+    place, presets = tmp_path / "fails", '[factor]\npreset = ["baseline", "small"]\n'
+    file = sweep_file(tmp_path, 64, seeds=1, rest=presets)
     plan, store = planned(file, str(place))
-    config = place / "configs" / "c00001.toml"
+    good, bad = sorted(plan.batches(), key=lambda batch: batch.condition)
+    config = place / "configs" / f"{plan.conditions[1].base}.toml"
     whole = config.read_text()
     config.write_text("broken = ")
-    outcomes = run_sweep(plan, store, Silent(), 1e9, 1)
-    assert outcomes["c00000-r00001"].status == "finished"
-    assert outcomes["c00001-r00001"].status == "failed"
-    assert "c00001.toml" in outcomes["c00001-r00001"].fault
+    outcomes = run_sweep(plan, store, 1e9, 1)
+    assert outcomes[good.name].status == "finished"
+    assert outcomes[bad.name].status == "failed"
+    assert config.name in outcomes[bad.name].fault
+    config.write_text(whole.replace("basic_cost = ", "basic_cost = 1"))
+    assert "is not the config that was planned" in run_sweep(plan, store, 1e9, 1)[bad.name].fault
     config.write_text(whole)
-    assert {name: o.status for name, o in run_sweep(plan, store, Silent(), 1e9, 1).items()} == {
-        "c00001-r00001": "finished"
-    }
+    assert {name: o.status for name, o in run_sweep(plan, store, 1e9, 1).items()} == {bad.name: "finished"}
 
 
 def test_another_sweep_is_not_mixed_in(tmp_path):
     file, place = sweep_file(tmp_path, 64), str(tmp_path / "mixed")
     planned(file, place)
     planned(file, place)
-    with pytest.raises(HedonError, match="holds another sweep"):
-        planned(sweep_file(tmp_path, 128), place)
+    for other in (sweep_file(tmp_path, 128), sweep_file(tmp_path, 64, rest='[factor]\n"energy.basic_cost" = [0.5]\n')):
+        with pytest.raises(HedonError, match="holds another sweep"):
+            planned(other, place)
+
+
+def results(place: Path) -> dict[str, int]:
+    """When each result was written."""
+    return {path.name: path.stat().st_mtime_ns for path in (place / RESULTS).iterdir()}
+
+
+def test_a_sweep_grows_by_seeds_and_values_and_makes_what_is_missing_alone(tmp_path):
+    few = '[factor]\n"energy.basic_cost" = [0.001, 0.01]\n'
+    more = '[factor]\n"energy.basic_cost" = [0.005, 0.01, 0.001]\n'
+    place = tmp_path / "grown"
+    make_all(str(place), sweep_file(tmp_path, 96, seeds=2, rest=few))
+    before = results(place)
+    grown = make_all(str(place), sweep_file(tmp_path, 96, seeds=5, rest=more))
+    assert {name: at for name, at in results(place).items() if name in before} == before
+    assert_same_table(grown, make_all(str(tmp_path / "whole"), sweep_file(tmp_path, 96, seeds=5, rest=more)))
+    assert grown.height == 15
+    plan, store = planned(sweep_file(tmp_path, 96, seeds=1, rest=few), str(place))
+    assert not (place / "table.parquet").exists(), "it was of what was wanted before"
+    assert open_batches(plan, store) == []
+    assert table_of(str(place))["energy.basic_cost"].to_list() == [0.001, 0.01]
+    again, store = planned(sweep_file(tmp_path, 96, seeds=5, rest=more), str(place))
+    assert open_batches(again, store) == [], "what is made stays"
+
+
+def test_a_sweep_that_grows_while_it_runs_is_made_whole(tmp_path):
+    place, small = tmp_path / "running", sweep_file(tmp_path, 3_200, seeds=1)
+    begun = command("sweep", "run", small, "--out", place, "--workers", "1")
+    until = time.monotonic() + 300
+    while not list((place / WORK).glob("*/manifest.json")):
+        assert time.monotonic() < until
+        time.sleep(0.02)
+    planned(sweep_file(tmp_path, 3_200, seeds=2), str(place))
+    assert begun.wait(300) == 0
+    assert table_of(str(place)).height == 4
 
 
 def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
@@ -132,7 +171,8 @@ def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
     for name, rest in (("few", FACTORS), ("many", many)):
         (tmp_path / name).mkdir()
         plan = read_sweep(sweep_file(tmp_path / name, rest=rest)).plan
-        sizes.append(len(pickle.dumps(make_task("place", plan, plan.batches()[0], tmp_path, 1.0))))
+        batch = next(each for each in plan.batches() if each.condition == 1)
+        sizes.append(len(pickle.dumps(make_task("place", plan, batch, tmp_path, 1.0))))
     assert max(sizes) < min(sizes) + 20
 
 
@@ -155,6 +195,9 @@ def test_the_commands_report_what_was_made(tmp_path):
     table = make_all(place, file)
     assert "done: 4 of 4 batches, 8 worlds" in said("sweep", "status", place)
     assert "8 of 8 worlds" in said("sweep", "collect", place)
+    ended = said("sweep", "run", str(file), "--out", place)
+    assert "Sweep small" in ended
+    assert "share of worlds" in ended, "it ends with its table"
     assert_same_table(pl.read_parquet(f"{place}/table.parquet"), table)
     said("sweep", "report", place, "--only", "alive_mean,extinct")
     page = (Path(place) / "report" / "report.md").read_text()

@@ -9,7 +9,7 @@ from hedon.text import printable
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.jobs.run import RunJob
+    from hedon.jobs.work import Job
 
 
 def count(number: int, noun: str) -> str:
@@ -22,10 +22,8 @@ def count(number: int, noun: str) -> str:
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
-def make_runs(
-    jobs: "Sequence[RunJob]", console: "Console", threads: int = 0, ray: str | None = None
-) -> dict[Path, str]:
-    """Makes runs: says what they are, and shows them.
+def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: str | None = None) -> dict[Path, str]:
+    """Makes runs: says what they are if they are few, and shows them.
 
     Args:
         jobs: In the order in which they begin.
@@ -39,25 +37,28 @@ def make_runs(
     Raises:
         JobError: There is no such cluster.
     """
-    from hedon.cli.display.job import JobDisplay
+    from hedon.cli.display.job import MOST_TOLD, JobDisplay
     from hedon.jobs.make import make_jobs
 
-    for job in jobs:
-        verb, worlds = "continue" if job.begun else "begin", count(len(job.plan.seeds), "world")
+    for job in jobs if len(jobs) <= MOST_TOLD else ():
+        verb, worlds = "continue" if job.newest() else "begin", count(len(job.seeds), "world")
         folder = printable(str(job.folder))
-        console.print(f"  {verb} {folder}: {worlds} to {job.plan.steps:,} steps", soft_wrap=True)
+        console.print(f"  {verb} {folder}: {worlds} to {job.steps:,} steps", soft_wrap=True)
     with JobDisplay(console, jobs) as display:
         outcomes = make_jobs(jobs, display, threads, ray)
     return {folder: outcome.status for folder, outcome in outcomes.items()}
 
 
-def all_finished(jobs: "Sequence[RunJob]", ends: Mapping[Path, str], console: "Console") -> bool:
+def all_finished(
+    jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command goes on."
+) -> bool:
     """Whether all runs are finished; says so if some were interrupted.
 
     Args:
         jobs: All of them.
         ends: As `make_runs` gives them.
         console: To print on.
+        again: How to go on.
 
     Raises:
         JobError: One failed.
@@ -68,9 +69,11 @@ def all_finished(jobs: "Sequence[RunJob]", ends: Mapping[Path, str], console: "C
     left = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
     if left:
         console.print(
-            f"Interrupted: {len(left)} of {count(len(jobs), 'run')} are not finished; all results so far are kept. "
-            "The same command goes on."
+            f"Interrupted: {len(left)} of {count(len(jobs), 'run')} are not finished; all results so far are kept.\n"
+            + again,
+            soft_wrap=True,
         )
     if failed:
-        raise JobError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {', '.join(failed)}")
+        shown = ", ".join(failed[:5])
+        raise JobError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {shown}. {again}")
     return not left

@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
+from hedon.cli.make import all_finished, make_runs
 from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
 from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.text import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from hedon.jobs.store import Store
-    from hedon.sweep.plan import SweepPlan
+    from hedon.sweep.plan import SweepFile, SweepPlan
 
+PRINTED = 40
+"""Most settings that the end of a sweep prints."""
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
@@ -28,11 +32,14 @@ Out = Annotated[
     str | None,
     typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
 ]
+SkipInvalid = Annotated[
+    bool, typer.Option("--skip-invalid", help="List the settings that cannot be and leave them out.")
+]
 Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
 
 
 @app.command()
-def plan(file: File) -> None:
+def plan(file: File, skip_invalid: SkipInvalid = False) -> None:
     """Say what a sweep would run; nothing is written.
 
     \b
@@ -42,10 +49,12 @@ def plan(file: File) -> None:
     from hedon.config.problem import format_value
     from hedon.sweep.read import read_sweep
 
-    made, console = read_sweep(file).plan, make_console()
+    console, asked = make_console(), read_sweep(file, skip_invalid=skip_invalid)
+    made = asked.plan
+    _say_left_out(asked, console)
     _say_size(made, console)
     for name in made.factors:
-        values = list(dict.fromkeys(format_value(settings[name]) for settings in made.settings))
+        values = list(dict.fromkeys(format_value(each.settings[name]) for each in made.conditions))
         shown = ", ".join(values[:8]) + (f", … {values[-1]}" if len(values) > 8 else "")
         console.print(f"  {name}: {len(values)} values: {shown}", soft_wrap=True)
 
@@ -58,18 +67,20 @@ def run(
     ray: Ray = None,
     part: Part = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    skip_invalid: SkipInvalid = False,
 ) -> None:
-    """Run a sweep. The same command goes on with what is not finished.
+    """Run a sweep, then print its table. The same command goes on with what is not finished.
 
     Worlds of one setting share a process, and settings take turns. Each finished batch is on disk at once. Ctrl-C or
-    a kill loses no finished batch, and of the others what came after their last checkpoint.
+    a kill loses no finished batch, and of the others what came after their last checkpoint. If the file has more
+    seeds or values now, only what is missing is run, also by a process that is running the sweep already.
 
     \b
     Examples:
       hedon sweep run cost.toml --workers 2
       hedon sweep run cost.toml --out s3://bucket/cost
     """
-    _run_and_report(*_written(file, out), workers, ray, part, checkpoint)
+    _run_and_report(*_written(file, out, skip_invalid=skip_invalid), workers, ray, part, checkpoint)
 
 
 @app.command()
@@ -121,13 +132,12 @@ def collect(place: Place) -> None:
     Example:
       hedon sweep collect sweeps/cost
     """
-    from hedon.sweep.collect import TABLE
     from hedon.sweep.collect import collect as write_table
+    from hedon.sweep.plan import TABLE
 
     made, store = _opened(place)
     table = write_table(made, store)
-    all_worlds = len(made.settings) * len(made.seeds)
-    make_console().print(f"wrote {store.location}/{TABLE}: {table.height} of {all_worlds} worlds", soft_wrap=True)
+    make_console().print(f"wrote {store.location}/{TABLE}: {table.height} of {made.worlds} worlds", soft_wrap=True)
 
 
 @app.command()
@@ -164,6 +174,7 @@ def script(
     workers: Annotated[int, typer.Option(help="Processes of each task, one processor each.", min=1)] = 1,
     hours: Hours = 24,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    skip_invalid: SkipInvalid = False,
 ) -> None:
     """Write a sweep, and a script that runs it on a cluster: FOLDER.sh.
 
@@ -180,22 +191,23 @@ def script(
 
     if not slurm:
         raise SweepError("say for which system: --slurm is the only one")
-    made, store = _written(file, out)
+    made, store = _written(file, out, skip_invalid=skip_invalid)
     path = Path(f"{made.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
     place = store.location if store.folder is None else str(store.folder.absolute())
     words = ["sweep", "resume", place, "--workers", str(workers), "--checkpoint", f"{checkpoint:g}"]
-    text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(made.batches())), workers, hours).encode()
+    text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(list(made.batches()))), workers, hours).encode()
     write_atomically(path, lambda content: content.write(text))
     make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
 
 
-def _written(file: Path, out: str | None) -> "tuple[SweepPlan, Store]":
+def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":
     """The plan of a file, written where the sweep lives."""
     from hedon.jobs.store import Store
     from hedon.sweep.plan import write_plan
     from hedon.sweep.read import read_sweep
 
-    asked = read_sweep(file)
+    asked = read_sweep(file, skip_invalid=skip_invalid)
+    _say_left_out(asked, make_console())
     store = Store(out or str(Path("sweeps") / asked.plan.name))
     return write_plan(asked, store), store
 
@@ -210,44 +222,46 @@ def _opened(place: str) -> "tuple[SweepPlan, Store]":
 
 
 def _say_size(made: "SweepPlan", console: "Console") -> None:
+    batches = len(made.rounds) * len(made.conditions)
     console.print(
-        f"hedon: sweep {made.name}: {len(made.settings):,} settings x {len(made.seeds):,} seeds x "
-        f"{made.steps:,} steps = {made.world_steps:,} world-steps, in {len(made.batches()):,} batches",
+        f"hedon: sweep {made.name}: {len(made.conditions):,} settings x {len(made.seeds):,} seeds x "
+        f"{made.steps:,} steps = {made.world_steps:,} world-steps, in {batches:,} batches",
         soft_wrap=True,
     )
+
+
+def _say_left_out(asked: "SweepFile", console: "Console") -> None:
+    for reason in asked.left_out:
+        console.print(f"  left out: {printable(reason)}", soft_wrap=True)
 
 
 def _run_and_report(
     made: "SweepPlan", store: "Store", workers: int, ray: str | None, part: str | None, checkpoint: float
 ) -> None:
-    """Runs what is open, shows it, and says what to do next. SweepError: a batch failed."""
-    from hedon.cli.display.sweep import SweepDisplay
+    """Runs what is open, also what is added meanwhile, shows it, and prints the table. JobError: a batch failed."""
+    from hedon.cli.display.analysis import analysis_group
     from hedon.jobs.part import parse_part
-    from hedon.sweep.run import open_batches, run_sweep
+    from hedon.sweep.collect import collect as write_table
+    from hedon.sweep.plan import load_plan
+    from hedon.sweep.report import settings_table
+    from hedon.sweep.run import open_tasks
 
-    console, share = make_console(), parse_part(part)
+    console, share, again = make_console(), parse_part(part), f"Go on with: hedon sweep resume {_quoted(store)}"
     _say_size(made, console)
-    batches = open_batches(made, store, share)
-    world_steps = made.steps * sum(len(batch.seeds) for batch in batches)
-    console.print(f"  {len(batches):,} batches to make in {store.location}", soft_wrap=True)
-    with SweepDisplay(console, len(batches), world_steps) as display:
-        outcomes = run_sweep(made, store, display, checkpoint, workers, share, ray)
-    _say_end({name: outcome.status for name, outcome in outcomes.items()}, len(batches), store.location, console)
+    while True:
+        with open_tasks(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
+            console.print(f"  {len(jobs):,} batches to make in {store.location}", soft_wrap=True)
+            ends = make_runs(jobs, console, workers, ray) if jobs else {}
+        if not all_finished(jobs, ends, console, again):
+            return
+        before, made = made, load_plan(store)
+        if made == before:
+            break
+        console.print("The sweep has grown meanwhile:")
+    if part is None:
+        console.print(analysis_group({"sweep": settings_table(made, write_table(made, store), most=PRINTED)}))
+    console.print(f"All done. Next: hedon sweep report {_quoted(store)}", soft_wrap=True)
 
 
-def _say_end(ends: dict[str, str], batches: int, location: str, console: "Console") -> None:
-    from hedon.sweep.error import SweepError
-
-    place = shlex.quote(location)
-    failed = sorted(name for name, status in ends.items() if status == "failed")
-    finished = sum(status == "finished" for status in ends.values())
-    if failed:
-        raise SweepError(
-            f"{len(failed)} of {batches} batches failed (see the reasons above): {', '.join(failed[:5])}; "
-            f"`hedon sweep resume {place}` tries them again"
-        )
-    if finished < batches:
-        console.print(f"Interrupted: {finished} of {batches} batches are done, and kept.")
-        console.print(f"Go on with: hedon sweep resume {place}", soft_wrap=True)
-        return
-    console.print(f"All done. Next: hedon sweep report {place}", soft_wrap=True)
+def _quoted(store: "Store") -> str:
+    return shlex.quote(store.location)

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hedon.config.field import Setting, inner_sections, leaves, sections, settings
@@ -75,10 +75,29 @@ def digest(config: Settings) -> str:
     Returns:
         SHA-256, 64 hexadecimal digits.
     """
-    rows = [
-        [path, value] for path, _, value in leaves(config) if path not in PROVENANCE and not path.endswith(".color")
-    ]
-    return hashlib.sha256(json.dumps({"schema": SCHEMA, "settings": rows}).encode()).hexdigest()
+    return Fingerprint(config).digest({})
+
+
+class Fingerprint:
+    """Gives the digests of a config, and of those that differ from it in some values.
+
+    Args:
+        config: The config.
+    """
+
+    def __init__(self, config: Settings) -> None:
+        counted = (each for each in leaves(config) if each[0] not in PROVENANCE and not each[0].endswith(".color"))
+        self._rows = {path: json.dumps([path, value]) for path, _, value in counted}
+
+    def digest(self, values: Mapping[str, Any]) -> str:
+        """The digest of the config with other values; see `digest`.
+
+        Args:
+            values: By the path of a setting as `leaves` has it, of the types that configs have.
+        """
+        changed = {path: json.dumps([path, value]) for path, value in values.items() if path in self._rows}
+        rows = ", ".join((self._rows | changed).values())
+        return hashlib.sha256(f'{{"schema": {json.dumps(SCHEMA)}, "settings": [{rows}]}}'.encode()).hexdigest()
 
 
 def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:

@@ -6,6 +6,7 @@ A task goes on from its job's last checkpoint. It finds that in a folder that al
 import os
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,6 +20,8 @@ T = TypeVar("T", bound=Job)
 
 LOCAL = "local"
 """The address of a cluster that is started on this machine, for these jobs alone."""
+IN_FLIGHT = 4
+"""Jobs for each processor that Ray is given at a time: it needs memory and time for each that it knows."""
 _LOOK_SECONDS = 0.5
 
 
@@ -74,11 +77,16 @@ def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: Displa
     lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
     # Ray's own tries have no end where memory runs out, and do not see whether a job gets further.
     remote = ray.remote(num_cpus=1, max_retries=0)(attempt)
-    waiting = {remote.remote(job, 1): job for job in jobs}
+    room = IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    left, waiting = iter(jobs), dict[Any, T]()
     outcomes: dict[Path, Outcome] = {}
     with count_interrupts() as interrupted:
         told = 0
-        while waiting:
+        while True:
+            free = 0 if interrupted.count else room - len(waiting)
+            waiting |= {remote.remote(job, 1): job for job in islice(left, free)}
+            if not waiting:
+                break
             for done in ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOOK_SECONDS)[0]:
                 job = waiting.pop(done)
                 try:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hedon.experiment.plan import Display, RunPlan
 from hedon.experiment.resume import make
-from hedon.record.folder import checkpoint_paths, holds_run
+from hedon.record.folder import checkpoint_paths
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,19 @@ class RunJob:
         return self.plan.out
 
     @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of its worlds."""
+        return self.plan.seeds
+
+    @property
+    def steps(self) -> int:
+        """Of each world in the end [step]."""
+        return self.plan.steps
+
+    @property
     def threads(self) -> int:
         """One for each world."""
         return len(self.plan.seeds)
-
-    @property
-    def begun(self) -> bool:
-        """Whether there is a run to continue."""
-        return holds_run(self.folder)
 
     def newest(self) -> str:
         """The name of its last checkpoint; empty where there is none."""

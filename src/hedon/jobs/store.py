@@ -4,7 +4,8 @@ Whatever is written is whole or not there: it is written under a passing name an
 """
 
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +14,8 @@ from typing import Any
 from hedon.jobs.error import JobError
 from hedon.record.atomic import write_atomically
 
+READERS = 32
+"""Contents that are read at a time."""
 PASSING = ".tmp-"
 """Part of the names of objects that are being written; no reader sees them."""
 
@@ -90,6 +93,18 @@ class Store:
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             return self._system.cat_file(self._path(name))
         return None
+
+    def read_all(self, names: Sequence[str]) -> list[bytes | None]:
+        """Several contents, in their order, `READERS` at a time: each answer of a store takes a while.
+
+        Args:
+            names: Of the contents.
+
+        Raises:
+            JobError: One cannot be read.
+        """
+        with ThreadPoolExecutor(READERS) as pool:
+            return list(pool.map(self.read, names))
 
     def names(self, folder: str) -> list[str]:
         """The plain names directly within a folder, sorted. JobError: they cannot be read."""

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -22,6 +23,21 @@ class Job(Protocol):
     @property
     def folder(self) -> Path:
         """The folder of its run."""
+        ...
+
+    @property
+    def seeds(self) -> Sequence[int]:
+        """Of its worlds."""
+        ...
+
+    @property
+    def steps(self) -> int:
+        """Of each world in the end [step]."""
+        ...
+
+    @property
+    def world_steps(self) -> int:
+        """Steps still to run, summed over its worlds, if none dies out [step]."""
         ...
 
     @property

@@ -2,22 +2,24 @@
 
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import polars as pl
 
+from hedon.config.problem import format_value
 from hedon.jobs.store import Store
 from hedon.sweep.error import SweepError
-from hedon.sweep.plan import SweepPlan
+from hedon.sweep.plan import TABLE, SweepPlan, read_name
 from hedon.sweep.row import KEYS
 from hedon.sweep.work import RESULTS
 
-TABLE = "table.parquet"
+_AT_ONCE = 1000
+"""Results that are in memory as JSON at a time."""
 
 
-def read_results(plan: SweepPlan, store: Store) -> list[dict[str, Any]]:
-    """The results of all batches that are done, in the plan's order.
+def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The results of all batches that have worlds of a plan, with the beginnings of their names.
 
     Args:
         plan: Of the sweep.
@@ -26,27 +28,48 @@ def read_results(plan: SweepPlan, store: Store) -> list[dict[str, Any]]:
     Raises:
         SweepError: one cannot be read.
     """
-    done, results = set(store.names(RESULTS)), []
-    for name in (f"{batch.name}.json" for batch in plan.batches()):
-        if name in done:
+    keys, seeds = set(map(plan.key, plan.conditions)), set(plan.seeds)
+    names = []
+    for name in store.names(RESULTS):
+        key, own = read_name(name)
+        if key in keys and seeds.intersection(own):
+            names.append(f"{RESULTS}/{name}")
+    for begin in range(0, len(names), _AT_ONCE):
+        some = names[begin : begin + _AT_ONCE]
+        for name, content in zip(some, store.read_all(some), strict=True):
             try:
-                results.append(json.loads(store.read(f"{RESULTS}/{name}") or b""))
+                yield read_name(name.rpartition("/")[2])[0], json.loads(content or b"")
             except ValueError as error:
-                raise SweepError(f"{store.location}/{RESULTS}/{name} is damaged: remove it, and resume") from error
-    return results
+                raise SweepError(f"{store.location}/{name} is damaged: remove it, and resume") from error
 
 
-def _sweep_table(plan: SweepPlan, results: Sequence[dict[str, Any]]) -> pl.DataFrame:
+def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]]) -> pl.DataFrame:
     """One row per world, by condition and repetition: keys, settings that vary, digest, summary; the extinct too.
 
     What a condition does not have, such as a food of another preset, is null.
     """
-    rows = [row for result in results for row in result["worlds"]]
-    if not rows:
+    frames, rows = [], list[dict[str, Any]]()
+    for key, result in results:
+        rows += [{"key": key, **row} for row in result["worlds"]]
+        if len(rows) > _AT_ONCE:
+            frames.append(_frame(rows))
+            rows = []
+    frames += [_frame(rows)] if rows else []
+    if not frames:
         return pl.DataFrame(schema=dict.fromkeys(KEYS, pl.Int64))
-    columns = dict.fromkeys(name for row in rows for name in row)
-    series = [pl.Series(name, _alike([row.get(name) for row in rows]), strict=False) for name in columns]
-    return pl.DataFrame(series).sort("condition", "repetition")
+    made = pl.concat(frames, how="diagonal_relaxed").unique(["key", "seed"], keep="first")
+    values = {name: [_plain(each.settings[name]) for each in plan.conditions] for name in plan.factors}
+    settings = pl.DataFrame(
+        {
+            "condition": range(len(plan.conditions)),
+            "key": list(map(plan.key, plan.conditions)),
+            **{name: pl.Series(_alike(column), strict=False) for name, column in values.items()},
+        }
+    )
+    seeds = pl.DataFrame({"repetition": range(1, len(plan.seeds) + 1), "seed": plan.seeds})
+    table = settings.join(made, on="key").join(seeds, on="seed")
+    order = dict.fromkeys([*KEYS, *plan.factors, *made.columns])
+    return table.select([name for name in order if name != "key"]).sort("condition", "repetition")
 
 
 def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
@@ -66,6 +89,11 @@ def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
     return table
 
 
+def _frame(rows: list[dict[str, Any]]) -> pl.DataFrame:
+    columns = dict.fromkeys(name for row in rows for name in row)
+    return pl.DataFrame([pl.Series(name, _alike([row.get(name) for row in rows]), strict=False) for name in columns])
+
+
 def _alike(values: list[Any]) -> list[Any]:
     """Values of one kind: a factor that takes 1 and 0.5 takes 1.0."""
     kinds = {type(value) for value in values if value is not None}
@@ -74,3 +102,8 @@ def _alike(values: list[Any]) -> list[Any]:
     if len(kinds) > 1:
         return [None if value is None else str(value) for value in values]
     return values
+
+
+def _plain(value: Any) -> Any:
+    """A value of a setting as a table holds it: a list as text."""
+    return value if isinstance(value, str | int | float) else format_value(value)

@@ -4,18 +4,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from hedon.config.dump import digest
-from hedon.config.load import DEFAULT_PRESET, FIDELITIES, load_config
+from hedon.config.load import DEFAULT_PRESET, FIDELITIES
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
-from hedon.config.rule_path import absolute_rule
 from hedon.config.toml import read_toml
-from hedon.error import HedonError
-from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS
-from hedon.experiment.plan import RunPlan
-from hedon.experiment.rule import rules_beside
-from hedon.sweep.design import DRAWS, Design, Settings, all_settings
+from hedon.error import ArgumentError
+from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, different, integer, parse_seeds, seed_list
+from hedon.sweep.condition import Loader, make_conditions
+from hedon.sweep.design import DRAWS, Design, all_settings
 from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
-from hedon.sweep.plan import Condition, SweepFile, SweepPlan
+from hedon.sweep.plan import SweepFile, SweepPlan, rounds_of
 
 KEYS = ("base", "fidelity", "steps", "seeds", "worlds", "keep", "set", "factor", "design")
 DESIGN = ("draw", "points", "seed", "zip")
@@ -26,12 +23,16 @@ WORLDS = 4
 """Default worlds of a batch."""
 
 
-def read_sweep(path: Path | str) -> SweepFile:
+def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
     """Reads and checks a file, and the config of every condition.
 
+    Args:
+        path: of the file.
+        skip_invalid: leaves out conditions that cannot be, unless none can.
+
     Raises:
-        ConfigError: it cannot be read, or something in it is wrong; it has all problems of the file, or those of the
-            first condition that cannot be.
+        ConfigError: it cannot be read, or something in it is wrong; it has all problems of the file, or those of all
+            conditions that cannot be.
     """
     path = Path(path)
     tables, origin = read_toml(path), str(path)
@@ -61,53 +62,31 @@ def read_sweep(path: Path | str) -> SweepFile:
     if len(settings) > MOST_CONDITIONS:
         many = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
         raise ConfigError(origin, [many])
-    conditions = [_condition(path, base, tables.get("fidelity"), fixed, each, seeds, steps) for each in settings]
+    made = make_conditions(Loader(path, base, tables.get("fidelity"), fixed), settings)
+    if made.invalid and not (skip_invalid and made.found):
+        raise _refusal(origin, made.invalid, len(settings))
     plan = SweepPlan(
         name=path.stem,
         steps=steps,
         seeds=seeds,
-        worlds=min(worlds, len(seeds)),
+        rounds=rounds_of(seeds, worlds),
         keep=keep,
         order_seed=design.seed,
         factors=tuple(factor.name for factor in factors),
         ranged=tuple(factor.name for factor in factors if factor.drawn),
-        settings=tuple(settings),
-        digests=tuple(digest(condition.config) for condition in conditions),
+        places={name: each.places for name, each in made.bases.items()},
+        conditions=made.found,
     )
-    return SweepFile(plan, tuple(conditions))
+    return SweepFile(plan, made.bases, worlds, tuple(map(str, made.invalid)))
 
 
-def _condition(
-    path: Path,
-    base: str,
-    fidelity: str | None,
-    fixed: Sequence[tuple[str, Any]],
-    settings: Settings,
-    seeds: tuple[int, ...],
-    steps: int,
-) -> Condition:
-    """A condition. ConfigError: it cannot be; the message says where."""
-    own = [(name, value) for name, value in settings.items() if name not in (PRESET, FIDELITY)]
-    source = settings.get(PRESET, base)
-    if source.endswith(".toml") and not Path(source).is_absolute():
-        source = str(path.parent / source)
-    values = [(name, _from_folder(path, name, value)) for name, value in [*fixed, *own]]
-    texts = [f"{name}={format_value(value)}" for name, value in values]
-    varied = ", ".join(f"{name} = {format_value(value)}" for name, value in settings.items())
-    place = f"{path}, with {varied}" if varied else str(path)
-    try:
-        config = load_config(source, settings.get(FIDELITY, fidelity), texts)
-        plan = RunPlan(config, seeds, steps, "run", rules=rules_beside(source))
-    except ConfigError as error:
-        raise ConfigError(place, error.problems) from None
-    except HedonError as error:
-        raise ConfigError(place, [Problem("", str(error))]) from None
-    return Condition(settings, plan.config, plan.rules)
-
-
-def _from_folder(path: Path, name: str, value: Any) -> Any:
-    """A value of the file; where a rule in Python is, it says relative to its own folder."""
-    return absolute_rule(value, path.parent) if name.endswith(".rule") else value
+def _refusal(origin: str, invalid: Sequence[ConfigError], count: int) -> ConfigError:
+    """The error of conditions that cannot be; with only one, its own."""
+    if len(invalid) == 1 == count:
+        return invalid[0]
+    listed = [Problem("", str(error).removeprefix(f"{origin}, ")) for error in invalid]
+    what = f"{len(invalid):,} of {count:,} settings cannot be; --skip-invalid leaves them out"
+    return ConfigError(origin, [Problem("factor", what), *listed])
 
 
 def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[str, Any]:
@@ -206,23 +185,15 @@ def _whole(
 
 
 def _seeds(value: Any, problems: list[Problem]) -> tuple[int, ...]:
-    """Seeds from a list, or from how many there are: 4 means 1, 2, 3 and 4."""
-    form = f"must be how many (1 to {MAX_WORLDS:,}), or a list of different whole numbers from 0 to {MAX_SEED}"
-    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= MAX_WORLDS:
-        return tuple(range(1, value + 1))
-    if (
-        isinstance(value, list)
-        and 1 <= len(value) <= MAX_WORLDS
-        and all(map(_is_seed, value))
-        and len(set(value)) == len(value)
-    ):
-        return tuple(value)
-    problems.append(Problem("seeds", form, format_value(value)))
+    """Seeds from a list, from a text as `hedon run` takes it, or from how many there are: 4 means 1, 2, 3 and 4."""
+    try:
+        if isinstance(value, int):
+            return tuple(range(1, integer("seeds", value, 1, MAX_WORLDS) + 1))
+        return parse_seeds(value) if isinstance(value, str) else different(seed_list(value))
+    except ArgumentError as error:
+        form = f'must be how many (1 to {MAX_WORLDS:,}), a list of different seeds, or a text such as "1-4,9"'
+        problems.append(Problem("seeds", f"{form}: {error}", format_value(value)))
     return (1,)
-
-
-def _is_seed(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= MAX_SEED
 
 
 def _keep(value: Any, problems: list[Problem]) -> tuple[str, ...]:

@@ -4,13 +4,17 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 from matplotlib.figure import Figure
 
+from hedon.analysis.result import ResultTable, make_table
 from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
+from hedon.report.markdown import pipe_table
+from hedon.report.table import cells
 from hedon.sweep.error import SweepError
 from hedon.sweep.figure import draw_curves, draw_map
 from hedon.sweep.plan import SweepPlan
@@ -50,6 +54,9 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
                 table, pair, name, title
             )
     with one_writer(folder, "the report"):
+        for stale in [*folder.glob("curve-*.png"), *folder.glob("map-*.png")]:
+            if stale.stem not in figures:  # of a plan before
+                stale.unlink()
         files = [save_figure(figure, folder / f"{name}.png") for name, figure in figures.items()]
         page = _page(plan, table, shown, list(figures)).encode()
         write_atomically(folder / PAGE, lambda file: file.write(page))
@@ -67,17 +74,16 @@ def _crossed(table: pl.DataFrame, factors: Sequence[str]) -> list[tuple[str, str
 
 
 def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figures: Sequence[str]) -> str:
-    asked = len(plan.settings) * len(plan.seeds)
     lines = [
         f"# Sweep {plan.name}",
         "",
-        f"{table.height} of {asked} worlds ({len(plan.settings)} settings x {len(plan.seeds)} seeds) of "
+        f"{table.height} of {plan.worlds} worlds ({len(plan.conditions)} settings x {len(plan.seeds)} seeds) of "
         f"{plan.steps:,} steps; {int(table['extinct'].sum())} died out{_alone(table)}. Intervals are of 95 %, over "
         "worlds.",
         "",
     ]
-    if plan.factors and len(plan.settings) <= MOST_CELLS:
-        lines += _rows(plan.factors, table, shown)
+    if plan.factors and len(plan.conditions) <= MOST_CELLS:
+        lines += [pipe_table(*cells(settings_table(plan, table, shown)))]
     lines += [line for name in figures for line in (f"![{name}]({name}.png)", "")]
     return "\n".join(lines).rstrip() + "\n"
 
@@ -89,18 +95,30 @@ def _alone(table: pl.DataFrame) -> str:
     return "".join(f", {species} alone in {count}" for species, count in counts.items())
 
 
-def _rows(factors: Sequence[str], table: pl.DataFrame, shown: Mapping[str, str]) -> list[str]:
-    """A row per setting: its worlds, and the mean and interval of each response."""
-    titles = [*factors, "worlds", *shown.values()]
-    lines = ["| " + " | ".join(titles) + " |", "|" + "---:|" * len(titles)]
-    columns = [points(table, list(factors), name) for name in shown]
-    counts = table.group_by(*factors).len()
-    for cells in zip(*columns, strict=True):
-        same = zip(factors, cells[0].at, strict=True)
-        worlds = counts.filter(*(pl.col(factor) == value for factor, value in same))["len"].sum()
-        texts = [_interval(cell.mean.mean, cell.mean.low, cell.mean.high) for cell in cells]
-        lines.append("| " + " | ".join([*map(str, cells[0].at), str(worlds), *texts]) + " |")
-    return [*lines, ""]
+def settings_table(
+    plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str] | None = None, most: int = MOST_CELLS
+) -> ResultTable:
+    """A row per setting: its worlds, and the mean and interval of each response.
+
+    Args:
+        plan: of the sweep.
+        table: of its worlds so far.
+        shown: columns of the table, with what they are called; by default the usual ones.
+        most: rows.
+    """
+    if table.is_empty():
+        return make_table("sweep", f"Sweep {plan.name}: no world yet", [])
+    shown, factors = shown or responses(table, (), plan.factors), list(plan.factors)
+    counts: dict[tuple[Any, ...], int] = {(): table.height}
+    counts |= {tuple(at): rows.height for at, rows in table.group_by(factors)} if factors else {}
+    rows: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for name, title in shown.items():
+        for point in points(table, factors, name):
+            row = rows.setdefault(point.at, {**dict(zip(factors, point.at, strict=True)), "worlds": counts[point.at]})
+            row[title] = _interval(point.mean.mean, point.mean.low, point.mean.high)
+    note = "Means over worlds, with intervals of 95 %."
+    note += f" The first {most} of {len(rows):,} settings; table.parquet has all." if len(rows) > most else ""
+    return make_table("sweep", f"Sweep {plan.name}", list(rows.values())[:most], note)
 
 
 def _interval(mean: float | None, low: float | None, high: float | None) -> str:

@@ -79,10 +79,12 @@ def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[P
 
     Args:
         table: A row per world.
-        factors: Columns, one or two.
+        factors: Columns; none for all worlds together.
         response: A column of numbers.
     """
     made = []
+    if not factors:
+        return [Point((), _response_interval(table[response]))]
     for at, rows in table.sort(*factors).group_by(*factors, maintain_order=True):
         made.append(Point(tuple(at), _response_interval(rows[response])))
     return made

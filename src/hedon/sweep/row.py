@@ -3,9 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hedon.config.problem import format_value
-from hedon.sweep.plan import Batch
-
 KEYS = ("condition", "repetition", "seed")
 SPECIES = "species"
 """The part of a summary that has the numbers of several species, by name."""
@@ -15,26 +12,20 @@ TIMED = "steps_per_second"
 Row = dict[str, Any]
 
 
-def world_rows(
-    batch: Batch, settings: Mapping[str, Any], summary: Mapping[str, Any], digests: Sequence[str]
-) -> list[Row]:
-    """One row per world of a batch: its keys, its settings, the digest of its end, and its part of the summary.
+def world_rows(summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
+    """What the table has of each world of a batch beside its settings: seed, digest of its end, and its summary.
 
     Nested values get names joined by "_": weights.w_action.mean is w_action_mean. Where there are several species, what
     is of one of them begins with its name and a dot, as in prey.alive_mean, and sums over all are totals: total_alive.
 
     Args:
-        batch: Whose worlds they are.
-        settings: What the sweep varies, by path.
         summary: Of the run, as `summarize` gives it.
         digests: Of the worlds' ends, in the order of the seeds.
     """
-    varied = {name: _plain(value) for name, value in settings.items()}
     rows = []
-    for i, (world, digest) in enumerate(zip(summary["worlds"], digests, strict=True)):
-        keys = dict(zip(KEYS, (batch.condition, batch.first + i, world["seed"]), strict=True))
+    for world, digest in zip(summary["worlds"], digests, strict=True):
         rest = {name: value for name, value in world.items() if name not in (TIMED, "seed", SPECIES)}
-        row = {**keys, **varied, "digest": digest, **dict(_flat(rest))}
+        row = {"seed": world["seed"], "digest": digest, **dict(_flat(rest))}
         for species, part in world.get(SPECIES, {}).items():
             row |= {f"{species}.{name}": value for name, value in _flat(part)}
         rows.append(row)
@@ -49,8 +40,3 @@ def _flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, An
             yield from _flat(value, place)
         else:
             yield place, value
-
-
-def _plain(value: Any) -> Any:
-    """A value of a setting as a table holds it: a list as text."""
-    return value if isinstance(value, str | int | float) else format_value(value)

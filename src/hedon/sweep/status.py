@@ -1,6 +1,7 @@
 """How far a sweep is, and how long it will still take."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from hedon.error import HedonError
 from hedon.jobs.store import Store
@@ -40,19 +41,20 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
         plan: Of the sweep.
         store: Where the sweep lives.
     """
-    results, missing = read_results(plan, store), open_batches(plan, store)
-    worlds = [world for result in results for world in result["worlds"]]
+    missing, done, seconds, worlds = open_batches(plan, store), 0, 0.0, list[dict[str, Any]]()
+    for _, result in read_results(plan, store):
+        done, seconds = done + 1, seconds + (result["seconds"] or 0.0)
+        worlds += [{"extinct": world["extinct"]} for world in result["worlds"]]
     begun = {}
     for batch in missing if store.folder is not None else ():
         share = _share(store, batch.name, plan.steps)
         if share is not None:
             begun[batch.name] = share
-    seconds = sum(result["seconds"] or 0.0 for result in results)
     rate = seconds / len(worlds) if worlds else None  # [s] of each world
     left = sum(len(batch.seeds) * (1.0 - begun.get(batch.name, 0.0)) for batch in missing)
     return Status(
-        batches=len(missing) + len(results),
-        done=len(results),
+        batches=len(missing) + done,
+        done=done,
         worlds=len(worlds),
         extinct=sum(world["extinct"] for world in worlds),
         begun=begun,

@@ -10,10 +10,11 @@ import json
 import shutil
 import time
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hedon.config.problem import format_value
 from hedon.experiment.plan import Display, Moment, RunPlan
@@ -26,8 +27,8 @@ from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 from hedon.report.summary import summarize
-from hedon.sweep.design import Settings
-from hedon.sweep.plan import Batch, SweepPlan, load_condition, load_rules
+from hedon.sweep.condition import Condition
+from hedon.sweep.plan import Batch, SweepPlan, load_config_of, load_rules
 from hedon.sweep.row import world_rows
 
 RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
@@ -43,7 +44,8 @@ class Task:
     Attributes:
         location: of the sweep.
         batch: what to make.
-        settings: values of the factors of its condition.
+        condition: its config.
+        changed: what the condition changes in its base, by complete paths.
         steps: of each world [step].
         keep: what is kept beside the table.
         folder: for its run.
@@ -52,7 +54,8 @@ class Task:
 
     location: str
     batch: Batch
-    settings: Settings
+    condition: Condition
+    changed: Mapping[str, Any]
     steps: int
     keep: tuple[str, ...]
     folder: Path
@@ -62,6 +65,16 @@ class Task:
     def threads(self) -> int:
         """One: what a sweep gains by more processors is more batches at a time."""
         return 1
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of its worlds."""
+        return self.batch.seeds
+
+    @property
+    def world_steps(self) -> int:
+        """Steps of its worlds together, if none dies out."""
+        return self.steps * len(self.seeds)
 
     def newest(self) -> str:
         """The name of the last checkpoint from which the batch would go on; empty where there is none."""
@@ -76,7 +89,7 @@ class Task:
 
     def describe(self) -> str:
         """The values of its factors, and its seeds."""
-        settings = ", ".join(f"{name} = {format_value(value)}" for name, value in self.settings.items())
+        settings = ", ".join(f"{name} = {format_value(value)}" for name, value in self.condition.settings.items())
         return f"{settings or 'all settings'}, seed {', '.join(map(str, self.batch.seeds))}"
 
     def make(self, threads: int, display: Display | None) -> str:
@@ -97,7 +110,7 @@ class Task:
         _wait_for_folder(self.folder)
         if store.read(name) is not None:
             return "finished"
-        config = load_condition(store, batch.condition)
+        config = load_config_of(store, self.condition.digest, self.condition.base, self.changed)
         rules, seconds = load_rules(store, config), self.checkpoint_seconds
         plan = RunPlan(config, batch.seeds, self.steps, self.folder, threads, 0, seconds, rules=rules)
         _fetch_state(store, self)
@@ -108,10 +121,8 @@ class Task:
         run = open_run(self.folder)
         _keep(store, self, run)
         result = {
-            "batch": batch.name,
             "seconds": manifest.run_seconds,
-            "steps": sum(manifest.steps_done),
-            "worlds": world_rows(batch, self.settings, summarize(run), manifest.world_digests),
+            "worlds": world_rows(summarize(run), manifest.world_digests),
         }
         store.write(name, (json.dumps(result, ensure_ascii=False, allow_nan=False) + "\n").encode())
         store.remove(_state_name(self))
@@ -129,8 +140,9 @@ def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
         folder: Where its run is made.
         checkpoint_seconds: Time between two checkpoints [s].
     """
-    settings = plan.settings[batch.condition]
-    return Task(location, batch, settings, plan.steps, plan.keep, folder, checkpoint_seconds)
+    condition = plan.conditions[batch.condition]
+    changed = plan.changes(condition)
+    return Task(location, batch, condition, changed, plan.steps, plan.keep, folder, checkpoint_seconds)
 
 
 def _make(plan: RunPlan, display: Display | None) -> Manifest:

@@ -13,13 +13,13 @@ from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
-from hedon.jobs.run import RunJob
-from hedon.jobs.work import Outcome
+from hedon.jobs.work import Job, Outcome
+from hedon.text import printable
 
 SPAN = 60.0
 """Time over which the speed is measured, so that the forecast follows the sizes of the populations [s]."""
-SURE_SECONDS = 5.0
-"""Time before which no forecast is made [s]."""
+MOST_TOLD = 20
+"""Most runs of which each end is told; of more, those that failed alone."""
 
 
 class JobDisplay(Screen):
@@ -30,17 +30,17 @@ class JobDisplay(Screen):
         jobs: the plan.
     """
 
-    def __init__(self, console: Console, jobs: Sequence[RunJob]) -> None:
+    def __init__(self, console: Console, jobs: Sequence[Job]) -> None:
         super().__init__(console)
         self._total = sum(job.world_steps for job in jobs)
         self._count = len(jobs)
-        self._jobs = {job.folder: job for job in jobs}
         self._moments: dict[Path, Moment] = {}
-        self._done = dict.fromkeys(self._jobs, 0)
-        self._ended = 0
-        self._seen: deque[tuple[float, int]] = deque()
+        self._done: dict[Path, int] = {}
+        self._before: dict[Path, int] = {}  # what was done of a run before it went on
+        self._ended = self._ended_done = self._ended_before = 0
+        self._seen = deque([(time.monotonic(), 0)])
 
-    def update(self, job: RunJob, moment: Moment) -> None:
+    def update(self, job: Job, moment: Moment) -> None:
         """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute.
 
         Args:
@@ -50,16 +50,12 @@ class JobDisplay(Screen):
         self._moments[job.folder] = moment
         living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.
-        self._done[job.folder] = max(0, job.world_steps - living * (job.plan.steps - moment.step))
-        if not self.is_due():
-            return
-        now = time.monotonic()
-        self._seen.append((now, sum(self._done.values())))
-        while len(self._seen) > 2 and self._seen[1][0] < now - SPAN:
-            self._seen.popleft()
-        self.show(lambda: f"{self._head()}: {'; '.join(map(self._describe, self._moments))}", self._draw)
+        self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
+        self._before.setdefault(job.folder, max(0, job.world_steps - living * (job.steps - moment.first)))
+        if self.is_due():
+            self._show()
 
-    def end(self, job: RunJob, outcome: Outcome) -> None:
+    def end(self, job: Job, outcome: Outcome) -> None:
         """Notes the end of a run and prints a line that says how it ended.
 
         Args:
@@ -67,46 +63,62 @@ class JobDisplay(Screen):
             outcome: How it ended.
         """
         moment = self._moments.pop(job.folder, None)
+        done, whole = self._done.pop(job.folder, 0), outcome.status == "finished"
         self._ended += 1
-        if outcome.status == "finished":
-            self._done[job.folder] = job.world_steps
+        self._ended_done += job.world_steps if whole else done
+        self._ended_before += self._before.pop(job.folder, 0)
+        if self.is_due() or self._ended == self._count > MOST_TOLD:
+            self._show()
+        if whole and self._count > MOST_TOLD:
+            return
         words = [f"{job.folder}: {outcome.status}"]
         if moment is not None:
             words.append(f"step {moment.step:,}")
             words += [f"seed {seed} died out" for seed, step in _ends(job, moment).items() if step is not None]
         if outcome.fault:
             words.append(outcome.fault)
-        self._console.print(", ".join(words), soft_wrap=True)
+        self._console.print(printable(", ".join(words)), soft_wrap=True)
+
+    def _show(self) -> None:
+        now = time.monotonic()
+        self._seen.append((now, self._reached() - self._ended_before - sum(self._before.values())))
+        while len(self._seen) > 2 and self._seen[1][0] < now - SPAN:
+            self._seen.popleft()
+        current = "; ".join(map(self._describe, self._moments))
+        self.show(lambda: f"{self._head()}{': ' if current else ''}{current}", self._draw)
+
+    def _reached(self) -> int:
+        return self._ended_done + sum(self._done.values())
 
     def _head(self) -> str:
-        done = sum(self._done.values())
+        done = self._reached()
         (begun, first), (now, last) = self._seen[0], self._seen[-1]
-        text = f"{100 * done / max(self._total, 1):.1f} %, {self._ended} of {self._count} runs done"
-        if now - begun < SURE_SECONDS or last == first:
+        text = f"{100 * done / max(self._total, 1):.1f} %, {self._ended:,} of {self._count:,} runs done"
+        if last <= first:
             return text
-        rate = (last - first) / (now - begun)
-        return f"{text}, {rate:,.0f} world-steps/s, {duration((self._total - done) / rate)} left"
+        rate = (last - first) / max(now - begun, 1e-9)
+        left = f", {duration((self._total - done) / rate)} left" if self._ended < self._count else ""
+        return f"{text}, {rate:,.0f} world-steps/s{left}"
 
     def _describe(self, folder: Path) -> str:
         moment = self._moments[folder]
         return f"{folder.name} step {moment.step:,} of {moment.steps:,}, {_alive(moment)} alive"
 
     def _draw(self) -> Group:
-        done = sum(self._done.values())
         rows = [
             (folder.name, f"{moment.step:,}", f"{moment.steps:,}", _alive(moment))
             for folder, moment in self._moments.items()
         ]
         table = PrintedTable(("run", "step", "of", "alive"), rows, text=(0, 3))
         hint = Text("Ctrl-C ends all runs after their current windows; the same command continues.", style="dim")
-        bar = ProgressBar(total=max(self._total, 1), completed=done, width=72)
+        bar = ProgressBar(total=max(self._total, 1), completed=self._reached(), width=72)
         return Group(Text(self._head()), bar, table, hint)
 
 
-def _ends(job: RunJob, moment: Moment) -> dict[int, int | None]:
+def _ends(job: Job, moment: Moment) -> dict[int, int | None]:
     """The step at which the world of each seed died out, or None."""
-    species = len(moment.extinct) // len(job.plan.seeds)
-    return dict(zip(job.plan.seeds, moment.extinct[::species], strict=True))
+    species = len(moment.extinct) // len(job.seeds)
+    return dict(zip(job.seeds, moment.extinct[::species], strict=True))
 
 
 def _alive(moment: Moment) -> str:

@@ -1,0 +1,239 @@
+"""The conditions of a sweep: each a base config, and what it changes in it.
+
+A base is loaded as any config is. A factor that only replaces the values of some settings of it changes these alone,
+with the same checks, which takes a tenth of the time. What does more, such as a rule or a new kind of food, has a
+base of its own.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hedon.config.config import Config
+from hedon.config.dump import Fingerprint
+from hedon.config.field import leaves, value_at
+from hedon.config.layer import EVERY
+from hedon.config.load import load_config
+from hedon.config.problem import ConfigError, Problem, format_value
+from hedon.config.rule_path import absolute_rule
+from hedon.config.settings import PROVENANCE
+from hedon.config.species import PER_SPECIES
+from hedon.config.validate import rebuild
+from hedon.error import HedonError
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.rule import rules_beside
+from hedon.record.manifest import RuleSource
+from hedon.sweep.design import Settings
+from hedon.sweep.factor import FIDELITY, PRESET
+
+SHAPING = (PRESET, FIDELITY, "rule", "policy", "founders", "networks")
+"""Last words of factors that are more than values: a run needs more than the config for them, or refuses them."""
+DIGITS = 16
+"""Of a digest that names a config."""
+
+
+@dataclass(frozen=True)
+class Base:
+    """A config that conditions begin with.
+
+    Attributes:
+        digest: of the config, `DIGITS` of it.
+        config: itself.
+        rules: the texts of its rules.
+        places: the settings that each factor changes in it, by complete paths.
+    """
+
+    digest: str
+    config: Config
+    rules: tuple[RuleSource, ...]
+    places: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A setting of a sweep.
+
+    Attributes:
+        digest: of its config, `DIGITS` of it.
+        base: that of its base.
+        settings: values of the factors, by name.
+    """
+
+    digest: str
+    base: str
+    settings: Settings
+
+
+def changes(places: Mapping[str, Sequence[str]], settings: Settings) -> dict[str, Any]:
+    """What a condition changes in its base, by complete paths.
+
+    Args:
+        places: the settings that each factor changes.
+        settings: values of the factors.
+    """
+    return {place: settings[name] for name, own in places.items() for place in own}
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Conditions that can be, and why others cannot.
+
+    Attributes:
+        found: those that can be.
+        bases: that they begin with, by digest.
+        invalid: of each other one, where it is and what is wrong.
+    """
+
+    found: tuple[Condition, ...]
+    bases: Mapping[str, Base]
+    invalid: tuple[ConfigError, ...]
+
+
+@dataclass(frozen=True)
+class Loader:
+    """Loads conditions in full.
+
+    Attributes:
+        path: of the sweep's file.
+        base: preset or file that they begin as, unless a factor says it.
+        fidelity: likewise; None for that of the base.
+        fixed: what is the same in all, by path.
+    """
+
+    path: Path
+    base: str
+    fidelity: str | None
+    fixed: Sequence[tuple[str, Any]]
+
+    def load(self, settings: Settings) -> RunPlan:
+        """The config of a condition and its rules.
+
+        Args:
+            settings: Values of factors.
+
+        Raises:
+            ConfigError: It cannot be; the message says where.
+        """
+        source = settings.get(PRESET, self.base)
+        if source.endswith(".toml") and not Path(source).is_absolute():
+            source = str(self.path.parent / source)
+        varied = [(name, value) for name, value in settings.items() if name not in (PRESET, FIDELITY)]
+        values = [(name, self._from_folder(name, value)) for name, value in [*self.fixed, *varied]]
+        texts = [f"{name}={format_value(value)}" for name, value in values]
+        try:
+            config = load_config(source, settings.get(FIDELITY, self.fidelity), texts)
+            return RunPlan(config, (1,), 1, "run", rules=rules_beside(source))
+        except ConfigError as error:
+            raise ConfigError(self.place(settings), error.problems) from None
+        except HedonError as error:
+            raise ConfigError(self.place(settings), [Problem("", str(error))]) from None
+
+    def place(self, settings: Settings) -> str:
+        """What errors call a condition."""
+        varied = ", ".join(f"{name} = {format_value(value)}" for name, value in settings.items())
+        return f"{self.path}, with {varied}" if varied else str(self.path)
+
+    def _from_folder(self, name: str, value: Any) -> Any:
+        """A value of the file; where a rule in Python is, it says relative to its own folder."""
+        return absolute_rule(value, self.path.parent) if name.endswith(".rule") else value
+
+
+def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
+    """Makes the conditions of a sweep, and checks all of them.
+
+    Args:
+        loader: Of their configs.
+        settings: Values of the factors, by condition.
+    """
+    groups: dict[str, list[int]] = {}
+    for index, each in enumerate(settings):
+        groups.setdefault(repr(list(_shaping(each).items())), []).append(index)
+    found: dict[int, Condition] = {}
+    invalid: dict[int, ConfigError] = {}
+    bases: dict[str, Base] = {}
+    for group in groups.values():
+        made = _by_values(loader, settings, group) or _one_by_one(loader, settings, group)
+        for index, result, base in made:
+            if isinstance(result, ConfigError) or base is None:
+                assert isinstance(result, ConfigError)
+                invalid[index] = result
+            else:
+                found[index] = result
+                bases.setdefault(base.digest, base)
+    order = sorted(found)
+    return Conditions(tuple(found[i] for i in order), bases, tuple(invalid[i] for i in sorted(invalid)))
+
+
+_Made = Iterator[tuple[int, Condition | ConfigError, Base | None]]
+
+
+def _shaping(settings: Settings) -> Settings:
+    return {name: value for name, value in settings.items() if name.rpartition(".")[2] in SHAPING}
+
+
+def _one_by_one(loader: Loader, settings: Sequence[Settings], group: Sequence[int]) -> _Made:
+    """Each condition is a base of its own."""
+    for index in group:
+        try:
+            base = _base(loader.load(settings[index]), {})
+            yield index, Condition(base.digest, base.digest, settings[index]), base
+        except ConfigError as error:
+            yield index, error, None
+
+
+def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int]) -> list[Any]:
+    """Conditions as changes of one base; none where the factors are more than values of its settings.
+
+    The first and the last of the conditions, and the first that cannot be, are loaded in full too.
+    """
+    shaping = _shaping(settings[group[0]])
+    names = [name for name in settings[group[0]] if name not in shaping]
+    if not names or len(group) == 1:
+        return []
+    try:
+        plan = loader.load(shaping)
+    except ConfigError:
+        return []
+    places = {name: tuple(_places(plan.config, name)) for name in names}
+    every = [place for own in places.values() for place in own]
+    if not all(places.values()) or len(set(every)) < len(every):
+        return []
+    base, prints = _base(plan, places), Fingerprint(plan.config)
+    made: list[tuple[int, Condition | ConfigError, Base | None]] = []
+    whole: dict[int, Config] = {}
+    for index in group:
+        own = settings[index]
+        try:
+            config = rebuild(plan.config, changes(places, own), "")
+        except ConfigError as error:
+            made.append((index, ConfigError(loader.place(own), error.problems), None))
+            continue
+        if not whole or index == group[-1]:
+            whole[index] = config
+        values = {place: value_at(config, place) for place in every}
+        made.append((index, Condition(prints.digest(values)[:DIGITS], base.digest, own), base))
+    first = next((index for index, _, base in made if base is None), None)
+    good = all(_loads_as(loader, settings[index], config) for index, config in whole.items())
+    return made if good and (first is None or _loads_as(loader, settings[first], None)) else []
+
+
+def _loads_as(loader: Loader, settings: Settings, config: Config | None) -> bool:
+    """Whether a condition that is loaded in full is a config; with None, whether it cannot be."""
+    try:
+        return loader.load(settings).config == config
+    except ConfigError:
+        return config is None
+
+
+def _base(plan: RunPlan, places: Mapping[str, tuple[str, ...]]) -> Base:
+    return Base(Fingerprint(plan.config).digest({})[:DIGITS], plan.config, plan.rules, places)
+
+
+def _places(config: Config, name: str) -> Iterator[str]:
+    """The complete paths that a factor's name stands for, as in a file: `birth.kappa` is that of all species."""
+    known = {path for path, _, _ in leaves(config) if path not in PROVENANCE}
+    paths = [f"species.{each}.{name}" for each in config.species] if name.partition(".")[0] in PER_SPECIES else [name]
+    if name.startswith(f"food.{EVERY}."):
+        paths = [name.replace(EVERY, kind, 1) for kind in config.food]
+    return (path for path in paths if path in known)
