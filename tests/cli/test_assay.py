@@ -108,7 +108,7 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
     assert found["share"]["low"] > 0.5
     assert found["p"] < 0.01
     assert found["start"] == 0.5
-    rows = {row["seed"]: row for row in found["tables"]["contest_world"]["rows"]}
+    rows = {row["seed"]: row for row in found["tables"]["world"]["rows"]}
     assert set(rows) == {1, 2, 3, 4}
     # The founders of the competition, as a freezer: without their weight of action they live longer or shorter.
     answer = call(folder, "knockout", "compete/run@0", "action", *SHORT[:4], "--out", "knockout")
@@ -156,7 +156,7 @@ def test_groups_of_one_of_several_species_compete(folder: Path) -> None:
     found = json.loads((folder / "species-compete" / "compete.json").read_text(encoding="utf-8"))
     agents = open_run(folder / "species-compete" / "run").agents()
     living = agents.filter((agents["species"] == "predator") & agents["death_step"].is_null())
-    for row in found["tables"]["contest_world"]["rows"]:
+    for row in found["tables"]["world"]["rows"]:
         mine = living.filter(living["seed"] == row["seed"])["w_action"].to_list()
         assert (row["action=5"], row["action=-5"]) == (mine.count(5.0), mine.count(-5.0))
 
@@ -173,7 +173,7 @@ def test_groups_with_two_parents_are_told_apart_by_their_genes(folder: Path) -> 
     assert len(mates)
     living = agents.filter(agents["death_step"].is_null())["w_action"].to_list()
     found = json.loads((folder / "pairs" / "compete.json").read_text(encoding="utf-8"))
-    row = found["tables"]["contest_world"]["rows"][0]
+    row = found["tables"]["world"]["rows"][0]
     assert (row["action=1"], row["action=-1"]) == (living.count(1.0), living.count(-1.0))
 
 

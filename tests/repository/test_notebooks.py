@@ -10,11 +10,11 @@ from nbformat import NotebookNode, read
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-PICTURES = {"first_run": 1, "own_reward": 0, "descent": 1}
+PICTURES = {"contrast": 1, "descent": 1, "first_run": 1, "own_reward": 0, "power": 1}
 """How many cells show one."""
 
 
-def test_there_are_three():
+def test_there_are_five():
     assert [path.stem for path in NOTEBOOKS] == sorted(PICTURES)
 
 

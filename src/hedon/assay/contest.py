@@ -55,6 +55,12 @@ class Lines:
         """The share of the first group among the living, (times,)."""
         return self.count[:, 0] / self.count.sum(axis=1)
 
+    @property
+    def selection(self) -> float:
+        """The coefficient of this world by itself; NaN where the share never varied."""
+        variation = float(trapezoid(self.share * (1 - self.share), self.generation))
+        return float(self.share[-1] - self.share[0]) / variation if variation > 0 else float("nan")
+
 
 @dataclass(frozen=True, eq=False)
 class Contest:

@@ -7,9 +7,10 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import Contest, estimate, sample_lines
-from hedon.assay.report import Answer, estimate_row, world_line
+from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
+from hedon.report.answer import Answer
 
 _SHOWN_TIMES = 10
 
@@ -31,7 +32,7 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
     content = {"groups": list(groups), "selection": vars(found.selection), "share": vars(found.share)}
     content |= {name: getattr(found, name) for name in ("start", "p", "fixed", "lost", "generations")}
     intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(samples)}"
-    return Answer(kind, samples, content, contest_tables(found), intro, draw_contest(found))
+    return assay_answer(kind, samples, content, contest_tables(found), intro, draw_contest(found))
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:
@@ -63,13 +64,15 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
             second: int(lines.count[-1, 1]),
             "generations": float(lines.generation[-1]),
             "last step": int(lines.step[-1]),
+            "share": float(lines.share[-1]),
+            "selection": lines.selection,
         }
         for lines in contest.lines
     ]
     return [
         make_table("contest", f"{first} against {second}", rows, note),
         make_table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
-        make_table("contest_world", "Living at the end, by world", worlds, shown=False),
+        world_table(worlds),
     ]
 
 

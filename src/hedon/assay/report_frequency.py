@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import sample_lines
 from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
-from hedon.assay.report import Answer, estimate_row, world_line
+from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
+from hedon.report.answer import Answer
 
 
 def frequency_answer(
@@ -29,11 +30,18 @@ def frequency_answer(
         AssayError: There is no table of founders, or its groups cannot be told apart.
     """
     pairs = zip(shares, samples, strict=True)
-    found = estimate_frequency(groups, {share: sample_lines(each, groups, species) for share, each in pairs})
+    of_share = {share: sample_lines(each, groups, species) for share, each in pairs}
+    found = estimate_frequency(groups, of_share)
     content = {"groups": list(groups), "verdict": found.verdict}
     content |= {"slope": vars(found.slope), "crossing": vars(found.crossing)}
     intro = f"{groups[0]} against {groups[1]} from several shares, without mutation. {world_line(samples)}"
-    return Answer("frequency", samples, content, frequency_tables(found), intro, draw_frequency(found))
+    worlds = [
+        {"share at the start": share, "seed": lines.seed, "share": float(lines.share[-1]), "selection": lines.selection}
+        for share, each in of_share.items()
+        for lines in each
+    ]
+    tables = [*frequency_tables(found), world_table(worlds)]
+    return assay_answer("frequency", samples, content, tables, intro, draw_frequency(found))
 
 
 def frequency_tables(found: Frequency) -> list[ResultTable]:

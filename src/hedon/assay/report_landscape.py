@@ -11,8 +11,9 @@ from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape, measure_landscape
 from hedon.assay.outcome import MEASURES
-from hedon.assay.report import Answer, estimate_row, world_line
+from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
+from hedon.report.answer import Answer
 
 OUTCOMES = "founders-outcome.csv"
 
@@ -30,12 +31,27 @@ def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], 
         AssayError: all worlds died out before anything could be measured.
     """
     found = measure_landscape(samples[0], genes, species)
-    tables = [_surfaces(found), _effects(found), *_ends(found, ends)]
+    tables = [_surfaces(found), _effects(found), *_ends(found, ends), world_table(_slopes(found))]
     first = f"{found.founders} founders in each world, no mutation. {world_line(samples)}"
     intro = "\n".join([first, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
     files = {OUTCOMES: found.outcomes.write_csv()}
     figure = draw_landscape(found, ends)
-    return Answer("landscape", samples, _landscape_json(found), tables, intro, figure, files)
+    return assay_answer("landscape", samples, _landscape_json(found), tables, intro, figure, files)
+
+
+def _slopes(landscape: Landscape) -> list[dict[str, Any]]:
+    """The slope of relative fitness at 0 over each gene of the surface, in each world by itself."""
+    rows = []
+    for (seed,), founders in landscape.outcomes.group_by("seed", maintain_order=True):
+        row = {"seed": seed}
+        for measure in landscape.surfaces:
+            fitness = founders[measure].to_numpy().astype(np.float64)
+            for gene in landscape.genes if fitness.mean() > 0 else ():
+                z = founders[gene].to_numpy().astype(np.float64)
+                # A parabola, as over all worlds together.
+                row[f"{measure}: slope of {_short(gene)}"] = float(np.polyfit(z, fitness / fitness.mean(), 2)[1])
+        rows.append(row)
+    return rows
 
 
 def _landscape_json(landscape: Landscape) -> dict[str, Any]:

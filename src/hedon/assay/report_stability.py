@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.report import Answer, world_line
+from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.assay.stability import VERDICTS, Stability, measure_stability
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
+from hedon.report.answer import Answer
 
 _COLORS = (BLUE, ORANGE)
 
@@ -36,13 +37,16 @@ def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer
     lines = [f"- `{each.name}`: {each.generations:.0f} generations, {each.extinct} worlds died out" for each in starts]
     intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(samples)}", "", *lines])
     figure = draw_stability(starts)
-    return Answer("stability", samples, {"starts": content}, stability_tables(starts), intro, figure)
+    return assay_answer("stability", samples, {"starts": content}, stability_tables(starts), intro, figure)
 
 
 def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
     """Where each weight ended, and its course."""
-    rows, courses = [], []
+    rows, courses, worlds = [], [], []
     for start in starts:
+        for i, seed in enumerate(start.seeds):
+            ends = {name.removeprefix("w_"): float(start.courses[name].mean[i, -1]) for name in start.point}
+            worlds.append({"run": start.name, "seed": seed, **ends})
         neutral = [course for name, course in start.courses.items() if name.startswith("neutral_")]
         for name in start.point:
             course = start.courses[name]
@@ -95,6 +99,7 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
     return [
         make_table("start", "Where the weights went", rows, note),
         make_table("course", "Mean weights over time", courses, shown=False),
+        world_table(worlds),
     ]
 
 

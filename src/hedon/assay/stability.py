@@ -64,6 +64,7 @@ class Stability:
         extinct: how many died out.
         generations: mean over worlds.
         courses: of each weight, neutral markers too, by column.
+        seeds: of the worlds in the courses.
     """
 
     name: str
@@ -72,6 +73,7 @@ class Stability:
     extinct: int
     generations: float
     courses: Mapping[str, WeightCourse]
+    seeds: tuple[int, ...]
 
 
 def measure_stability(sample: Sample) -> Stability:
@@ -89,6 +91,7 @@ def measure_stability(sample: Sample) -> Stability:
         extinct=sum(world.extinct_step is not None for world in worlds),
         generations=float(np.mean([course.generations for course in courses])) if courses else 0.0,
         courses=weights,
+        seeds=tuple(world.seed for world, course in zip(worlds, found, strict=True) if course is not None),
     )
 
 

@@ -14,11 +14,11 @@ from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 if TYPE_CHECKING:
-    from hedon.assay.report import Answer
     from hedon.assay.sample import Sample
     from hedon.config.config import Config
     from hedon.jobs.requirement import RunRequirement
     from hedon.record.founder import Founders
+    from hedon.report.answer import Answer
 
 SOURCES = "a table (.csv), RUN@STEP, RUN for its end, or a point such as food=5,action=0"
 STEPS = 204_800
@@ -79,11 +79,11 @@ class AssayOptions:
             JobError: A run failed.
         """
         from hedon.assay.option import assay_folder
-        from hedon.assay.report import write_assay
         from hedon.assay.sample import read_samples
         from hedon.cli.display.analysis import analysis_group
         from hedon.jobs.plan import plan_jobs
         from hedon.jobs.requirement import find_runs
+        from hedon.report.answer import write_answer
 
         console, folder = make_console(), self.out or assay_folder(kind, wanted[0])
         jobs = plan_jobs(wanted, find_runs(folder, wanted)[0], folder, self.checkpoint)
@@ -99,7 +99,7 @@ class AssayOptions:
         if not all_finished(jobs, make_runs(jobs, console, self.threads), console):
             return
         found = ask(read_samples(wanted, folder))
-        files = write_assay(folder, found)
+        files = write_answer(folder, found)
         console.print(analysis_group({table.name: table for table in found.tables}))
         console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
 

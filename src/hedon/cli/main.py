@@ -13,9 +13,12 @@ from hedon.cli import assay, config, study, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
+from hedon.cli.contrast import contrast
+from hedon.cli.diff import diff
 from hedon.cli.export import export
 from hedon.cli.forecast import forecast
 from hedon.cli.output import OutputError, give_up, guard
+from hedon.cli.power import power
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.resume import resume
@@ -59,9 +62,12 @@ app.command()(view)
 app.command()(video)
 app.command()(report)
 app.command()(analyze)
+app.command()(contrast)
+app.command()(power)
 app.command()(forecast)
 app.command()(export)
 app.command()(check)
+app.command()(diff)
 app.command()(replay_fault)
 app.command()(config.presets)
 app.add_typer(assay.app, name="assay")

@@ -1,4 +1,7 @@
+from .contrast import Contrast as Contrast
 from .contrast import fisher_mid_p as fisher_mid_p
+from .contrast import independent_contrast as independent_contrast
+from .contrast import paired_contrast as paired_contrast
 from .correction import holm as holm
 from .factorial import Cell as Cell
 from .factorial import FactorialFit as FactorialFit
@@ -12,4 +15,7 @@ from .interval import mean_interval as mean_interval
 from .interval import share_interval as share_interval
 from .interval import spread_interval as spread_interval
 from .mode import modes as modes
+from .power import effect_seen as effect_seen
+from .power import t_test_power as t_test_power
+from .power import worlds_needed as worlds_needed
 from .survival import survival_curve as survival_curve

@@ -60,7 +60,7 @@ def test_worlds_that_are_lost_count_and_add_no_noise() -> None:
     assert found.lost == sum(each.share[-1] == 0 for each in some)
     assert found.share.value == pytest.approx(0.1, abs=0.1)
     tables = {table.name: table for table in contest_tables(found)}
-    assert tables["contest_world"].rows.height == 30
+    assert tables["world"].rows.height == 30
     drawn = draw_contest(found).axes[0].lines
     for line, each in zip(drawn[:30], some, strict=True):
         np.testing.assert_array_equal(np.asarray(line.get_ydata()), each.share)

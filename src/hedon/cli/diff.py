@@ -1,0 +1,60 @@
+"""`hedon diff`: why do two runs differ?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from hedon.check.difference import Parting
+
+SHOWN = 6
+"""Most quantities of a world that are printed."""
+
+
+def diff(
+    a: Annotated[Path, typer.Argument(metavar="A", help="Folder of a run, finished or not; only read.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="Folder of another run.")],
+) -> None:
+    """Say why two runs differ: settings, versions, and the first window and quantity in which their worlds part.
+
+    Worlds are compared by their seeds, as far as both have records. Exit code 0 if settings and records agree, 1 if
+    they differ, 2 if a folder holds no run; versions and machines are told, and do not count.
+
+    \b
+    Example:
+      hedon diff runs/baseline-corrected-s1 runs/baseline-corrected-s1-run2
+    """
+    from hedon.check.difference import compare_runs
+    from hedon.text import printable
+
+    found = compare_runs(a, b)
+    for title, rows in (("settings", found.settings), ("made by", found.made_by)):
+        typer.echo(f"{title}: {'the same' if not rows else ''}".rstrip())
+        for name, before, after in rows:
+            typer.echo(printable(f"  {name}: {_text(before)} -> {_text(after)}"))
+    typer.echo("worlds:")
+    for each in found.partings:
+        typer.echo(f"  seed {each.seed}: {_parting(each, ends_differ=each.seed in found.ends)}")
+    if found.lonely:
+        typer.echo(f"  only one of them has seed {', '.join(map(str, found.lonely))}")
+    raise typer.Exit(0 if found.same else 1)
+
+
+def _parting(each: "Parting", *, ends_differ: bool) -> str:
+    if each.step is None:
+        end = ", but their states at the end differ" if ends_differ else ""
+        return f"equal up to step {each.until:,}{end}"
+    whose = f" of {each.species}" if each.species else ""
+    where = f"in the window that ends at step {each.step:,}"
+    if each.agent is not None:
+        where = f"at agent {each.agent}, born at step {each.step:,}; all windows are equal"
+    shown = [f"{name} {_text(before)} -> {_text(after)}" for name, (before, after) in each.values.items()]
+    more = f", and {len(shown) - SHOWN} more" if len(shown) > SHOWN else ""
+    return f"part {where}{whose}: {', '.join(shown[:SHOWN])}{more}"
+
+
+def _text(value: Any) -> str:
+    from hedon.config.problem import format_value
+
+    return "(none)" if value is None else format_value(value)

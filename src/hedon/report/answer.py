@@ -1,0 +1,63 @@
+"""Writes what one question found: a JSON summary, a page, a figure."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from hedon.analysis.result import ResultTable
+from hedon.figure.style import save_figure
+from hedon.record.atomic import write_atomically
+from hedon.record.lock import one_writer
+from hedon.report.markdown import pipe_table
+from hedon.report.summary import plain
+from hedon.report.table import cells
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What one question found, as it is printed and written.
+
+    Attributes:
+        name: of its files.
+        title: of the page.
+        content: what the summary holds besides the tables.
+        tables: for the terminal, the summary and the page.
+        intro: first lines of the page, in Markdown.
+        figure: its picture.
+        files: further files, by name.
+    """
+
+    name: str
+    title: str
+    content: Mapping[str, Any]
+    tables: Sequence[ResultTable]
+    intro: str
+    figure: Figure
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+def write_answer(folder: Path, answer: Answer) -> list[Path]:
+    """Writes the files of an answer over what is there, and returns their paths.
+
+    Args:
+        folder: is made if it is missing.
+        answer: what was found.
+
+    Raises:
+        RecordError: A file cannot be written.
+    """
+    name, tables = answer.name, answer.tables
+    shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
+    summary = json.dumps(plain({**answer.content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
+    lines = [f"# {answer.title}", "", answer.intro, "", f"![{answer.title}]({name}.png)", ""]
+    for each in (table for table in tables if table.shown):
+        lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
+    files = {f"{name}.json": summary + "\n", f"{name}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
+    with one_writer(folder, "the answer"):
+        for each, text in files.items():
+            write_atomically(folder / each, lambda file, text=text: file.write(text.encode()))
+        return [*(folder / each for each in files), save_figure(answer.figure, folder / f"{name}.png")]

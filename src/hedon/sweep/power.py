@@ -1,0 +1,251 @@
+"""How many worlds are needed to see an effect, from how much the worlds of a pilot differ."""
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from matplotlib.figure import Figure
+
+from hedon.analysis.result import ResultTable, make_table
+from hedon.config.problem import format_value, nearest
+from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, VERMILION, head, new_figure, styled
+from hedon.jobs.store import Store
+from hedon.report.answer import Answer
+from hedon.statistic.interval import distance_interval
+from hedon.statistic.power import effect_seen, t_test_power, worlds_needed
+from hedon.sweep.collect import collect
+from hedon.sweep.contrast import by_seed
+from hedon.sweep.error import SweepError
+from hedon.sweep.plan import PLAN, load_plan
+from hedon.sweep.response import responses
+
+PAIRS, APART, ALONE = "pairs", "two conditions", "one condition"
+DESIGNS = {
+    PAIRS: "two conditions, compared in pairs of equal seeds",
+    APART: "two conditions of as many independent worlds each",
+    ALONE: "one condition, against a known number such as 0",
+}
+COUNTS = (5, 10, 20, 50, 100, 200)
+"""Worlds for which the least effect is told where none is given."""
+_COLORS = (BLUE, VERMILION, GREEN, ORANGE)
+
+
+@dataclass(frozen=True, eq=False)
+class Pilot:
+    """Worlds of which is known how much they differ.
+
+    Attributes:
+        table: a row per world, with its seed.
+        groups: columns that tell conditions apart.
+        shown: columns of measures, and what they are called.
+    """
+
+    table: pl.DataFrame
+    groups: tuple[str, ...]
+    shown: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How much worlds differ in a measure.
+
+    Attributes:
+        measure: what it is called.
+        design: one of `DESIGNS`.
+        sd: standard deviation, between the worlds of a condition, or of the differences of pairs.
+        low, high: bounds of its 95 % interval.
+        worlds: that it was taken from.
+    """
+
+    measure: str
+    design: str
+    sd: float
+    low: float
+    high: float
+    worlds: int
+
+
+def read_pilot(source: str, only: Sequence[str] = ()) -> Pilot:
+    """Reads the worlds of a sweep, of an assay, or of a table with a row per world.
+
+    Args:
+        source: place of a sweep; folder of an assay; or a file, .csv or .parquet.
+        only: columns of measures; by default all, of a sweep the usual ones.
+
+    Raises:
+        SweepError: it is none of these, or has no such column.
+    """
+    path = Path(source)
+    if path.suffix in (".csv", ".parquet") and path.is_file():
+        table, groups = pl.read_csv(path) if path.suffix == ".csv" else pl.read_parquet(path), ()
+    elif (store := Store(source)).read(PLAN) is not None:
+        plan = load_plan(store)
+        table = collect(plan, store)
+        if not table.is_empty():
+            return Pilot(table, plan.factors, responses(table, only, plan.factors))
+        groups = plan.factors
+    else:
+        table, groups = _assay_worlds(path), ()
+    if "seed" not in table.columns or table.is_empty():
+        raise SweepError(f"{source}: has no worlds yet: there must be a column seed, and a row for each world")
+    fit = [name for name, kind in table.schema.items() if kind.is_numeric() and name != "seed"]
+    for name in only:
+        if name not in fit:
+            near = nearest(name, fit)
+            hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
+            raise SweepError(f"--only: {name!r} is not a column of numbers of {source}{hint}")
+    return Pilot(table, groups, {name: name for name in only or fit})
+
+
+def _assay_worlds(folder: Path) -> pl.DataFrame:
+    """The worlds of an assay, from its summary."""
+    for path in sorted(folder.glob("*.json")):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            rows = content["tables"]["world"]["rows"]
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+        return pl.DataFrame(rows, infer_schema_length=None)
+    raise SweepError(f"{folder}: holds neither a sweep nor a finished assay, and is no table (.csv, .parquet)")
+
+
+def spreads(pilot: Pilot, by: str | None = None, other: Pilot | None = None) -> list[Spread]:
+    """How much the worlds of a pilot differ.
+
+    Args:
+        pilot: its worlds.
+        by: column with two values, whose worlds of equal seed are pairs.
+        other: another condition's worlds, which are in pairs with those of equal seeds.
+
+    Raises:
+        SweepError: there are too few worlds, or the column has not two values.
+    """
+    groups = [name for name in dict.fromkeys([*pilot.groups, *([by] if by else [])]) if name in pilot.table.columns]
+    found = []
+    for name, title in pilot.shown.items():
+        if (pairs := _pairs(pilot, name, by, other)) is not None:
+            found += _spread(title, PAIRS, [pairs])
+        tables = (
+            [pilot.table] if not groups else [rows for _, rows in pilot.table.group_by(groups, maintain_order=True)]
+        )
+        tables += [] if other is None or name not in other.table.columns else [other.table]
+        worlds = [np.array(list(by_seed(rows, name).values()), np.float64) for rows in tables]
+        found += _spread(title, APART, worlds) + _spread(title, ALONE, worlds)
+    if not found:
+        raise SweepError("worlds differ in no measure, or there are fewer than two of a condition: nothing can be told")
+    return found
+
+
+def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None) -> Any:
+    """Differences of worlds of equal seeds, (pairs,); None where there are none."""
+    if by is not None:
+        if by not in pilot.table.columns:
+            near = nearest(by, pilot.table.columns)
+            raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
+        values = pilot.table[by].unique(maintain_order=True).to_list()
+        if len(values) != 2:
+            said = ", ".join(format_value(value) for value in values[:8])
+            raise SweepError(f"--by {by}: must have two values in the pilot, not {len(values)}: {said}")
+        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in values)
+    elif other is not None and name in other.table.columns:
+        one, two = by_seed(pilot.table, name), by_seed(other.table, name)
+    else:
+        return None
+    return np.array([two[seed] - one[seed] for seed in sorted(one.keys() & two.keys())], np.float64)
+
+
+def _spread(title: str, design: str, groups: Sequence[Any]) -> list[Spread]:
+    """The standard deviation within groups, pooled; none where it is not known or 0."""
+    within = np.concatenate([each - each.mean() for each in groups if len(each)] or [np.zeros(0)])
+    freedom = len(within) - sum(len(each) > 0 for each in groups)
+    if freedom < 1 or not (within**2).sum() > 0:
+        return []
+    sd = math.sqrt(float((within**2).sum()) / freedom)
+    return [Spread(title, design, *distance_interval(np.full(freedom, sd)), len(within))]
+
+
+def power_answer(
+    found: Sequence[Spread], effects: Sequence[float] = (), power: float = 0.8, level: float = 0.05, pilot: str = ""
+) -> Answer:
+    """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see.
+
+    Args:
+        found: how much worlds differ.
+        effects: sizes, in units of the measures.
+        power: chance to find an effect.
+        level: of the test.
+        pilot: where the worlds are from.
+    """
+    tables = [_needed(found, effects, power, level)] if effects else [_seen(found, power, level)]
+    content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
+    content["spreads"] = [vars(each) for each in found]
+    intro = f"From {pilot}. " if pilot else ""
+    intro += f"A two-sided t test at {level:g} finds an effect with chance {power:g}."
+    figure = draw_power(found, effects, power, level)
+    return Answer("power", "How many worlds are needed", content, tables, intro, figure)
+
+
+def _needed(found: Sequence[Spread], effects: Sequence[float], power: float, level: float) -> ResultTable:
+    rows = []
+    for each in found:
+        for effect in effects:
+            # A pilot knows its spread only so well: both bounds of it are answered too.
+            needed, low, high = (
+                worlds_needed(effect / sd, power, level, paired=each.design != APART)
+                for sd in (each.sd, each.low, each.high)
+            )
+            row = {"measure": each.measure, "design": each.design, "effect": effect, "needed": needed}
+            rows.append(row | {"low": low, "high": high, "sd": each.sd, "worlds": each.worlds})
+    note = f"needed: worlds of each condition for a chance of {power:g} to see the effect at {level:g}; its interval "
+    note += "is that of the sd, which comes from few worlds. " + _meanings(found)
+    return make_table("power", "Worlds needed", rows, note)
+
+
+def _seen(found: Sequence[Spread], power: float, level: float) -> ResultTable:
+    rows = []
+    for each in found:
+        head = {"measure": each.measure, "design": each.design, "sd": each.sd, "worlds": each.worlds}
+        least = {
+            f"with {count}": effect_seen(count, power, level, paired=each.design != APART) * each.sd for count in COUNTS
+        }
+        rows.append(head | least)
+    note = f"with N: the least effect that N worlds of each condition find with chance {power:g} at {level:g}; "
+    return make_table("power", "Effects that are seen", rows, f"{note}--effect asks the other way. {_meanings(found)}")
+
+
+def _meanings(found: Sequence[Spread]) -> str:
+    designs = dict.fromkeys(each.design for each in found)
+    return "; ".join(f"{design}: {DESIGNS[design]}" for design in designs) + "."
+
+
+def draw_power(found: Sequence[Spread], effects: Sequence[float], power: float, level: float) -> Figure:
+    """The chance to see the first effect over the number of worlds; by the standard deviation, where none is given.
+
+    Args:
+        found: how much worlds differ; the first measure is drawn.
+        effects: sizes, in units of the measures.
+        power: chance that is asked for.
+        level: of the test.
+    """
+    own = [each for each in found if each.measure == found[0].measure]
+    effect = effects[0] if effects else 0.5 * own[0].sd
+    most = [worlds_needed(effect / each.sd, power, level, paired=each.design != APART) or 1000 for each in own]
+    worlds = np.unique(np.linspace(2, max(10, 1.5 * max(most)), 80).round())
+    with styled():
+        figure = new_figure(5.6, 3.4)
+        axes = figure.subplots()
+        for each, color in zip(own, _COLORS, strict=False):
+            chance = [t_test_power(effect / each.sd, count, level, paired=each.design != APART) for count in worlds]
+            axes.plot(worlds, chance, color=color, linewidth=1.6, label=each.design)
+        axes.axhline(power, color=MUTED, linewidth=0.8, linestyle="--")
+        axes.set_ylim(0.0, 1.02)
+        axes.set_xlabel("worlds of each condition")
+        axes.set_ylabel("chance to see the effect")
+        axes.legend(loc="lower right")
+        head(axes, f"{own[0].measure}: an effect of {effect:.3g}", f"sd {own[0].sd:.3g}; dashed: {power:g}")
+    return figure
