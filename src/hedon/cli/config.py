@@ -1,13 +1,14 @@
 """Commands about configs: list the presets, show a config, compare two, check one."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from hedon.cli.console import make_console
-from hedon.config import Config, ConfigError, Problem, load_config
-from hedon.config.problem import format_value, nearest
+
+if TYPE_CHECKING:
+    from hedon.config import Config
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Show, compare and check configs.")
 
@@ -32,6 +33,7 @@ def presets() -> None:
         SEQUEL_PRESETS,
         describe_fidelity,
         describe_preset,
+        load_config,
     )
 
     console = make_console()
@@ -61,7 +63,9 @@ def show(
       hedon config show poison --fidelity text --path food.poison
       hedon config show my.toml --set energy.initial=20 --set sensor.scaling=unit > run.toml
     """
+    from hedon.config import ConfigError, Problem, load_config
     from hedon.config.dump import dump_toml, section_paths
+    from hedon.config.problem import format_value, nearest
 
     config = load_config(source, fidelity, overrides or ())
     paths = section_paths(config)
@@ -86,6 +90,7 @@ def diff(
       hedon config diff baseline baseline --fidelity-b released
     """
     from hedon.config.dump import diff as compare
+    from hedon.config.load import load_config
 
     rows = [
         (path, _text(x), _text(y)) for path, x, y in compare(load_config(a, fidelity_a), load_config(b, fidelity_b))
@@ -108,7 +113,7 @@ def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None
     Example:
       hedon config check my.toml
     """
-    from hedon.config import digest
+    from hedon.config import digest, load_config
     from hedon.experiment.rule import pinned, rules, rules_beside
 
     config = load_config(source, fidelity, overrides or ())
@@ -133,7 +138,7 @@ def migrate(
       hedon config migrate my.toml
       hedon config migrate my.toml --stdout
     """
-    from hedon.config.load import migrated_file
+    from hedon.config.load import load_config, migrated_file
 
     text = migrated_file(file)
     if stdout:
@@ -144,7 +149,7 @@ def migrate(
     typer.echo(f"wrote {file} (preset {config.preset}, fidelity {config.fidelity})")
 
 
-def _food_lines(config: Config) -> list[str]:
+def _food_lines(config: "Config") -> list[str]:
     lines = []
     for kind, food in config.food.items():
         amounts = ", ".join(f"{name} {amount:g}" for name, amount in food.gives.items()) or "nothing"
@@ -153,4 +158,6 @@ def _food_lines(config: Config) -> list[str]:
 
 
 def _text(value: Any) -> str:
+    from hedon.config.problem import format_value
+
     return "(absent)" if value is None else format_value(value)

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hedon.config.load import DEFAULT_PRESET
 from hedon.error import HedonError
 from hedon.text import printable
 
 if TYPE_CHECKING:
+    from hedon.view.index import RunIndex
     from hedon.view.server import Server
 
 
@@ -41,34 +41,56 @@ def view(
       hedon view --live poison
       hedon view runs/seen --export site
     """
+    from concurrent.futures import ThreadPoolExecutor
+
+    from hedon.config.load import DEFAULT_PRESET, load_config
     from hedon.view.export import export as write_site
-    from hedon.view.index import RunIndex
-    from hedon.view.live import live_worlds
     from hedon.view.server import Server
 
     if run is None and not live:
         raise ViewArgumentError("give the folder of a run, or --live for a world in the browser")
-    index = None if live or run is None else RunIndex(Path(run))
-    page = {"run": index is not None, "worlds": live_worlds((run or DEFAULT_PRESET) if live else "")}
-    data: dict[str, Any] = {"page": lambda: page}
-    if index is not None:
-        data["run"] = index.describe
-        for name in index.damaged():
-            typer.echo(f"hedon: {name} is damaged, and left out", err=True)
-    if export is not None:
-        told = {name: tell() for name, tell in data.items()}
-        size = write_site(export, told, index.files() if index else {})
+    source = (run or DEFAULT_PRESET) if live else ""
+    if source:
+        load_config(source)  # whatever is wrong with it is said here
+    index = None if live or run is None else _index(run)
+    with ThreadPoolExecutor(1) as pool:
+        # The worlds of all presets take seconds to describe: meanwhile there is a link.
+        worlds = pool.submit(_worlds, source)
+        data: dict[str, Any] = {"page": lambda: {"run": index is not None, "worlds": worlds.result()}}
+        if index is not None:
+            data["run"] = index.describe
+        if export is None:
+            _serve(Server(data, index.files if index else dict, port), index, open_browser)
+            return
+        _say_damage(index)
+        size = write_site(export, {name: tell() for name, tell in data.items()}, index.files() if index else {})
         typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open its index.html through any web server")
-        return
-    _serve(Server(data, index.files if index else dict, port), open_browser)
 
 
-def _serve(server: "Server", open_browser: bool) -> None:
+def _index(run: str) -> "RunIndex":
+    from hedon.view.index import RunIndex
+
+    return RunIndex(Path(run))
+
+
+def _worlds(source: str) -> list[dict[str, Any]]:
+    from hedon.view.live import live_worlds
+
+    return live_worlds(source)
+
+
+def _say_damage(index: "RunIndex | None") -> None:
+    for name in index.damaged() if index else ():
+        typer.echo(f"hedon: {name} is damaged, and left out", err=True)
+
+
+def _serve(server: "Server", index: "RunIndex | None", open_browser: bool) -> None:
     """Serves until Ctrl-C."""
     import webbrowser
 
     typer.echo(f"hedon: {server.link}")
     typer.echo("Open this link in a browser on this machine. Ctrl-C ends.")
+    _say_damage(index)
     if open_browser:
         webbrowser.open(server.link)
     try:
