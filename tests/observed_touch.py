@@ -67,8 +67,12 @@ def assert_touches(
 def _near(rules: Rules, world: World, circles: list, moves: float) -> list[tuple[set[int], set[int]]]:
     """Of each agent, which circles lay in its mouth, and which so near that they could come into it."""
     x, y, radius = np.reshape(circles, (-1, 3)).T
-    bodies = [(a.x, a.y, a.angle, rules.of(a).body.radius, rules.of(a).sensor.mouth_spread) for a in world.agents]
-    at_x, at_y, angle, own, spread = np.reshape(bodies, (-1, 5, 1)).swapaxes(0, 1)
+    sensors = [rules.of(agent).sensor for agent in world.agents]
+    mouths = [
+        (a.angle + math.radians(s.mouth_center), s.mouth_spread) for a, s in zip(world.agents, sensors, strict=True)
+    ]
+    bodies = [(a.x, a.y, rules.of(a).body.radius, *mouth) for a, mouth in zip(world.agents, mouths, strict=True)]
+    at_x, at_y, own, angle, spread = np.reshape(bodies, (-1, 5, 1)).swapaxes(0, 1)
     dx, dy, reach = x - at_x, y - at_y, radius + own
     apart = np.hypot(dx, dy)
     ahead = dy * np.cos(angle) - dx * np.sin(angle) > (np.cos(np.radians(spread)) + MARGIN) * apart
@@ -82,7 +86,8 @@ def _near(rules: Rules, world: World, circles: list, moves: float) -> list[tuple
 def _mouth_sectors(species: Any) -> list[int]:
     """The sectors that make up the mouth; none where it ends within one."""
     count = species.sensor.touch_sectors
-    half = species.sensor.mouth_spread * count / 360
-    if abs(half - round(half)) > 1e-6:
+    spread, center = species.sensor.mouth_spread, species.sensor.mouth_center
+    first, last = ((center + side * spread) * count / 360 for side in (-1, 1))
+    if max(abs(first - round(first)), abs(last - round(last))) > 1e-6:
         return []
-    return [*range(round(half)), *range(count - round(half), count)]
+    return [sector % count for sector in range(round(first), round(last))]

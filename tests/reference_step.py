@@ -104,6 +104,7 @@ class Judge:
             rivals=len(met) - len(set(met)),
             contested=len(nearest) - len(set(nearest)),
             spared=sum(turn.caught for turn in hungry),
+            feasts=sum(sum(turn.meal[len(rules.kinds) :]) > 1 for turn in turns),
             digesting=sum(bool(turn.deed.prey) for turn in turns if turn.start.digestion > 0),
             cannibal=sum(turn.meal[len(rules.kinds) + turn.agent.species] for turn in turns if rules.hunting),
             mated=sum(child.mate_id >= 0 for child in born),

@@ -92,18 +92,25 @@ struct ObstacleSchedule {
   static constexpr Limit LIMITS[] = {Limit::from(0, 1)};
 };
 
+HEDON_ENUM(ObstacleSight, correct, released)
 struct ObstacleConfig {
   int32_t count;
   int32_t corners;
   float min_side;  ///< [u]
   float max_side;  ///< [u]
+  float min_angle;  ///< [rad]
+  float max_angle;  ///< [rad]
+  float cell;  ///< [u]
+  ObstacleSight sight;
   float friction;
   float restitution;
   float damage;  ///< [energy/step]
   ObstacleSchedule schedule;
-  HEDON_FIELDS(ObstacleConfig, count, corners, min_side, max_side, friction, restitution, damage, schedule)
+  HEDON_FIELDS(ObstacleConfig, count, corners, min_side, max_side, min_angle, max_angle, cell, sight, friction,
+      restitution, damage, schedule)
   static constexpr Limit LIMITS[] = {Limit::from(0, 256), Limit::from(3, 8), Limit::over(0, 10000), Limit::over(0,
-      10000), Limit::from(0, 100), Limit::from(0, 1), Limit::from(0, 10000), Limit()};
+      10000), Limit::from(0, 6.2832), Limit::from(0, 6.2832), Limit::from(0, 100000), Limit(), Limit::from(0, 100),
+      Limit::from(0, 1), Limit::from(0, 10000), Limit()};
 };
 
 HEDON_ENUM(PlacementForm, uniform, gaussian, switching, mixture, rectangle)
@@ -141,6 +148,8 @@ struct FoodConfig {
 HEDON_ENUM(WorldEatenFood, gone, seen)
 HEDON_ENUM(WorldMouths, nearest, all)
 HEDON_ENUM(WorldPreySharing, one, each)
+HEDON_ENUM(WorldPreyAtMouth, nearest, all)
+HEDON_ENUM(WorldPreyEnergy, after_costs, before_step)
 HEDON_ENUM(WorldBirthOrder, before_deaths, after_deaths)
 HEDON_ENUM(WorldInheritance, at_birth, at_window_end)
 HEDON_ENUM(WorldParents, all, resident_slots)
@@ -151,16 +160,18 @@ struct WorldConfig {
   WorldEatenFood eaten_food;
   WorldMouths mouths;
   WorldPreySharing prey_sharing;
+  WorldPreyAtMouth prey_at_mouth;
+  WorldPreyEnergy prey_energy;
   WorldBirthOrder birth_order;
   WorldInheritance inheritance;
   WorldParents parents;
   WorldChildHeading child_heading;
   WorldMutationNoise mutation_noise;
   int32_t rollout_steps;  ///< [step]
-  HEDON_FIELDS(WorldConfig, food_radius, eaten_food, mouths, prey_sharing, birth_order, inheritance, parents,
-      child_heading, mutation_noise, rollout_steps)
+  HEDON_FIELDS(WorldConfig, food_radius, eaten_food, mouths, prey_sharing, prey_at_mouth, prey_energy, birth_order,
+      inheritance, parents, child_heading, mutation_noise, rollout_steps)
   static constexpr Limit LIMITS[] = {Limit::over(0, 1000), Limit(), Limit(), Limit(), Limit(), Limit(), Limit(),
-      Limit(), Limit(), Limit::from(1, 65536)};
+      Limit(), Limit(), Limit(), Limit(), Limit::from(1, 65536)};
 };
 
 struct BodyConfig {
@@ -186,11 +197,13 @@ struct SensorConfig {
   float nose_angle;  ///< [degree]
   int32_t touch_sectors;
   float mouth_spread;  ///< [degree]
+  float mouth_center;  ///< [degree]
   SensorRayInside ray_inside;
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, smell_decay, noses, nose_angle, touch_sectors,
-      mouth_spread, ray_inside)
+      mouth_spread, mouth_center, ray_inside)
   static constexpr Limit LIMITS[] = {Limit::from(1, 32), Limit::from(0, 180), Limit::over(0, 100000), Limit::from(0.001,
-      10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit()};
+      10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit::from(-180, 180),
+      Limit()};
 };
 
 struct PopulationConfig {

@@ -43,6 +43,10 @@ HEDON_FN void cast_rays_by_tile(const Block& block, const World& world, int32_t 
   if (!species.sight.in_order) drop_unseen_by_tile(block, world.scene, species.sight, candidates);
   cast_rays(targets, fan, candidates, out.ray, out.ray_type);
   tile_barrier();
+  if (misreads_obstacles(world)) {
+    misread_obstacles(world, species, fan, thread_lane(), TILE, out);
+    tile_barrier();
+  }
   if (species.sight.in_order) return;
   for (int32_t r = thread_lane(); r < fan.rays; r += TILE) {
     const bool meets = out.ray[r] > 0.0f;

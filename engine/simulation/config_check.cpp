@@ -218,6 +218,10 @@ std::string check_config(const Config& config) {
   const ObstacleConfig& obstacle = config.obstacle;
   complaint.need(obstacle.min_side <= obstacle.max_side, "obstacle.min_side", obstacle.min_side,
                  "at most obstacle.max_side");
+  complaint.need(obstacle.min_angle <= obstacle.max_angle, "obstacle.min_angle", obstacle.min_angle,
+                 "at most obstacle.max_angle");
+  complaint.need(obstacle.cell == 0.0f || obstacle.cell >= 1.0f, "obstacle.cell", obstacle.cell, "0 or at least 1");
+  complaint.need(obstacle.cell <= side, "obstacle.cell", obstacle.cell, "at most the shorter side of the arena");
   return complaint.text;
 }
 

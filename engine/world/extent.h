@@ -56,6 +56,7 @@ enum class Extent : uint8_t {
   observations,      ///< cache lines of the observations of a rollout, and of the one after it
   wide_slots,        ///< slots, if some observations are wide
   hunted_slots,      ///< slots, if some species eats agents
+  claims,            ///< who would eat whom in a step: one claim for each agent, or several
   deaths,            ///< species, if they die of more than age and energy
   meals,             ///< what an agent can eat: food kinds, and species if some species eats agents
 };
@@ -176,6 +177,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.lines > NARROW_LINES ? shape.capacity : 0;
     case Extent::hunted_slots:
       return shape.hunting ? shape.capacity : 0;
+    case Extent::claims:
+      return shape.claims;
     case Extent::deaths:
       return shape.causes ? shape.species : 0;
     case Extent::meals:

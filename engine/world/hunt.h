@@ -9,15 +9,17 @@
 
 namespace hedon {
 
-/// The eaters of a step and their prey: at most one claim for each eater, on the nearest agent at its mouth.
+/// The eaters of a step and their prey: of each eater one claim, on the nearest agent at its mouth, or on every such
+/// agent.
 struct Claims {
   const StepScratch& scratch;
+  bool every;
   int32_t count = 0;
 
   HEDON_FN void add(int32_t eater, int32_t prey, float distance) {
-    int32_t& at = scratch.claim_of[eater];
+    int32_t at = every ? -1 : scratch.claim_of[eater];
     if (at < 0) {
-      at = count++;
+      at = scratch.claim_of[eater] = count++;
     } else if (scratch.claim_distance[at] <= distance) {
       return;
     }
@@ -28,11 +30,8 @@ struct Claims {
 
   HEDON_FN void remove(int32_t at) {
     --count;
-    scratch.claim_of[scratch.claim_eater[at]] = -1;
-    if (at == count) return;
     scratch.claim_eater[at] = scratch.claim_eater[count];
     scratch.claim_prey[at] = scratch.claim_prey[count];
-    scratch.claim_of[scratch.claim_eater[at]] = at;
   }
 
   /// Whether somebody has a claim on this agent.
@@ -56,7 +55,7 @@ HEDON_FN Claims find_claims(const World& world) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
   const NeighborList& list = state.physics.neighbors;
-  Claims claims{world.scratch};
+  Claims claims{world.scratch, world.config->world.prey_at_mouth == WorldPreyAtMouth::all};
   for (int32_t i = 0; i < world.head().living_count; ++i) world.scratch.claim_of[state.living[i]] = -1;
   for (int32_t pair = 0; pair < list.bodies.start[list.head[0].bodies]; ++pair) {
     const uint8_t mark = list.bodies.mark[pair];
@@ -69,6 +68,14 @@ HEDON_FN Claims find_claims(const World& world) {
   return claims;
 }
 
+/// Whether claim `a` comes before claim `b` in the order of the ids of eaters, then of prey.
+HEDON_FN bool comes_before(const World& world, int32_t a, int32_t b) {
+  const StepScratch& scratch = world.scratch;
+  const auto id = [&](int32_t slot) { return world.state.life[slot].agent_id; };
+  const int32_t first = id(scratch.claim_eater[a]), second = id(scratch.claim_eater[b]);
+  return first < second || (first == second && id(scratch.claim_prey[a]) < id(scratch.claim_prey[b]));
+}
+
 /// The claim that is settled next: of the eaters that nobody claims, or of all if each is claimed by another, the one
 /// with the least draw.
 HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
@@ -79,10 +86,7 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
     for (int32_t i = 0; i < claims.count; ++i) {
       if (only_free && claims.is_claimed(scratch.claim_eater[i])) continue;
       const uint32_t draw = hunt_draw(world, scratch.claim_eater[i]);
-      const bool first = best < 0 || draw < least ||
-                         (draw == least && world.state.life[scratch.claim_eater[i]].agent_id <
-                                               world.state.life[scratch.claim_eater[best]].agent_id);
-      if (first) {
+      if (best < 0 || draw < least || (draw == least && comes_before(world, i, best))) {
         best = i;
         least = draw;
       }
@@ -92,10 +96,11 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
   return -1;
 }
 
-/// What an eater gains by its prey: its share of what that has left.
+/// What an eater gains by its prey: its share of what that has left, or had before the step.
 HEDON_FN double gain_by(const World& world, int32_t eater, int32_t prey) {
   const float share = world.species(eater).layout->eats_species[world.shape->species_of(prey)];
-  return static_cast<double>(share) * world.state.life[prey].energy;
+  const bool before = world.config->world.prey_energy == WorldPreyEnergy::before_step;
+  return static_cast<double>(share) * (before ? world.held_before(prey)[ENERGY] : world.state.life[prey].energy);
 }
 
 /// Gives an eater what it gains by its prey.
@@ -130,21 +135,34 @@ HEDON_FN void settle_one_by_one(World& world, Claims& claims) {
   }
 }
 
+/// Puts claims into the order of `comes_before`, in which sums of what an eater gains are the same for all orders of
+/// contacts.
+HEDON_FN void sort_claims(const World& world, const Claims& claims) {
+  const StepScratch& scratch = world.scratch;
+  const auto swap = [](int32_t& a, int32_t& b) {
+    const int32_t kept = a;
+    a = b;
+    b = kept;
+  };
+  for (int32_t i = 1; i < claims.count; ++i) {
+    for (int32_t at = i; at > 0 && comes_before(world, at, at - 1); --at) {
+      swap(scratch.claim_eater[at], scratch.claim_eater[at - 1]);
+      swap(scratch.claim_prey[at], scratch.claim_prey[at - 1]);
+    }
+  }
+}
+
 /// Settles claims where each holds: all are judged by what agents have before anyone eats, so no order matters. An
 /// agent that is eaten eats too, and dies with what it gained.
-HEDON_FN void settle_all_at_once(World& world) {
+HEDON_FN void settle_all_at_once(World& world, const Claims& claims) {
   const StepScratch& scratch = world.scratch;
-  const auto each_claim = [&](auto&& visit) {
-    for (int32_t i = 0; i < world.head().living_count; ++i) {
-      const int32_t eater = world.state.living[i], at = scratch.claim_of[eater];
-      if (at >= 0) visit(eater, scratch.claim_prey[at], scratch.claim_gain[at]);
-    }
-  };
-  each_claim([&](int32_t eater, int32_t prey, double& gained) {
-    scratch.eaten[prey] = 1;
-    gained = gain_by(world, eater, prey);
-  });
-  each_claim([&](int32_t eater, int32_t prey, double gained) { feed_with(world, eater, prey, gained); });
+  sort_claims(world, claims);
+  for (int32_t i = 0; i < claims.count; ++i) {
+    scratch.eaten[scratch.claim_prey[i]] = 1;
+    scratch.claim_gain[i] = gain_by(world, scratch.claim_eater[i], scratch.claim_prey[i]);
+  }
+  for (int32_t i = 0; i < claims.count; ++i)
+    feed_with(world, scratch.claim_eater[i], scratch.claim_prey[i], scratch.claim_gain[i]);
 }
 
 /// Settles who eats whom in this step. An agent that starves in it neither eats nor is eaten. If several eat one agent,
@@ -164,7 +182,7 @@ HEDON_FN void hunt(World& world) {
     int32_t& clock = state.digestion[state.living[i]];
     if (clock > 0) --clock;
   }
-  if (world.config->world.prey_sharing == WorldPreySharing::each) return settle_all_at_once(world);
+  if (world.config->world.prey_sharing == WorldPreySharing::each) return settle_all_at_once(world, claims);
   settle_one_by_one(world, claims);
 }
 

@@ -29,7 +29,26 @@ HEDON_FN Vec2 corner_of(const Polygon& polygon, int32_t corner, int32_t corners)
           polygon.center.y + polygon.radius * static_cast<float>(sine)};
 }
 
-/// Draws a place for obstacle `i` whose circle is inside, and away from inner walls and the obstacles before it.
+/// Whether obstacle `i` may stand here: its circle is inside, and away from inner walls and the obstacles before it. On
+/// a grid, no other stands in its cell.
+HEDON_FN bool may_stand(const World& world, const Polygon& polygon, int32_t i, const Vec2* centers,
+                        const float* radii) {
+  const float cell = world.config->obstacle.cell;
+  bool may = cell > 0.0f || clear_of_walls(world, polygon.center, polygon.radius, world.shape->first_obstacle);
+  for (int32_t other = 0; other < i && may; ++other) {
+    const float reach = cell > 0.0f ? 0.5f * cell : polygon.radius + radii[other];
+    may = squared_length(centers[other] - polygon.center) >= reach * reach;
+  }
+  return may;
+}
+
+/// The middle of the cell of a grid from 0 to `end` at `share` of it.
+HEDON_FN float middle_of_cell(float cell, float end, float share) {
+  const int32_t count = static_cast<int32_t>(end / cell), at = static_cast<int32_t>(share * static_cast<float>(count));
+  return cell * (static_cast<float>(at < count ? at : count - 1) + 0.5f);
+}
+
+/// Draws a place for obstacle `i`.
 HEDON_FN bool find_obstacle_place(const World& world, int32_t i, const Vec2* centers, const float* radii,
                                   Polygon* polygon) {
   const ObstacleConfig& config = world.config->obstacle;
@@ -40,16 +59,14 @@ HEDON_FN bool find_obstacle_place(const World& world, int32_t i, const Vec2* cen
   for (uint32_t k = 0; k < OBSTACLE_TRIES; ++k) {
     const Random4 bits = random.draw(k);
     const float side = config.min_side + (config.max_side - config.min_side) * to_uniform(bits.word[3]);
-    *polygon = {
-        {world.config->arena.width * to_uniform(bits.word[0]), world.config->arena.height * to_uniform(bits.word[1])},
-        side * per_side,
-        TWO_PI_F * to_uniform(bits.word[2])};
-    bool is_free = clear_of_walls(world, polygon->center, polygon->radius, world.shape->first_obstacle);
-    for (int32_t other = 0; other < i && is_free; ++other) {
-      const float reach = polygon->radius + radii[other];
-      is_free = squared_length(centers[other] - polygon->center) >= reach * reach;
-    }
-    if (is_free) return true;
+    const ArenaConfig& arena = world.config->arena;
+    const float x = to_uniform(bits.word[0]), y = to_uniform(bits.word[1]);
+    const bool free = !(config.cell > 0.0f);
+    *polygon = {{free ? arena.width * x : middle_of_cell(config.cell, arena.width, x),
+                 free ? arena.height * y : middle_of_cell(config.cell, arena.height, y)},
+                side * per_side,
+                config.min_angle + (config.max_angle - config.min_angle) * to_uniform(bits.word[2])};
+    if (may_stand(world, *polygon, i, centers, radii)) return true;
   }
   return false;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/device.h"
+#include "world/obstacle_sight.h"
 #include "world/scene.h"
 #include "world/world.h"
 
@@ -68,6 +69,7 @@ HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, in
                candidates);
   if (!species.sight.in_order) drop_unseen(world.scene, species.sight, candidates);
   world.kernel->rays.cast_rays(targets, fan, candidates, out.ray, out.ray_type);
+  if (misreads_obstacles(world)) misread_obstacles(world, species, fan, 0, 1, out);
   if (species.sight.in_order) return;
   for (int32_t r = 0; r < fan.rays; ++r) {
     // A ray that meets nothing reads 0 in the first channel.

@@ -5,6 +5,7 @@
 
 #include "base/device.h"
 #include "physics/grid.h"
+#include "world/obstacle_sight.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -62,7 +63,7 @@ HEDON_FN RayTargets ray_targets(const World& world) {
           scene.wall_ay.data,
           scene.wall_bx.data,
           scene.wall_by.data,
-          world.shape->walls,
+          misreads_obstacles(world) ? world.shape->first_obstacle : world.shape->walls,
           world.shape->first_obstacle,
           static_cast<float>(world.shape->wall_type())};
 }

@@ -73,7 +73,7 @@ struct TouchVisitor {
     turn(scratch.heading_sine[slot], scratch.heading_cosine[slot], scratch.start_angle[slot], angle, &sine, &cosine);
     const float ahead = cosine * direction.y - sine * direction.x;
     const float aside = -cosine * direction.x - sine * direction.y;
-    *mouth = ahead >= species.mouth_cosine;
+    *mouth = species.mouth_center.x * ahead + species.mouth_center.y * aside >= species.mouth_cosine;
     const int32_t sectors = species.config->sensor.touch_sectors;
     for (int32_t s = 0; s + 1 < sectors; ++s) {
       // At or past this sector's first edge, and before its last.

@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/math.h"
 #include "config/config.h"
+#include "physics/state.h"
 #include "world/species.h"
 
 namespace hedon {
@@ -65,6 +66,7 @@ struct WorldShape {
   int32_t stores;          ///< most stores of a species
   bool gated;              ///< some species must hold something to eat some food
   bool hunting;            ///< some species eats agents, of another species or its own
+  int32_t claims;          ///< most claims of eaters on their prey in a step
   bool causes;             ///< agents die of more than age and energy: some starve at once, or are eaten
   int32_t lines;           ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
@@ -110,6 +112,14 @@ HEDON_FN BodyTable make_body_table(const Config& config, const WorldShape& shape
     }
   }
   return table;
+}
+
+/// Most claims in a step: one of each agent, or of each pair of bodies that the physics keeps, in both directions.
+HEDON_FN int32_t count_claims(const Config& config, const WorldShape& shape) {
+  if (config.world.prey_at_mouth == WorldPreyAtMouth::nearest) return shape.capacity;
+  return static_cast<int32_t>(2 * physics_capacity(shape.capacity, shape.foods, shape.walls, config.arena.width,
+                                                   config.arena.height, shape.bodies, config.physics)
+                                      .body_pairs);
 }
 
 HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t outer_walls) {
@@ -161,6 +171,7 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
   shape.newborns = config.world.inheritance == WorldInheritance::at_window_end ? shape.death_log_rows : 0;
   shape.scene = make_ray_grid(config, shape.capacity + shape.foods);
   shape.bodies = make_body_table(config, shape);
+  shape.claims = shape.hunting ? count_claims(config, shape) : 0;
   return shape;
 }
 

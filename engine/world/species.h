@@ -42,6 +42,7 @@ struct Species {
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
   float nose_sine, nose_cosine;          ///< of the angle of a nose to the heading
   float mouth_cosine;                    ///< cosine of the mouth's half angle
+  Vec2 mouth_center;                     ///< direction of its middle: ahead, and to the left
   alignas(64) float ray_sine[MAX_RAYS];  ///< of each ray's angle to the heading; past the last ray the last repeats
   alignas(64) float ray_cosine[MAX_RAYS];
   bool fan_convex;        ///< the fan spans less than half a turn
@@ -107,6 +108,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   sincos_double(config.sensor.mouth_spread * (PI / 180.0), &sine, &cosine);
   // A mouth on all sides: rounding must not leave a gap directly behind.
   species.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;
+  sincos_double(config.sensor.mouth_center * (PI / 180.0), &sine, &cosine);
+  species.mouth_center = {static_cast<float>(cosine), static_cast<float>(sine)};
   set_directions(species);
   return species;
 }

@@ -55,12 +55,12 @@ struct StepScratch {
   Array<float> eater_distance;             ///< squared
   Array<uint8_t> eaten;                    ///< 1 where an agent was eaten in this step
   Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
-  Array<int32_t> claim_of;                 ///< index of the agent's own claim, -1 for none
-  Array<float> claim_distance;             ///< squared
-  Array<double> claim_gain;                ///< energy, where all claims are settled at once
-  Array<double> record, answer;            ///< of the agents that a rule is asked about, one after another
-  Array<int32_t> asked;                    ///< their slots
-  Array<double> near;                      ///< by slot: what the queries of its rules found
+  Array<int32_t> claim_of;       ///< index of the agent's own claim, -1 for none; not used where it may have several
+  Array<float> claim_distance;   ///< squared
+  Array<double> claim_gain;      ///< energy, where all claims are settled at once
+  Array<double> record, answer;  ///< of the agents that a rule is asked about, one after another
+  Array<int32_t> asked;          ///< their slots
+  Array<double> near;            ///< by slot: what the queries of its rules found
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 
@@ -77,9 +77,9 @@ struct StepScratch {
                (smelled, slots, scents, scratch), (touched, obstacle_slots, one, scratch),
                (energy_damage, obstacle_slots, one, scratch), (eater, foods, one, scratch),
                (eater_distance, foods, one, scratch), (eaten, hunted_slots, one, scratch),
-               (claim_eater, hunted_slots, one, scratch), (claim_prey, hunted_slots, one, scratch),
-               (claim_of, hunted_slots, one, scratch), (claim_distance, hunted_slots, one, scratch),
-               (claim_gain, hunted_slots, one, scratch), (record, ruled_slots, record, scratch),
+               (claim_eater, claims, one, scratch), (claim_prey, claims, one, scratch),
+               (claim_of, hunted_slots, one, scratch), (claim_distance, claims, one, scratch),
+               (claim_gain, claims, one, scratch), (record, ruled_slots, record, scratch),
                (answer, ruled_slots, one, scratch), (asked, ruled_slots, one, scratch),
                (near, ruled_slots, near, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };

@@ -77,6 +77,24 @@ def test_the_nearer_of_two_is_eaten():
     assert step(simulation)["agent_id"].tolist() == [1]
 
 
+def test_all_at_one_mouth_are_eaten_where_a_setting_says_so():
+    for sharing in ("one", "each"):
+        simulation = make('world.prey_at_mouth="all"', f'world.prey_sharing="{sharing}"')
+        set_scene(
+            simulation, [(100, 99, 0.0), (113, 94.9, 0.0), facing(100, 81, (102, 100))], species=[PREY, PREY, PREDATOR]
+        )
+        after = step(simulation)
+        assert sorted(after["agent_id"].tolist()) == [0, 1]
+        assert after["alive"].tolist() == [[PREDATOR, pytest.approx(40 - 0.001 + 2 * SHARE * 39.5, abs=1e-4)]]
+        assert simulation.worlds[0].agents()["eaten"].tolist() == [[0, 2, 0]]
+
+
+def test_prey_can_be_worth_what_it_had_before_the_step():
+    simulation = make('world.prey_energy="before_step"')
+    set_scene(simulation, [(100, 100, 0.0), facing(100, 81, (100, 100))], species=[PREY, PREDATOR])
+    assert step(simulation)["alive"].tolist() == [[PREDATOR, pytest.approx(40 - 0.001 + SHARE * 40, abs=1e-4)]]
+
+
 def test_nothing_else_is_eaten_while_one_digests():
     simulation = make("species.predator.sensor.mouth_spread=180")
     around = [(100, 119.5, 0.0), (100, 80.5, 0.0)]

@@ -57,11 +57,14 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
     assert judge.happened["rivals"] > 50
 
 
+@pytest.mark.parametrize("prey", ["nearest", "all"])
 @pytest.mark.parametrize("sharing", ["one", "each"])
-def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
+def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing, prey):
     """Chains of claims, rivals for one agent, pairs that claim each other, and those who starve meanwhile."""
     settings = (
         f'world.prey_sharing="{sharing}"',
+        f'world.prey_at_mouth="{prey}"',
+        f'world.prey_energy="{"before_step" if prey == "all" else "after_costs"}"',
         *("population.capacity=100", "population.initial_count=1", "sensor.mouth_spread=40", "birth.kappa=0"),
         *each("prey", "energy.basic_cost=0.7", 'energy.at_zero="death"'),
         *each("hunter", 'diet.eats=[["prey", 0.6], ["hunter", 0.3]]', "diet.digestion_steps=1"),
@@ -78,8 +81,8 @@ def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing):
         judge.born_with.clear()
         for _ in range(3):
             judge.step()
-    for what in ("contested", "spared", "digesting", "cannibal", "starved"):
-        assert judge.happened[what] >= 10, judge.happened
+    for what in ("contested", "spared", "cannibal", "starved", "digesting" if prey == "nearest" else "feasts"):
+        assert judge.happened[what] >= 10, (what, judge.happened[what])
 
 
 def test_founders_given_as_data_live_by_the_rules():

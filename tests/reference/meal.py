@@ -44,28 +44,34 @@ def take(world: World, turn: Turn, meal: int) -> None:
 
 
 def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
-    """Each mouth claims the nearest agent that it may eat, unless its owner digests; the claims are settled in turn."""
+    """Each mouth claims the nearest agent that it may eat, or all, unless its owner digests; claims are settled."""
     by_id = {turn.agent.agent_id: turn for turn in turns}
-    claims: dict[int, int] = {}
+    claims: list[tuple[int, int]] = []
     for turn in turns:
         near = sorted(turn.deed.prey, key=lambda prey: distance(turn, by_id[prey]))
-        if near and turn.agent.digestion == 0 and not turn.starved and not by_id[near[0]].starved:
-            claims[turn.agent.agent_id] = near[0]
+        wanted = sorted(near) if rules.eats_all_prey else near[:1]
+        if turn.agent.digestion == 0 and not turn.starved:
+            claims += [(turn.agent.agent_id, prey) for prey in wanted if not by_id[prey].starved]
         turn.agent.digestion = max(turn.agent.digestion - 1, 0)
+
+    def energy(prey: int) -> float:
+        turn = by_id[prey]
+        return turn.start.energy if rules.prey_before_step else turn.agent.energy
+
     if rules.each_gains:  # all are judged at once, by what they have before anyone eats
-        energy = {each: by_id[each].agent.energy for each in claims.values()}
-        for eater, prey in claims.items():
-            gain(rules, world, by_id[eater], by_id[prey], energy[prey])
+        had = {prey: energy(prey) for _, prey in claims}
+        for eater, prey in claims:
+            gain(rules, world, by_id[eater], by_id[prey], had[prey])
             by_id[prey].caught = True
         return
     while claims:
-        free = [eater for eater in claims if eater not in claims.values()]
-        eater = min(free or claims, key=lambda each: rules.draw("hunt", each, world.step)[0])
-        prey = claims[eater]
-        gain(rules, world, by_id[eater], by_id[prey], by_id[prey].agent.energy)
+        claimed = {prey for _, prey in claims}
+        free = [each for each in claims if each[0] not in claimed]
+        eater, prey = min(free or claims, key=lambda each: (rules.draw("hunt", each[0], world.step)[0], each))
+        gain(rules, world, by_id[eater], by_id[prey], energy(prey))
         by_id[prey].caught = True
         # Who is eaten eats nothing: in a cycle, who has eaten cannot be eaten any more.
-        claims = {each: of for each, of in claims.items() if of not in (prey, eater) and each not in (prey, eater)}
+        claims = [each for each in claims if each[1] not in (prey, eater) and each[0] != prey]
 
 
 def distance(turn: Turn, other: Turn) -> float:

@@ -26,7 +26,12 @@ class Arena:
         around: list[Circle] = []
         for i in range(config.obstacle.count):
             found = (self._obstacle(config, draw("obstacle", i, 0, n)) for n in range(TRIES))
-            circle, corners = next(each for each in found if self._is_apart(each[0], around))
+            cell = config.obstacle.cell
+            circle, corners = next(
+                each
+                for each in found
+                if (all(each[0][:2] != other[:2] for other in around) if cell else self._is_apart(each[0], around))
+            )
             around.append(circle)
             self.obstacles.append(corners)
         self.walls += [[*a, *b] for polygon in self.obstacles for a, b in sides(polygon)]
@@ -35,7 +40,13 @@ class Arena:
         """A regular polygon: the circle around it, and its corners, clockwise."""
         own = config.obstacle
         x, y = self.anywhere(words)
-        angle = 2 * math.pi * uniform(words[2])
+        if own.cell:
+            x, y = (
+                own.cell * (math.floor(uniform(word) * math.floor(side / own.cell)) + 0.5)
+                for word, side in zip(words, (self.width, self.height), strict=False)
+            )
+        first, last = (float(np.float32(angle)) for angle in (own.min_angle, own.max_angle))
+        angle = first + (last - first) * uniform(words[2])
         side = own.min_side + (own.max_side - own.min_side) * uniform(words[3])
         radius = side / (2 * math.sin(math.pi / own.corners))
         turns = [angle - 2 * math.pi * corner / own.corners for corner in range(own.corners)]

@@ -120,6 +120,8 @@ class Rules:
         foods = sum(food.capacity for food in self.foods)
         self.most_sources = agents + foods * (2 if self.eaten_foods_seen else 1)
         self.all_mouths = config.world.mouths == "all"
+        self.eats_all_prey = config.world.prey_at_mouth == "all"
+        self.prey_before_step = config.world.prey_energy == "before_step"
         self.each_gains = config.world.prey_sharing == "each"
         self.births_first = config.world.birth_order == "before_deaths"
         self.inherits_late = config.world.inheritance == "at_window_end"

@@ -51,6 +51,18 @@ SPECIES = {
         ),
         {"deaths_eaten": 20},
     ),
+    "feast": Case(
+        "all agents at a mouth are eaten, for what they had before the step; a mouth to one side",
+        (
+            *('world.prey_at_mouth="all"', 'world.prey_energy="before_step"', "hazard.kappa=0.1"),
+            *each("prey", "population.capacity=50", "population.initial_count=40", "birth.kappa=0.2"),
+            *each("hunter", "population.capacity=10", "population.initial_count=8", 'diet.eats=[["prey", 0.6]]'),
+            *each("hunter", "sensor.mouth_spread=120", "sensor.mouth_center=60", "energy.basic_cost=0.1"),
+            *each("hunter", "body.radius=16", "motor.force_scale=3", "birth.kappa=0.1"),
+            "species.prey.body.radius=6",
+        ),
+        {"deaths_eaten": 20, "feasts": 2},
+    ),
     "passing": Case(
         "species that pass through one another and through food, of other sizes and densities",
         (
@@ -190,6 +202,15 @@ OBSTACLES = {
             *("reward.see.obstacle.coef=0.2", 'reward.see.obstacle.reads="normal"', 'energy.at_zero="death"'),
         ),
         {"harmed": 20, "harmless": 10, "starved": 3, "paid_see_obstacle": 100},
+    ),
+    "grid": Case(
+        "obstacles in the cells of a grid, with corners to one side, which rays read wrongly",
+        (
+            *("obstacle.count=5", "obstacle.damage=0.3", "obstacle.cell=30", "obstacle.min_angle=1.5"),
+            *("obstacle.max_angle=2.5", 'obstacle.sight="released"', "reward.see.obstacle.coef=0.2"),
+            *("obstacle.min_side=24", "obstacle.max_side=24"),
+        ),
+        {"harmed": 20, "paid_see_obstacle": 100},
     ),
     "blocks": Case(
         "squares, and two species of which one goes by another body",

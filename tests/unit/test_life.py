@@ -99,6 +99,18 @@ def test_the_mouth_spans_sixty_degrees_to_either_side(degrees, eaten):
     assert _agents(simulation)["eaten"][0, 0] == eaten
 
 
+@pytest.mark.parametrize(
+    ("degrees", "eaten"), [(0, 1), (35, 1), (45, 0), (-15, 1), (-25, 0), (190, 0), (-170, 0), (100, 0)]
+)
+def test_a_lopsided_mouth_spans_from_its_own_middle(degrees, eaten):
+    mouth = ("sensor.mouth_spread=30", "sensor.mouth_center=10")
+    simulation = make_simulation(*STILL, *SAFE, *mouth, "food.normal.growth_rate=0")
+    angle = 2.0 + np.radians(degrees)
+    set_scene(simulation, [(240, 180, 2.0)], [(240 - 13.9 * np.sin(angle), 180 + 13.9 * np.cos(angle))])
+    simulation.run(1)
+    assert _agents(simulation)["eaten"][0, 0] == eaten
+
+
 @pytest.mark.parametrize("nearer", [0, 1])
 def test_one_food_feeds_the_nearer_of_two_agents(nearer):
     simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0")

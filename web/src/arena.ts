@@ -65,6 +65,7 @@ export class Arena {
   private drawFrame(source: Source, frame: Frame, coloring: Coloring, chosen: number): Painted["legend"] {
     const { layout } = source;
     const mouths = layout.species.map((species) => Math.cos((species.mouth_degrees * Math.PI) / 180));
+    const middles = layout.species.map((species) => (species.mouth_center_degrees * Math.PI) / 180);
     if (this.colors.length < frame.id.length) this.colors = new Uint32Array(frame.id.length * 2);
     const { colors, legend } = paint(coloring, source, frame, this.colors);
     const at = frame.id.indexOf(chosen);
@@ -78,7 +79,7 @@ export class Arena {
     for (let i = 0; i < frame.id.length; i++) {
       const species = frame.species[i]!;
       const { radius } = layout.species[species]!;
-      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouths[species]!);
+      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouths[species]!, 0, middles[species]!);
       if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(species), 0, 2, 0.16);
     }
     if (at >= 0) this.markKin(source, frame, at);

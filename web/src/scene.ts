@@ -4,28 +4,29 @@ const DISC_VERTEX = `#version 300 es
 layout(location=0) in vec2 corner;
 layout(location=1) in vec4 body;   // x, y, radius, angle
 layout(location=2) in vec4 color;
-layout(location=3) in vec2 form;   // cosine of the mouth's half angle (2 for none), width of a ring (0 for none)
+layout(location=3) in vec3 form;   // cosine of the mouth's half angle (2 for none), width of a ring (0 for none), angle of its middle
 uniform vec3 view;                 // center, then pixels per unit
 uniform vec2 half_size;            // of the canvas [pixel]
-out vec2 at; out vec4 tint; out vec2 shape; out float pixel; out vec2 ahead;
+out vec2 at; out vec4 tint; out vec2 shape; out float pixel; out vec2 ahead; out vec2 middle;
 void main() {
   float grown = body.z + 1.0 / view.z;
   at = corner * grown / body.z;
   pixel = 1.0 / (body.z * view.z);
-  tint = color; shape = form;
+  tint = color; shape = form.xy;
   ahead = vec2(-sin(body.w), cos(body.w));
+  middle = vec2(-sin(body.w + form.z), cos(body.w + form.z));
   gl_Position = vec4((body.xy + corner * grown - view.xy) * view.z / half_size, 0.0, 1.0);
 }`;
 const DISC_FRAGMENT = `#version 300 es
 precision highp float;
-in vec2 at; in vec4 tint; in vec2 shape; in float pixel; in vec2 ahead;
+in vec2 at; in vec4 tint; in vec2 shape; in float pixel; in vec2 ahead; in vec2 middle;
 out vec4 color;
 void main() {
   float r = length(at);
   float inside = clamp((1.0 - r) / pixel + 0.5, 0.0, 1.0);
   vec3 base = tint.rgb;
   if (shape.x < 1.5) {
-    float front = dot(at, ahead) / max(r, 1e-6);
+    float front = dot(at, middle) / max(r, 1e-6);
     float mouth = smoothstep(0.80, 0.86, r) * step(shape.x, front);
     base = mix(base, vec3(0.93, 0.2, 0.2), mouth);
     float eye = length(at - 0.5 * ahead);
@@ -45,7 +46,7 @@ precision highp float;
 in vec4 tint; out vec4 color;
 void main() { color = vec4(tint.rgb * tint.a, tint.a); }`;
 
-const DISC_WORDS = 7; // x, y, radius, angle, color, mouth, ring
+const DISC_WORDS = 8; // x, y, radius, angle, color, mouth, ring, middle of the mouth
 const LINE_WORDS = 3; // x, y, color; corners of triangles too
 
 /** Things of one sort, in one buffer that only grows. */
@@ -102,7 +103,7 @@ export class Scene {
     this.discs.used = this.lines.used = this.triangles.used = 0;
   }
 
-  disc(x: number, y: number, radius: number, color: number, angle = 0, mouth = 2, ring = 0): void {
+  disc(x: number, y: number, radius: number, color: number, angle = 0, mouth = 2, ring = 0, middle = 0): void {
     const at = this.discs.next();
     const { floats, words } = this.discs;
     floats[at] = x;
@@ -112,6 +113,7 @@ export class Scene {
     words[at + 4] = color;
     floats[at + 5] = mouth;
     floats[at + 6] = ring;
+    floats[at + 7] = middle;
   }
 
   line(x0: number, y0: number, x1: number, y1: number, color: number): void {
@@ -199,7 +201,7 @@ export class Scene {
     const stride = DISC_WORDS * 4;
     gl.vertexAttribPointer(1, 4, gl.FLOAT, false, stride, 0);
     gl.vertexAttribPointer(2, 4, gl.UNSIGNED_BYTE, true, stride, 16);
-    gl.vertexAttribPointer(3, 2, gl.FLOAT, false, stride, 20);
+    gl.vertexAttribPointer(3, 3, gl.FLOAT, false, stride, 20);
     for (const at of [1, 2, 3]) {
       gl.enableVertexAttribArray(at);
       gl.vertexAttribDivisor(at, 1);

@@ -11,6 +11,7 @@ export interface Species {
   capacity: number;
   radius: number;
   mouth_degrees: number;
+  mouth_center_degrees: number;
   rays: { count: number; spread_degrees: number; length: number };
   sees: number[]; // types, by channel
   noses: { count: number; degrees: number; decay: number };

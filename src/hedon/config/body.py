@@ -90,6 +90,14 @@ class SensorConfig:
     mouth_spread: float = setting(
         60.0, "half-width of the mouth: food touched within it is eaten", "degree", EITHER, gt=0, le=180
     )
+    mouth_center: float = setting(
+        0.0,
+        "angle between the heading and the middle of the mouth, counter-clockwise: a mouth that is lopsided",
+        "degree",
+        OURS + "; the code of the sequel has 10 for predators",
+        ge=-180,
+        le=180,
+    )
     scaling: Literal["raw", "unit"] = setting(
         "raw",
         "observation as in the released code, or each part scaled to about 1, with the heading as sine and cosine",

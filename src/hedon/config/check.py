@@ -70,11 +70,27 @@ def _obstacles(check: Check, config: Settings) -> None:
     obstacle = config.obstacle
     rule = f"must be at most obstacle.max_side = {obstacle.max_side:g}"
     check.need(obstacle.min_side <= obstacle.max_side, "obstacle.min_side", rule)
+    rule = f"must be at most obstacle.max_angle = {obstacle.max_angle:g}"
+    check.need(obstacle.min_angle <= obstacle.max_angle, "obstacle.min_angle", rule)
+    if obstacle.cell > 0:
+        _grid(check, config)
+        return
     # Circles around obstacles do not overlap when they are placed; random placement stops long before they fill it.
     around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
     area, room = math.pi * around**2, MAX_COVERAGE * config.arena.width * config.arena.height
     rule = f"the arena has room for {math.floor(room / area)} with sides of {obstacle.max_side:g}"
     check.need(obstacle.count * area <= room, "obstacle.count", f"too many to place: {rule}")
+
+
+def _grid(check: Check, config: Settings) -> None:
+    cell, short = single(config.obstacle.cell), min(config.arena.width, config.arena.height)
+    check.need(
+        1 <= cell <= short, "obstacle.cell", f"must be 0, or from 1 to the shorter side of the arena, {short:g} [u]"
+    )
+    if 1 <= cell <= short:
+        room = math.prod(math.floor(single(side) / cell) for side in (config.arena.width, config.arena.height)) // 2
+        rule = f"must be at most {room}: half of the cells of {cell:g} u"
+        check.need(config.obstacle.count <= room, "obstacle.count", rule)
 
 
 def _kinds(check: Check, config: Settings) -> None:

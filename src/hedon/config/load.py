@@ -45,6 +45,10 @@ SEQUEL_PRESETS = (
     "prey-alone",
     "pitfall",
     "pitfall-weak",
+    "pitfall-15",
+    "pitfall-small",
+    "pitfall-sparse",
+    "pitfall-default-birth",
 )
 """The conditions of its sequel, on predators and prey."""
 OUR_PRESETS = ("seasons",)
@@ -207,7 +211,8 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
             problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
     if problems:
         return []
-    return [*_preset_layers(own["preset"]), _settings_of(_FOLDER / "overlays" / f"{own['fidelity']}.toml")]
+    preset, name = own["preset"], own["fidelity"]
+    return [*_preset_layers(preset), _settings_of(_FOLDER / "overlays" / f"{name}.toml"), *_own_fidelity(preset, name)]
 
 
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
@@ -257,8 +262,17 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
 
 def _preset_layers(name: str) -> list[Table]:
     """A preset and the presets that it is based on, the lowest first."""
+    return [{key: value for key, value in own.items() if key not in FIDELITIES} for own in _preset_files(name)]
+
+
+def _own_fidelity(preset: str, fidelity: str) -> list[Table]:
+    """What a preset and those that it is based on have beside a fidelity's own changes, the lowest first."""
+    return [own[fidelity] for own in _preset_files(preset) if fidelity in own]
+
+
+def _preset_files(name: str) -> list[Table]:
     own = _settings_of(_FOLDER / "presets" / f"{name}.toml")
-    return [*(_preset_layers(own["preset"]) if "preset" in own else []), own]
+    return [*(_preset_files(own["preset"]) if "preset" in own else []), own]
 
 
 def _settings_of(path: Path) -> Table:

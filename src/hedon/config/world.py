@@ -23,6 +23,18 @@ class WorldConfig:
         "",
         OURS + '; the code of the sequel has "each"',
     )
+    prey_at_mouth: Literal["nearest", "all"] = setting(
+        "nearest",
+        "which agents are eaten if a mouth touches several in the same step",
+        "",
+        OURS + '; the code of the sequel has "all"',
+    )
+    prey_energy: Literal["after_costs", "before_step"] = setting(
+        "after_costs",
+        "what an eater has its share of: what its prey has after this step's meals and costs, or had before them",
+        "",
+        OURS + '; the code of the sequel has "before_step"',
+    )
     birth_order: Literal["before_deaths", "after_deaths"] = setting(
         "before_deaths",
         "which comes first in a step; after deaths, the dying do not breed, their slots are free, and the hazard "

@@ -165,6 +165,7 @@ def snapshot(world: World) -> Snapshot:
         ray_length=np.array([kind.sensor.ray_length for kind in kinds]),
         ray_spread=np.array([kind.sensor.ray_spread for kind in kinds]),
         mouth_spread=np.array([kind.sensor.mouth_spread for kind in kinds]),
+        mouth_center=np.array([kind.sensor.mouth_center for kind in kinds]),
     )
 
 

@@ -78,10 +78,11 @@ def _draw_touch(axes: Axes, own: SpeciesConfig) -> None:
 
 
 def _draw_mouth(axes: Axes, own: SpeciesConfig) -> None:
-    radius, spread = own.body.radius, own.sensor.mouth_spread
-    width = _MOUTH_WIDTH * radius
-    axes.add_patch(Wedge((0, 0), radius, 90 - spread, 90 + spread, width=width, facecolor=INK, zorder=3))
-    _point_out(axes, f"mouth: ±{spread:g}°", _at(radius, 0.75 * spread), (-1.5 * radius, 1.1 * radius))
+    radius, spread, center = own.body.radius, own.sensor.mouth_spread, own.sensor.mouth_center
+    width, ahead = _MOUTH_WIDTH * radius, 90 + center
+    axes.add_patch(Wedge((0, 0), radius, ahead - spread, ahead + spread, width=width, facecolor=INK, zorder=3))
+    span = f"{center - spread:g}° to {center + spread:g}°".replace("-", "\N{MINUS SIGN}") if center else f"±{spread:g}°"
+    _point_out(axes, f"mouth: {span}", _at(radius, center + 0.75 * spread), (-1.5 * radius, 1.1 * radius))
 
 
 def _draw_motors(axes: Axes, own: SpeciesConfig) -> None:
@@ -112,7 +113,7 @@ def _draw_motors(axes: Axes, own: SpeciesConfig) -> None:
 
 def _draw_food(axes: Axes, own: SpeciesConfig, food: FoodConfig, size: float) -> None:
     radius = own.body.radius
-    place = _at(radius + size, -0.7 * own.sensor.mouth_spread)
+    place = _at(radius + size, own.sensor.mouth_center - 0.7 * own.sensor.mouth_spread)
     axes.add_patch(Circle(place, size, facecolor=food.color, edgecolor="white", linewidth=0.5))
     text = f"food, radius {size:g} u:\nthe mouth eats\nwhat it touches"
     axes.text(place[0] + 1.3 * size, place[1], text, va="center", fontsize=8)

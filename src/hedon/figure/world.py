@@ -163,7 +163,7 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
         else:
             discs.set(array=snapshot.energy[mine], cmap=_ENERGY_COLORS, norm=Normalize(0, top))
     radius, spread = snapshot.radius[snapshot.species], snapshot.mouth_spread[snapshot.species]
-    degree = np.degrees(snapshot.angle) + 90.0  # Matplotlib counts from +x
+    degree = np.degrees(snapshot.angle) + snapshot.mouth_center[snapshot.species] + 90.0  # Matplotlib counts from +x
     mouths = [
         Wedge((x, y), r, a - half, a + half, width=1.9)
         for (x, y), a, r, half in zip(centers, degree, radius, spread, strict=True)

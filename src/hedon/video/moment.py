@@ -110,6 +110,7 @@ class Footage:
             ray_length=np.array([each.sensor.ray_length for each in bodies]),
             ray_spread=np.array([each.sensor.ray_spread for each in bodies]),
             mouth_spread=np.array([each.sensor.mouth_spread for each in bodies]),
+            mouth_center=np.array([each.sensor.mouth_center for each in bodies]),
             food_kinds=tuple(foods),
             species_names=tuple(species),
             food_radius=config.world.food_radius,

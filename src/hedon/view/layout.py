@@ -16,7 +16,8 @@ def describe(config: Config) -> dict[str, Any]:
     """The layout of a world.
 
     Returns:
-        `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of the heading), rays (count,
+        `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of its middle),
+            mouth_center_degrees, rays (count,
         spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel), noses (count,
         degrees between the heading and each of two, decay [1/u] of smell with distance), smells (indices into `types`,
         by channel), genes (indices into `genes`, in genome order) and reward (see `_reward`);
@@ -58,6 +59,7 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
         "capacity": species.population.capacity,
         "radius": species.body.radius,
         "mouth_degrees": species.sensor.mouth_spread,
+        "mouth_center_degrees": species.sensor.mouth_center,
         "rays": {
             "count": species.sensor.ray_count,
             "spread_degrees": species.sensor.ray_spread,

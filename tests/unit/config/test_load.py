@@ -228,6 +228,26 @@ def test_agents_of_the_sequel_see_and_turn_as_in_its_program() -> None:
             assert lever == pytest.approx(10 * math.sin(math.radians(45)), abs=1e-6)
 
 
+def test_released_presets_of_the_sequel_have_its_faults_instead_of_the_first_papers() -> None:
+    for preset in SEQUEL_PRESETS:
+        config, corrected = load_config(preset, "released"), load_config(preset)
+        assert config.physics.solver == "jacobi"
+        assert config.world.mutation_noise == "independent"
+        for kind, food in config.food.items():
+            assert (food.growth_rate, food.candidates) == (corrected.food[kind].growth_rate, 10)
+        for each in config.species.values():
+            assert each.population.heading_range == pytest.approx(math.tau)
+            assert each.learning.critic_target == "batch_mean"
+    lopsided = {p: load_config(p, "released").species["predator"].sensor.mouth_center for p in SEQUEL_PRESETS[:6]}
+    assert {preset for preset, center in lopsided.items() if center == 0} == {
+        "predator-small-mouth",
+        "predator-large-mouth",
+    }
+    assert set(lopsided.values()) == {0.0, 10.0}
+    assert load_config("pitfall-weak", "released").obstacle.sight == "released"
+    assert load_config("baseline", "released").world.mutation_noise == "tabulated"
+
+
 def test_name_can_be_given(write: Write) -> None:
     assert load_config(write('name = "My-run.2"\n')).name == "My-run.2"
     assert load_config("small", overrides=['name="second"']).name == "second"
