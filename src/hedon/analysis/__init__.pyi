@@ -18,6 +18,7 @@ from .response import Response as Response
 from .result import ResultTable as ResultTable
 from .result import make_table as make_table
 from .topic.life import lifetime as lifetime
+from .world.extinction import species_loss as species_loss
 from .world.extinction import world_extinction as world_extinction
 from .world.group import REACH as REACH
 from .world.group import company as company

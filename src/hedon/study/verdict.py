@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.world.extinction import world_extinction
+from hedon.analysis.world.extinction import species_loss, world_extinction
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.statistic.contrast import fisher_mid_p
 from hedon.study.claim import Claim, Order
@@ -190,21 +190,34 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
 def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
     """The worlds to ask, why they may not decide, and who was left out.
 
-    Extinct worlds are left out, as papers replace them. Where some worlds are long enough, only these are asked.
+    Extinct worlds are left out, as papers replace them; where all species must last it is said how many worlds do.
+    Where some worlds are long enough, only these are asked.
     """
     steps, remarks, shortfall = claim.steps, list[str](), ""
     living = [world for world in worlds if world.extinct_step is None]
     if gone := len(worlds) - len(living):
         remarks.append(f"{gone} extinct left out")
-    if claim.together and (lone := sum(world.apart_step is not None for world in living)):
-        living = [world for world in living if world.apart_step is None]
-        remarks.append(f"{lone} left out where another species died out")
+    if claim.together:
+        if lone := sum(world.apart_step is not None for world in living):
+            living = [world for world in living if world.apart_step is None]
+            remarks.append(f"{lone} left out where another species died out")
+        remarks.append(_lasting(worlds, steps))
     long_enough = [world for world in living if world.last_step >= steps]
     if living and not long_enough:
         shortfall = f"the worlds reach {max(world.last_step for world in living):,} of {steps:,} steps"
     elif short := len(living) - len(long_enough):
         remarks.append(f"{short} shorter left out")
     return long_enough or living, shortfall, remarks
+
+
+def _lasting(worlds: Sequence[WorldRecord], steps: int) -> str:
+    """Which share of all worlds, those left out too, keeps every species: what is said of the others is said of it."""
+    found = species_loss(worlds, steps)
+    share, low, high = (f"{100 * (1 - part):.0f}" for part in (found.share, found.high, found.low))
+    return (
+        f"every species lasts to step {found.known_until:,.0f} in {share} % ({low} … {high}) of {found.worlds} worlds "
+        "(Kaplan and Meier)"
+    )
 
 
 def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.float64]:

@@ -10,8 +10,11 @@ import pytest
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
 from hedon.config.layout import hunted, hunters, layouts
+from hedon.study.catalogue import choose
+from hedon.study.item import ItemInputs
 from hedon.study.verdict import Verdict, judge, verdicts
 from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL_CLAIMS, SEQUEL_ORDERS, fear
+from hedon_studies.fear.program import PITFALL_RUN, PREDATOR_RUN, WINDOW
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 _PUSH = 1.5  # per generation, planted; some four times the scale of mutations
@@ -120,9 +123,10 @@ def test_weak_pitfalls() -> None:
 def test_few_short_or_lone_worlds_decide_nothing() -> None:
     worlds = group("predator", 5, seen("hunter"), -_PUSH)
     name = "fear often evolves"
-    assert asked(worlds[:2])[name].reason == "fewer than 3 worlds"
+    assert asked(worlds[:2])[name].reason.startswith("fewer than 3 worlds")
     short = asked([replace(world, last_step=1024) for world in worlds])[name]
-    assert (short.verdict, short.reason) == ("undecided", f"the worlds reach 1,024 of {STEPS:,} steps")
+    assert short.verdict == "undecided"
+    assert short.reason.startswith(f"the worlds reach 1,024 of {STEPS:,} steps")
     lone = asked([replace(world, apart_step=5000) for world in worlds])[name]
     assert (lone.verdict, lone.worlds) == ("undecided", 0)
     assert "5 left out where another species died out" in lone.reason
@@ -130,7 +134,57 @@ def test_few_short_or_lone_worlds_decide_nothing() -> None:
     assert (dead.verdict, "5 extinct left out" in dead.reason) == ("undecided", True)
 
 
+def test_worlds_that_lost_a_species_are_counted_beside_every_claim() -> None:
+    """By Kaplan and Meier: of five worlds one loses its prey, one its predators, and one is followed half the way."""
+    worlds = group("predator", 5, seen("hunter"), -_PUSH)
+    ends = [{"extinct_step": 1000}, {"last_step": STEPS // 2}, {"apart_step": STEPS - 1}, {}, {}]
+    mixed = [replace(world, **end) for world, end in zip(worlds, ends, strict=True)]
+    for found in asked([*mixed, *group("predator-less-food", 5)]).values():
+        assert f"every species lasts to step {STEPS:,} in " in found.reason
+    reason = asked(mixed)["fear often evolves"].reason
+    # 4/5 live on past step 1000; of the three at risk at the last step but one, one is lost.
+    assert f"in {100 * 4 / 5 * 2 / 3:.0f} % (" in reason
+    assert "of 5 worlds (Kaplan and Meier)" in reason
+    pitfalls = asked([replace(world, extinct_step=9) for world in group("pitfall-weak", 4)])["no fear of weak pitfalls"]
+    assert "every species lasts to step 10,240,000 in 0 % (0 … " in pitfalls.reason
+    assert asked(worlds)["fear often evolves"].source == "Kanagawa & Doya, arXiv 2507.09992v2, claim (a)"
+
+
 def test_the_claims_are_one_family() -> None:
     assert len(SEQUEL_CLAIMS) + len(SEQUEL_ORDERS) == FAMILY
     assert {each.level for each in (*SEQUEL_CLAIMS, *SEQUEL_ORDERS)} == {1 - 0.05 / FAMILY}
     assert (BY_CHANCE, OFTEN) == (0.025, 0.25)
+
+
+def tables(name: str, worlds: dict) -> dict[str, list[dict]]:
+    (item,) = choose([name])[0].items
+    return {table.name: table.rows.to_dicts() for table in item.make(ItemInputs("corrected", worlds))}
+
+
+def test_worlds_of_each_condition_are_counted_by_what_died_out() -> None:
+    ends = [{"extinct_step": 1000}, {"apart_step": 2000}, {}, {}]
+    worlds = [replace(world, **end) for world, end in zip(group("predator", 4), ends, strict=True)]
+    (row,) = tables("sequel-survival", {"as usual": worlds})["sequel_survival"]
+    assert (row["worlds"], row["it_died_out"], row["another_died_out"], row["last"]) == (4, 1, 1, 0.5)
+    assert 0 < row["low"] < 0.5 < row["high"] < 1
+
+
+def test_windows_stand_beside_those_of_the_program() -> None:
+    numbers = pl.DataFrame(
+        {"step": [WINDOW, 2 * WINDOW], "alive": [300, 450], "births": [160, 170], "deaths_eaten": [10, 20]}
+        | {"food_normal": [290, 310], "energy_mean": [48.0, 32.0], "deaths": [9, 8], "obstacles_touched": [5, 4]}
+    )
+    first, second = group("predator", 2)
+    worlds = [replace(first, population=numbers), replace(second, population=numbers.with_columns(pl.col("alive") + 3))]
+    found = tables("sequel-program", {"prey": worlds, "pitfall": worlds[:1]})
+    rows = {(row["window"], row["quantity"]): row for row in found["sequel_program_predator"]}
+    assert len(rows) == 6 * len(PREDATOR_RUN)
+    assert rows[2, "prey alive"] | {"window": 2, "quantity": ""} == {
+        **{"window": 2, "quantity": "", "program": 450, "low": 450, "high": 453, "worlds": 2}
+    }
+    assert rows[1, "energy_mean"]["program"] == PREDATOR_RUN[1][-1]
+    assert (rows[3, "births"]["low"], rows[3, "births"]["worlds"]) == (None, 0)
+    assert rows[1, "predators alive"]["worlds"] == 0
+    fallen = {(row["window"], row["quantity"]): row for row in found["sequel_program_pitfall"]}
+    assert fallen[1, "obstacles_touched"]["program"] == PITFALL_RUN[1][3]
+    assert fallen[1, "obstacles_touched"]["low"] == 5

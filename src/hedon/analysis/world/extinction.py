@@ -1,4 +1,4 @@
-"""Which share of some worlds dies out?"""
+"""Which share of some worlds dies out, or loses a species?"""
 
 from collections.abc import Sequence
 
@@ -18,6 +18,24 @@ def world_extinction(worlds: Sequence[WorldRecord], until: float) -> ExtinctShar
     Returns:
         The Kaplan–Meier share with its interval: a world that lives at its end tells nothing of later steps.
     """
-    died = np.array([world.extinct_step is not None for world in worlds], np.bool_)
-    lasted = [world.last_step if world.extinct_step is None else world.extinct_step for world in worlds]
+    return _share(worlds, [world.extinct_step for world in worlds], until)
+
+
+def species_loss(worlds: Sequence[WorldRecord], until: float) -> ExtinctShare:
+    """The share of worlds that have lost a species by a step [step]: the records' own, or another.
+
+    Args:
+        worlds: as for `world_extinction`.
+        until: the step by which it counts as lost.
+
+    Returns:
+        The Kaplan–Meier share with its interval.
+    """
+    steps = [(world.extinct_step, world.apart_step) for world in worlds]
+    return _share(worlds, [min((step for step in both if step is not None), default=None) for both in steps], until)
+
+
+def _share(worlds: Sequence[WorldRecord], ends: Sequence[int | None], until: float) -> ExtinctShare:
+    died = np.array([end is not None for end in ends], np.bool_)
+    lasted = [world.last_step if end is None else end for world, end in zip(worlds, ends, strict=True)]
     return extinct_share(np.array(lasted, np.float64), died, until)
