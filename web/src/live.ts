@@ -1,6 +1,6 @@
 // A world that the engine runs in this page, as a source of moments.
 import { Lives } from "./lives";
-import type { Edit, Moment, Order, Report } from "./live.worker";
+import type { Actions, Edit, Moment, Order, Report } from "./live.worker";
 import { columnOf, Series } from "./series";
 import type { Source } from "./source";
 import type { Frame, Life, LiveWorld, AgentProbe, Place } from "./types";
@@ -37,6 +37,7 @@ export class Live implements Source {
   edited = false;
   kept = -1; // step of the snapshot
   refused = ""; // why the last edit was not done
+  onMoment: ((moment: Moment) => void) | undefined; // called with each moment as it comes
   private ready = false;
   private busy = false;
   private learning = 0;
@@ -82,12 +83,16 @@ export class Live implements Source {
     return this.seen?.id === this.chosen ? this.seen : undefined;
   }
 
-  /** Lets the world run by some steps, for at most this time; does nothing while it still does so. */
-  advance(steps: number, milliseconds: number): void {
-    if (!this.ready || this.busy || this.error || (this.over && steps > 0)) return;
+  /**
+   * Lets the world run by some steps, for at most this time; does nothing while it still does so, and then returns false.
+   * What it is told besides: to note where the chosen agent goes, and what that agent does if its policy is `external`.
+   */
+  advance(steps: number, milliseconds: number, told: { trace?: boolean; actions?: Actions } = {}): boolean {
+    if (!this.ready || this.busy || this.error || (this.over && steps > 0)) return false;
     this.busy = true;
     // The digest reads the whole state: only a world that rests is asked for it.
-    this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0 });
+    this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0, ...told });
+    return true;
   }
 
   /** Changes the world by hand, keeps it, or goes back to what was kept. */
@@ -143,6 +148,7 @@ export class Live implements Source {
     this.last = frame.step;
     this.measure(moment.done);
     if (frame.step >= this.sampled.step + SAMPLE_STEPS || moment.over) this.sample(moment);
+    this.onMoment?.(moment);
   }
 
   private rewind(step: number, counts: Record<string, number>): void {

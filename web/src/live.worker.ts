@@ -12,7 +12,9 @@ export type Edit =
 export type Order =
   | { type: "make"; text: string; layout: Layout; threads: number }
   | { type: "do"; edit: Edit; chosen: number; digest: boolean }
-  | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean };
+  | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean; trace?: boolean; actions?: Actions };
+/** What an agent whose policy is `external` does, before the sigmoid: of the left and of the right motor. */
+export type Actions = [number, number];
 
 export interface Moment {
   frame: Frame;
@@ -22,6 +24,7 @@ export interface Moment {
   agentProbe?: AgentProbe;
   learning: number; // agents that still have to learn before the next step
   done: number; // steps of this order
+  trace: Float32Array; // x, y of the chosen agent after each step of this order, if it asked for them
   over: boolean;
   digest: string; // "" unless it was asked for and no window is being learned
   edited: boolean; // whether the world has been changed by hand
@@ -165,9 +168,20 @@ function frame(world: Engine, living: Int32Array): Frame {
   };
 }
 
-/** Steps and learns until the steps are done or the time is over; returns the steps done. */
-function advance(world: Engine, steps: number, milliseconds: number): number {
+/** The slot of an agent, or -1 if it does not live. */
+function slotOf(world: Engine, id: number): number {
+  if (id < 0) return -1;
+  const [ids, living] = [world.view("life.agent_id")!, world.view("living") as Int32Array];
+  return living.subarray(0, world.number("head.living_count")).find((slot) => Number(ids[slot]) === id) ?? -1;
+}
+
+/** Steps and learns until the steps are done or the time is over; returns the steps done, and where the chosen agent was. */
+function advance(world: Engine, order: Order & { type: "advance" }): { done: number; trace: Float32Array } {
+  const { steps, milliseconds, chosen, actions } = order;
   const end = performance.now() + milliseconds;
+  const slot = order.trace || actions ? slotOf(world, chosen) : -1;
+  if (actions && slot >= 0) (world.view("external_action") as Float32Array).set(actions, slot * actions.length);
+  const trace: number[] = [];
   let done = 0;
   while (done < steps || world.mustLearn) {
     if (world.mustLearn) world.learn(PIECE * world.threads);
@@ -176,10 +190,13 @@ function advance(world: Engine, steps: number, milliseconds: number): number {
       if (stepped === 0) break;
       done += stepped;
       meals.note(world.view("eaten") as Int32Array, layout!.meals.length);
+      if (order.trace && slot >= 0 && Number(world.view("life.agent_id")![slot]) === chosen) {
+        for (const axis of ["x", "y"]) trace.push(Number(world.view(`physics.bodies.${axis}`)![slot]));
+      }
     }
     if (performance.now() >= end) break;
   }
-  return done;
+  return { done, trace: Float32Array.from(trace) };
 }
 
 /** Does it; returns why it cannot be done, or "". */
@@ -204,11 +221,12 @@ function act(world: Engine, edit: Edit): string {
 
 interface Told {
   done: number;
+  trace: Float32Array;
   refused: string;
   back: boolean;
 }
 
-function moment(world: Engine, { done, refused, back }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
+function moment(world: Engine, { done, trace, refused, back }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const waiting = world.number("head.death_log_count");
   const dead = lives(world, "death_log", Array.from({ length: waiting }, (_, i) => i));
@@ -225,6 +243,7 @@ function moment(world: Engine, { done, refused, back }: Told, { chosen, digest }
     agentProbe: at >= 0 ? { id: chosen, ...world.probeAgent(living[at]!) } : undefined,
     learning,
     done,
+    trace,
     over: living.length === 0,
     digest: learning || !digest ? "" : world.digest(),
     edited: world.edited,
@@ -238,8 +257,8 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
   try {
     if (data.type === "make") self.postMessage(await make(data));
     else if (engine) {
-      const told = { done: 0, refused: "", back: false };
-      if (data.type === "advance") told.done = advance(engine, data.steps, data.milliseconds);
+      const told: Told = { done: 0, trace: new Float32Array(), refused: "", back: false };
+      if (data.type === "advance") Object.assign(told, advance(engine, data));
       else {
         told.refused = act(engine, data.edit);
         told.back = data.edit.type === "back" && told.refused === "";
