@@ -17,6 +17,7 @@ from hedon.experiment.run import run
 from hedon.view.index import RunIndex
 from hedon.view.live import live_world
 from hedon.view.server import Server
+from hedon.view.story import story
 
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
@@ -114,3 +115,9 @@ def run_live(watched: Watched, steps: int) -> None:
         watched.get(f"hedon.source.advance({steps - done}, 5000)")
         watched.until("!hedon.source.busy")
     watched.until("hedon.source.digest() !== ''")
+
+
+def story_server() -> Server:
+    """What `hedon view --story` serves, without the presets of the instrument, which take seconds to describe."""
+    told = story()
+    return Server({"page": lambda: {"run": False, "worlds": []}, "story": lambda: told}, dict)

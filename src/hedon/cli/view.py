@@ -22,6 +22,9 @@ def view(
         str | None, typer.Argument(metavar="RUN", help="Folder of a run; with --live a preset or a file.")
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Simulate in the browser: a preset, or a file (.toml).")] = False,
+    article: Annotated[
+        bool, typer.Option("--story", help="The article to play with: where do rewards come from?")
+    ] = False,
     export: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write a site for any web server instead of opening the page.")
     ] = None,
@@ -39,32 +42,39 @@ def view(
       hedon view runs/seen
       hedon view --live
       hedon view --live poison
+      hedon view --story
       hedon view runs/seen --export site
+      hedon view runs/seen --story --export site
     """
     from concurrent.futures import ThreadPoolExecutor
 
     from hedon.config.load import DEFAULT_PRESET, load_config
     from hedon.view.export import export as write_site
     from hedon.view.server import Server
+    from hedon.view.story import PAGE, story
 
-    if run is None and not live:
-        raise ViewArgumentError("give the folder of a run, or --live for a world in the browser")
+    if run is None and not live and not article:
+        raise ViewArgumentError("give the folder of a run, --live for a world in the browser, or --story to read")
     source = (run or DEFAULT_PRESET) if live else ""
     if source:
         load_config(source)  # whatever is wrong with it is said here
     index = None if live or run is None else _index(run)
+    front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:
         # The worlds of all presets take seconds to describe: meanwhile there is a link.
         worlds = pool.submit(_worlds, source)
         data: dict[str, Any] = {"page": lambda: {"run": index is not None, "worlds": worlds.result()}}
         if index is not None:
             data["run"] = index.describe
+        if article:
+            scenes = pool.submit(story)
+            data["story"] = scenes.result
         if export is None:
-            _serve(Server(data, index.files if index else dict, port), index, open_browser)
+            _serve(Server(data, index.files if index else dict, port), front, index, open_browser)
             return
         _say_damage(index)
         size = write_site(export, {name: tell() for name, tell in data.items()}, index.files() if index else {})
-        typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open its index.html through any web server")
+        typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open its {front} through any web server")
 
 
 def _index(run: str) -> "RunIndex":
@@ -84,15 +94,16 @@ def _say_damage(index: "RunIndex | None") -> None:
         typer.echo(f"hedon: {name} is damaged, and left out", err=True)
 
 
-def _serve(server: "Server", index: "RunIndex | None", open_browser: bool) -> None:
+def _serve(server: "Server", front: str, index: "RunIndex | None", open_browser: bool) -> None:
     """Serves until Ctrl-C."""
     import webbrowser
 
-    typer.echo(f"hedon: {server.link}")
+    link = server.link + (front if front != "index.html" else "")
+    typer.echo(f"hedon: {link}")
     typer.echo("Open this link in a browser on this machine. Ctrl-C ends.")
     _say_damage(index)
     if open_browser:
-        webbrowser.open(server.link)
+        webbrowser.open(link)
     try:
         server.serve_forever()
     except KeyboardInterrupt:

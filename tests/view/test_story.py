@@ -1,0 +1,338 @@
+"""What a reader of the article does, by script: goals are reached, and the engine in Python has the same bits."""
+
+import numpy as np
+import pytest
+from view_page import serving, story_server
+
+import hedon.env
+from hedon import Simulation, load_config
+from hedon.demography.life import birth_rate, hazard
+from hedon.view.story import PAGE, SCENES
+
+pytest_plugins = ("view_fixture",)
+STAGES = ("creature", "learning", "life", "family", "contest", "sandbox")
+
+
+@pytest.fixture(scope="module")
+def server():
+    with serving(story_server()) as running:
+        yield running
+
+
+@pytest.fixture
+def article(server, watch):
+    """Opens the article, at a scene or at the address of a link."""
+
+    def open_at(scene, address=""):
+        watched = watch(f"{server.link}{PAGE}{address}")
+        watched.until(f"hedon.scenes.sandbox && hedon.scenes.{scene}")
+        if not address:
+            watched.get(f"hedon.scenes.{scene}.section.scrollIntoView({{ behavior: 'instant' }})")
+            if scene in STAGES:
+                watched.until(f"hedon.scenes.{scene}.stage.live?.ready")
+        return watched
+
+    return open_at
+
+
+def stage(name):
+    return f"hedon.scenes.{name}.stage"
+
+
+def run_to(watched, name, step):
+    watched.get(f"void {stage(name)}.runTo({step})")
+    watched.until(f"!{stage(name)}.running && {stage(name)}.live.last >= {step}", 200)
+
+
+def set_knob(watched, name, path, value):
+    """Moves a slider to a value, as a reader does, and lets it go."""
+    watched.get(
+        f"""(() => {{
+          const knob = document.querySelector(`#{name} input[data-path="{path}"]`);
+          knob.value = "{value}";
+          knob.dispatchEvent(new Event("input", {{ bubbles: true }}));
+          knob.dispatchEvent(new Event("change", {{ bubbles: true }}));
+        }})()"""
+    )
+    watched.until(f"{stage(name)}.live.ready")
+
+
+def backend(watched, name):
+    return "" if watched.get(f"{stage(name)}.live.fused") else "portable"
+
+
+def native(watched, name, file, step, *changes, seed=1):
+    """The same world by the engine in Python."""
+    config = load_config(SCENES / f"{file}.toml", overrides=changes)
+    simulation = Simulation(config, seeds=[seed], backend=backend(watched, name))
+    simulation.run(step)
+    return simulation.worlds[0]
+
+
+def address_of(watched, name):
+    """The address of the scene's link, once it tells of the digest of now."""
+    digest = f"{stage(name)}.live.digest()"
+    watched.until(f"{digest} && document.querySelector('#{name} .permalink').href.endsWith({digest}.slice(0, 8))")
+    return watched.get(f"new URL(document.querySelector('#{name} .permalink').href).hash")
+
+
+def opened(article, name, address):
+    """A second reader, who opens the link."""
+    other = article(name, address)
+    other.until("hedon.opened !== ''", 200)
+    other.until(f"document.querySelector('#{name} .digest').textContent.includes('as in the link')")
+    return other
+
+
+def test_a_reader_steers_to_five_meals_and_the_link_has_the_same_bits(article):
+    watched = article("creature")
+    creature = stage("creature")
+    watched.until(f"{creature}.playing && {creature}.live.last > 3 && {creature}.frame")  # it strolls by itself
+    box = watched.page.locator("#creature canvas.world")
+    box.focus()
+    watched.page.keyboard.down("ArrowUp")
+    watched.until(f"{creature}.live.last > 3 && {creature}.track().startsWith('f')")
+    watched.page.keyboard.up("ArrowUp")
+    assert watched.get(f"{creature}.live.last") < 200, "who takes over begins anew"
+    begun = watched.get(f"{creature}.life().eaten[0]")
+    for _ in range(40):  # hold the pointer on the nearest food until it is eaten
+        place = watched.get(
+            f"""(() => {{
+              const {{ frame, arena }} = {creature};
+              const away = (i) => Math.hypot(frame.foodX[i] - frame.x[0], frame.foodY[i] - frame.y[0]);
+              const best = [...frame.foodX.keys()].sort((a, b) => away(a) - away(b))[0];
+              return arena.scene.toPage(frame.foodX[best], frame.foodY[best]);
+            }})()"""
+        )
+        watched.page.mouse.move(*place)
+        watched.page.mouse.down()
+        eaten = watched.get(f"{creature}.life().eaten[0]")
+        watched.until(f"{creature}.life().eaten[0] > {eaten} || {creature}.live.last % 40 === 0")
+        watched.page.mouse.up()
+        if watched.get(f"{creature}.life().eaten[0]") >= 5:
+            break
+    watched.until("document.querySelector('#creature-meals').classList.contains('reached')")
+    assert watched.get(f"{creature}.life().eaten[0]") > begun
+    watched.get(f"{creature}.setPlaying(false)")
+    address = address_of(watched, "creature")
+    digest, step = watched.get(f"[{creature}.live.digest(), {creature}.live.last]")
+    track, commands = watched.get(f"[{creature}.track(), {creature}.commands]")
+    assert steered(watched, track, commands, step) == digest
+    other = opened(article, "creature", address)
+    assert other.get(f"[{creature}.live.digest(), {creature}.live.last]") == [digest, step]
+
+
+def steered(watched, track, commands, steps):
+    """The digest after the same commands in Python, for as many steps."""
+    worlds = hedon.env.vector_env(load_config(SCENES / "creature.toml"), [1], backend=backend(watched, "creature"))
+    done, at = 0, 0
+    while at < len(track):
+        end = at + 1
+        while end < len(track) and track[end].isdigit():
+            end += 1
+        worlds.groups["agent"].actions[...] = np.array(commands[track[at]], np.float32)
+        for _ in range(int(track[at + 1 : end])):
+            worlds.step()
+            done += 1
+        at = end
+    assert done == steps
+    return worlds.simulation.worlds[0].digest()
+
+
+def test_reward_rises_without_a_meal_if_moving_feels_good(article):
+    watched = article("creature")
+    set_knob(watched, "creature", "genome.action.initial_mean", "5")
+    texts = (
+        "[...document.querySelectorAll('#creature [data-of=\"genome.action.initial_mean\"]')].map((x) => x.textContent)"
+    )
+    assert set(watched.get(texts)) == {"5"}
+    watched.page.locator("#creature canvas.world").focus()
+    watched.page.keyboard.down("ArrowLeft")
+    watched.until(f"{stage('creature')}.live.last > 40")
+    watched.page.keyboard.up("ArrowLeft")
+    watched.get(f"{stage('creature')}.setPlaying(false)")
+    life = watched.get(f"{stage('creature')}.life()")
+    assert life["eaten"] == [0]
+    assert life["reward"] > 0.5
+    assert life["energy"] < 40
+    watched.page.locator("#creature input[value=yes]").check()
+    watched.until("!document.querySelector('#creature .answer').hidden")
+    watched.page.locator("#creature").get_by_role("button", name="Reset").click()
+    watched.until(f"{stage('creature')}.changes.size === 0 && {stage('creature')}.live.last === 0")
+    assert watched.get(texts) == ["0"]
+
+
+def test_it_learns_to_eat_more_and_with_a_bad_feeling_to_sit(article):
+    watched = article("learning")
+    learning = stage("learning")
+    watched.page.locator("#learning-run").click()
+    watched.until(f"{learning}.live.last >= 81920", 400)
+    watched.until("document.querySelector('#learning .answer').textContent.includes('times as many')")
+    before, after = watched.get(f"[{learning}.rate(0, 5), {learning}.rate(75, 80)]")
+    assert after > 5 * max(before, 1)
+    assert watched.get(f"{learning}.path().length") >= 4 * 490
+    watched.get(f"{learning}.setPlaying(false)")
+    watched.page.locator("#learning-sit").click()
+    watched.until(f"{learning}.changes.size === 2 && {learning}.live.ready && {learning}.live.last === 0")
+    run_to(watched, "learning", 20480)
+    moved = f"""(() => {{
+      const path = {learning}.path();
+      const way = (from, to) => {{
+        let sum = 0;
+        for (let i = from + 2; i < to; i += 2) sum += Math.hypot(path[i] - path[i - 2], path[i + 1] - path[i - 1]);
+        return sum / (to - from);
+      }};
+      return [way(0, 1000), way(path.length - 1000, path.length)];
+    }})()"""
+    first, last = watched.get(moved)
+    assert last < first / 2
+    same = native(
+        watched, "learning", "learning", 20480, "food.normal.gene.initial_mean=0", "genome.action.initial_mean=-10"
+    )
+    assert watched.get(f"{learning}.live.digest()") == same.digest()
+    opened(article, "learning", address_of(watched, "learning"))
+
+
+def test_lives_end_by_chance_as_in_python_and_the_curves_are_those_of_the_model(article):
+    watched = article("life")
+    watched.page.locator("#life .guess input").fill("2000")
+    watched.page.locator("#life-one").click()
+    watched.until(f"{stage('life')}.lives().length === 1", 100)
+    watched.until("document.querySelector('#life .answer').textContent.includes('You guessed 2,000')")
+    world = native(watched, "life", "life", watched.get(f"{stage('life')}.live.last"))
+    [lived] = watched.get(f"{stage('life')}.lives()")
+    assert 0 not in world.agents()["agent_id"]
+    earlier = native(watched, "life", "life", lived - 1)
+    assert 0 in earlier.agents()["agent_id"]
+    set_knob(watched, "life", "hazard.kappa", "0.02")
+    config = load_config(SCENES / "life.toml", overrides=["hazard.kappa=0.02"])
+    species = next(iter(config.species.values()))
+    energy = np.array([0.0, 3.0, 10.0, 40.0])
+    drawn = watched.get(f"{list(energy)}.map((e) => {stage('life')}.curve.hazard({stage('life')}, e, 1000))")
+    assert drawn == pytest.approx(hazard(species.hazard, np.full(4, 1000.0), energy), rel=1e-12)
+    drawn = watched.get(f"{list(energy)}.map((e) => {stage('life')}.curve.birth({stage('life')}, e))")
+    assert drawn == pytest.approx(birth_rate(species.birth, energy), rel=1e-12)
+
+
+def test_a_dot_on_a_curve_can_be_dragged(article):
+    watched = article("life")
+    watched.get("document.querySelector('#life-curves').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    box = watched.page.locator("#life-curves").bounding_box()
+    watched.page.mouse.move(box["x"] + 47, box["y"] + 60)
+    watched.page.mouse.down()
+    watched.page.mouse.move(box["x"] + 47, box["y"] + 30)
+    watched.page.mouse.up()
+    watched.until(f"{stage('life')}.changes.has('hazard.kappa')")
+    kappa = watched.get(f"{stage('life')}.value('hazard.kappa')")
+    assert kappa > 0.01
+    assert watched.get("document.querySelector('#life input[data-path=\"hazard.kappa\"]').value") == str(kappa)
+
+
+def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(article):
+    watched = article("family")
+    watched.get(f"{stage('family')}.setPlaying(false)")
+    run_to(watched, "family", 400)
+    pairs = watched.get(f"{stage('family')}.pairs().map(([child, parent]) => [child.genome[0], parent.genome[0]])")
+    assert len(pairs) > 3
+    child, parent = np.array(pairs).T
+    assert np.median(np.abs(child - parent)) < 0.1 * np.std(parent)
+    some = watched.get(f"{stage('family')}.pairs()[0][0].id")
+    x, y = watched.get(
+        f"""(() => {{
+          const {{ frame, arena }} = {stage("family")};
+          const i = [...frame.id].indexOf({some});
+          return arena.scene.toPage(frame.x[i], frame.y[i]);
+        }})()"""
+    )
+    watched.page.mouse.click(x, y)
+    watched.until(f"document.querySelector('#family-card').textContent.includes('Creature {some}')")
+    watched.until("document.querySelector('#family-card').textContent.includes('nothing that the parent had learned')")
+    colored = watched.get(
+        f"""(() => {{
+          const {{ frame, live, camera }} = {stage("family")};
+          return [...frame.id].map((id, i) => [live.lives.founder(id) === live.lives.founder({some}),
+            camera.coloring.value(live.lives.get(id), frame, i)]);
+        }})()"""
+    )
+    assert {kin for kin, _ in colored} == {True, False}
+    assert all((color == 3) == kin for kin, color in colored)
+    watched.page.locator("#family input[value=skill]").check()
+    watched.until("document.querySelector('#family .answer').textContent.startsWith('Only what feels good')")
+    address = address_of(watched, "family")
+    assert watched.get(f"{stage('family')}.live.digest()") == native(watched, "family", "family", 400).digest()
+    other = opened(article, "family", address)
+    assert other.get(f"{stage('family')}.chosen") == some
+
+
+def test_bad_feelings_lose_to_evolution(article):
+    watched = article("contest")
+    set_knob(watched, "contest", "species.blue.reward.meal_coef", "-8")
+    set_knob(watched, "contest", "species.blue.genome.action.initial_mean", "0")
+    watched.page.locator("#contest-one").click()
+    watched.until(f"{stage('contest')}.results().length === 1", 900)
+    [[blue, orange]] = watched.get(f"{stage('contest')}.results()")
+    assert blue < orange
+    watched.until("document.querySelector('#contest-score').textContent.includes('evolution wins')")
+    watched.until("!document.querySelector('#contest-map').hidden")
+    assert watched.get(f"[{stage('contest')}.luck(5, 5), {stage('contest')}.luck(0, 3)]") == [1 / 32, 1]
+    changes = ["species.blue.reward.meal_coef=-8", "species.blue.genome.action.initial_mean=0"]
+    same = native(watched, "contest", "contest", 20480, *changes)
+    assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
+    assert watched.get("document.querySelector('#contest .permalink').hash").count("species.blue") == 2
+
+
+def test_a_guess_is_drawn_before_the_answer_by_pointer_and_by_keys(article):
+    watched = article("chance")
+    plot = watched.page.locator("#chance-plot")
+    assert watched.page.locator("#chance-real").is_disabled()
+    box = plot.bounding_box()
+    watched.page.mouse.move(box["x"] + 50, box["y"] + 100)
+    watched.page.mouse.down()
+    watched.page.mouse.move(box["x"] + box["width"] - 11, box["y"] + 200, steps=10)
+    watched.page.mouse.up()
+    watched.until("!document.querySelector('#chance-real').disabled")
+    address = watched.get("new URL(document.querySelector('#chance-link').href).hash")
+    watched.page.locator("#chance-real").click()
+    watched.until("document.querySelector('#chance-answer').textContent.includes('ended at 0.48')")
+    watched.page.locator("#chance-drift").click()
+    watched.until(
+        "/Of 16 genes that do nothing, \\d+ ended/.test(document.querySelector('#chance-answer').textContent)"
+    )
+    other = article("chance", address)
+    other.until("!document.querySelector('#chance-real').disabled")
+    other.page.locator("#chance-reset").click()
+    other.page.locator("#chance-plot").focus()
+    for _ in range(51):
+        other.page.keyboard.press("ArrowRight")
+    other.until("!document.querySelector('#chance-real').disabled")
+
+
+@pytest.mark.parametrize("world", ["predators", "poison", "seasons", "pitfalls"])
+def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
+    watched = article("sandbox")
+    sandbox = stage("sandbox")
+    watched.page.locator(f"button[data-world={world}]").click()
+    watched.until(f"{sandbox}.world.name === '{world}' && {sandbox}.live.ready && {sandbox}.live.last > 0")
+    watched.get(f"{sandbox}.setPlaying(false)")
+    run_to(watched, "sandbox", 60)
+    step = watched.get(f"{sandbox}.live.last")
+    assert watched.get(f"{sandbox}.live.digest()") == native(watched, "sandbox", world, step).digest()
+    if world == "poison":
+        set_knob(watched, "sandbox", "food.poison.gives.energy", "-2")
+        with watched.page.expect_download() as waiting:
+            watched.page.locator("#sandbox-config").click()
+        taken = load_config(str(waiting.value.path()))
+        assert taken.food == load_config(SCENES / "poison.toml", overrides=["food.poison.gives.energy=-2"]).food
+        run_to(watched, "sandbox", 30)
+        other = opened(article, "sandbox", address_of(watched, "sandbox"))
+        assert other.get(f"{sandbox}.value('food.poison.gives.energy')") == -2
+        with other.page.expect_download() as waiting:
+            other.page.locator("#sandbox-picture").click()
+        assert waiting.value.path().read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_wrong_link_says_what_is_wrong(article):
+    watched = article("creature", "#scene=creature&seed=1&step=3&birth.kappa=7")
+    watched.until("document.querySelector('#notice').textContent.includes('birth.kappa = 7: must be')")
+    other = article("creature", "#scene=nowhere")
+    other.until("document.querySelector('#notice').textContent.includes(\"the scene 'nowhere': there are creature\")")

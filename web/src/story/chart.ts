@@ -1,0 +1,104 @@
+// Small plots of the article, on a canvas: axes with their units, lines, dots, and the place under a pointer.
+import { styleColor } from "../element";
+
+export interface Axis {
+  low: number;
+  high: number;
+  label: string;
+}
+
+const [LEFT, BOTTOM, TOP, RIGHT] = [46, 34, 10, 10]; // pixels around the plot
+
+export class Chart {
+  private readonly ink: CanvasRenderingContext2D;
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    public x: Axis,
+    public y: Axis,
+  ) {
+    this.ink = canvas.getContext("2d")!;
+  }
+
+  /** Empties it and draws the axes. */
+  begin(): void {
+    const { ink, canvas, x, y } = this;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    [canvas.width, canvas.height] = [canvas.clientWidth * ratio, canvas.clientHeight * ratio];
+    ink.setTransform(ratio, 0, 0, ratio, 0, 0);
+    ink.font = "12px system-ui, sans-serif";
+    const [quiet, rule] = [styleColor("--quiet"), styleColor("--rule")];
+    const zero = Math.min(Math.max(0, y.low), y.high);
+    this.line([[x.low, zero], [x.high, zero]], rule, 1);
+    this.line([[x.low, y.low], [x.low, y.high]], rule, 1);
+    ink.fillStyle = quiet;
+    const write = (text: string, px: number, py: number, align: CanvasTextAlign) => {
+      ink.textAlign = align;
+      ink.fillText(text, px, py);
+    };
+    const { clientWidth: width, clientHeight: height } = canvas;
+    for (const value of y.label ? new Set([y.low, zero, y.high]) : []) write(short(value), LEFT - 5, this.py(value) + 4, "right");
+    write(short(x.low), LEFT, height - BOTTOM + 15, "left");
+    write(short(x.high), width - RIGHT, height - BOTTOM + 15, "right");
+    write(x.label, (LEFT + width - RIGHT) / 2, height - 5, "center");
+    ink.save();
+    ink.translate(11, (TOP + height - BOTTOM) / 2);
+    ink.rotate(-Math.PI / 2);
+    write(y.label, 0, 0, "center");
+    ink.restore();
+  }
+
+  line(points: [number, number][], color: string, width = 2, dash: number[] = []): void {
+    const { ink } = this;
+    ink.beginPath();
+    for (const [x, y] of points) ink.lineTo(this.px(x), this.py(y));
+    [ink.strokeStyle, ink.lineWidth] = [color, width];
+    ink.setLineDash(dash);
+    ink.stroke();
+    ink.setLineDash([]);
+  }
+
+  dot(x: number, y: number, color: string, radius = 4): void {
+    this.ink.beginPath();
+    this.ink.arc(this.px(x), this.py(y), radius, 0, 2 * Math.PI);
+    this.ink.fillStyle = color;
+    this.ink.fill();
+  }
+
+  box(x0: number, y0: number, x1: number, y1: number, color: string): void {
+    this.ink.fillStyle = color;
+    this.ink.fillRect(this.px(x0), this.py(y1), this.px(x1) - this.px(x0) + 0.5, this.py(y0) - this.py(y1) + 0.5);
+  }
+
+  text(words: string, x: number, y: number, color: string, align: CanvasTextAlign = "left"): void {
+    this.ink.fillStyle = color;
+    this.ink.textAlign = align;
+    this.ink.fillText(words, this.px(x), this.py(y));
+  }
+
+  /** The place of an event, within the axes. */
+  place(event: PointerEvent): [number, number] {
+    const box = this.canvas.getBoundingClientRect();
+    const { x, y } = this;
+    const across = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+    const up = 1 - (event.clientY - box.top - TOP) / (box.height - TOP - BOTTOM);
+    return [within(x.low + across * (x.high - x.low), x), within(y.low + up * (y.high - y.low), y)];
+  }
+
+  /** Pixels of the page of a place. */
+  page(x: number, y: number): [number, number] {
+    const box = this.canvas.getBoundingClientRect();
+    return [box.left + this.px(x), box.top + this.py(y)];
+  }
+
+  private px(x: number): number {
+    return LEFT + ((x - this.x.low) / (this.x.high - this.x.low)) * (this.canvas.clientWidth - LEFT - RIGHT);
+  }
+
+  private py(y: number): number {
+    return TOP + (1 - (y - this.y.low) / (this.y.high - this.y.low)) * (this.canvas.clientHeight - TOP - BOTTOM);
+  }
+}
+
+const within = (value: number, { low, high }: Axis) => Math.min(Math.max(value, low), high);
+const short = (value: number) => value.toLocaleString("en-US", { maximumFractionDigits: 2 });

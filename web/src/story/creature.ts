@@ -1,0 +1,147 @@
+// Scene 1: a creature that a person steers, with its two meters.
+import { show, styleColor } from "../element";
+import type { Coloring } from "../color";
+import { bindGuess } from "./guess";
+import { bindKnobs } from "./knob";
+import { openStage, type Scene, type Worlds } from "./scene";
+import { CALM, Stage } from "./stage";
+import { commandsOf, ofKeys, toward, Track } from "./steer";
+
+export const ONE_COLOR: Coloring = { name: "one", label: "a creature", scale: "distinct", value: () => 0 };
+const STROLL = 1500; // steps that it shows by itself how it moves
+const ENOUGH = 5; // meals
+const FLAME = 0.09; // units of a motor's flame per unit of force
+
+export function creature(section: HTMLElement, worlds: Worlds): Scene {
+  const stage = new Stage(section, worlds.creature!, { scene: "creature", speed: 1, coloring: ONE_COLOR, chosen: 0, rays: true, threads: 1 });
+  const [least, most] = ["min_force", "max_force"].map((name) => stage.value(`motor.${name}`)) as [number, number];
+  const commands = commandsOf(least, most);
+  const keys = new Set<string>();
+  let track = new Track();
+  let goal: [number, number] | undefined;
+  let strolling = !CALM.matches;
+  let command = ".";
+  const guess = bindGuess(section);
+  const told = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
+
+  const takeOver = () => {
+    if (strolling) stage.begin();
+    strolling = false;
+    stage.setPlaying(true);
+  };
+  const here = (): [number, number, number] | undefined => {
+    const { frame } = stage;
+    return frame && frame.id.length > 0 ? [frame.x[0]!, frame.y[0]!, frame.angle[0]!] : undefined;
+  };
+  const nearest = (): [number, number] | undefined => {
+    const { frame } = stage;
+    if (!frame || frame.foodX.length === 0) return undefined;
+    const away = (i: number) => (frame.foodX[i]! - frame.x[0]!) ** 2 + (frame.foodY[i]! - frame.y[0]!) ** 2;
+    const best = [...frame.foodX.keys()].reduce((a, b) => (away(b) < away(a) ? b : a));
+    return [frame.foodX[best]!, frame.foodY[best]!];
+  };
+  const decide = (): string => {
+    if (keys.size > 0) return ofKeys(keys);
+    const at = here();
+    const to = goal ?? (strolling ? nearest() : undefined);
+    return at && to ? toward(...at, to) : ".";
+  };
+
+  stage.advance = (steps) => {
+    if (strolling && stage.live.last > STROLL) stage.setPlaying(false);
+    const next = decide();
+    stage.actions = commands[next];
+    const sent = Stage.prototype.advance.call(stage, steps);
+    if (sent) command = next;
+    return sent;
+  };
+  stage.onBegin = () => {
+    track = new Track();
+    command = ".";
+  };
+  stage.onMoment = ({ done }) => {
+    track.add(command, done);
+    stage.edited = track.runs.some(([each]) => each !== ".");
+    if (track.fits) stage.notes.set("steer", String(track));
+    else stage.notes.delete("steer");
+  };
+  stage.onPicture = () => drawMotors(stage, commands[command]!, [least, most]);
+  stage.onWords = () => {
+    const life = stage.life();
+    if (!life) return;
+    const meals = life.eaten[0]!;
+    told("energy").textContent = show(life.energy, 1);
+    told("meals").textContent = show(meals);
+    told("reward").textContent = show(life.reward, 2);
+    told("meals").classList.toggle("reached", meals >= ENOUGH && !strolling);
+    if (guess.value()) guess.answer("Yes. Let moving feel like 5 and drive in circles: reward grows without a meal, while energy falls.");
+  };
+
+  bindSteering(stage, keys, takeOver, (place) => (goal = place));
+  section.addEventListener("reset", () => (strolling = false));
+  const read = bindKnobs(section, stage, () => {
+    strolling = false;
+    stage.begin();
+  });
+  Object.assign(stage, { commands, track: () => String(track) }); // for tests and curious persons
+  return {
+    section,
+    stage,
+    autoplay: true,
+    open: async (place) => {
+      strolling = false;
+      const runs = Track.of(place.notes.get("steer") ?? "").runs;
+      await openStage(stage, { ...place, step: 0, digest: "" });
+      read();
+      let at = 0;
+      for (const [each, steps] of runs) {
+        [command, stage.actions] = [each, commands[each]];
+        await stage.runTo(Math.min((at += steps), place.step));
+      }
+      await stage.runTo(place.step, place.digest);
+    },
+  };
+}
+
+function bindSteering(stage: Stage, keys: Set<string>, takeOver: () => void, go: (place?: [number, number]) => void): void {
+  const { canvas } = stage.arena.scene;
+  canvas.classList.add("steered");
+  document.addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    if (!event.key.startsWith("Arrow") || !stage.seen || /^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (target !== canvas && document.activeElement !== document.body) return;
+    event.preventDefault();
+    if (keys.size === 0) takeOver();
+    keys.add(event.key);
+  });
+  document.addEventListener("keyup", (event) => keys.delete(event.key));
+  window.addEventListener("blur", () => keys.clear());
+  const point = (event: PointerEvent) => go(stage.arena.scene.toWorld(event.clientX, event.clientY));
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    takeOver();
+    point(event);
+  });
+  canvas.addEventListener("pointermove", (event) => event.buttons > 0 && point(event));
+  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => go());
+}
+
+/** Both motors as flames behind the body: the longer, the stronger. */
+function drawMotors(stage: Stage, actions: [number, number], [least, most]: [number, number]): void {
+  const { frame, ink, arena } = stage;
+  if (!frame || frame.id.length === 0) return;
+  const [x, y, angle] = [frame.x[0]!, frame.y[0]!, frame.angle[0]!];
+  const { radius } = stage.live.layout.species[0]!;
+  ink.lineWidth = Math.max(3, arena.scene.zoom * 3);
+  ink.strokeStyle = styleColor("--flame");
+  ink.lineCap = "round";
+  actions.forEach((action, i) => {
+    const force = least + (most - least) / (1 + Math.exp(-action));
+    const side = angle + ((i === 0 ? 135 : -135) * Math.PI) / 180;
+    const [mx, my] = [x - radius * Math.sin(side), y + radius * Math.cos(side)];
+    ink.beginPath();
+    ink.moveTo(...stage.at(mx, my));
+    ink.lineTo(...stage.at(mx + FLAME * force * Math.sin(angle), my - FLAME * force * Math.cos(angle)));
+    if (Math.abs(force) > 1) ink.stroke();
+  });
+}

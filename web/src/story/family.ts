@@ -1,0 +1,105 @@
+// Scene 4: many agents; a family in one color, and what children have of their parents.
+import type { Coloring } from "../color";
+import { element, show, styleColor } from "../element";
+import type { Life } from "../types";
+import { Chart } from "./chart";
+import { bindGuess } from "./guess";
+import { openStage, type Scene, type Worlds } from "./scene";
+import { Stage } from "./stage";
+
+const ORANGE = 3; // its place among the distinct colors
+const RANGE = 3; // of the plot of feelings
+const FIRST = 0; // the agent that is chosen at first
+
+export function family(section: HTMLElement, worlds: Worlds): Scene {
+  let root = -1;
+  const coloring: Coloring = {
+    name: "family",
+    label: "the chosen family",
+    scale: "distinct",
+    value: (life) => (life && root >= 0 && stage.live.lives.founder(life.id) === root ? ORANGE : NaN),
+  };
+  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", speed: 2, coloring });
+  const gene = (name: string) => stage.world.layout.genes.findIndex((each) => each.name === name);
+  const [meal, moving] = [gene("w_normal"), gene("w_action")];
+  const chart = new Chart(
+    section.querySelector("canvas.chart")!,
+    { low: -RANGE, high: RANGE, label: "how a meal feels to the parent" },
+    { low: -RANGE, high: RANGE, label: "to the child" },
+  );
+  const guess = bindGuess(section);
+  const card = section.querySelector<HTMLElement>("#family-card")!;
+
+  const choose = (id: number) => {
+    [stage.chosen, stage.live.chosen] = [id, id];
+    root = id < 0 ? -1 : stage.live.lives.founder(id);
+    stage.notes.set("agent", String(id));
+    if (id < 0) stage.notes.delete("agent");
+  };
+  /** Every child whose parent is known, with its parent. */
+  const pairs = (): [Life, Life][] =>
+    [...stage.live.lives.all()].flatMap((child): [Life, Life][] => {
+      const parent = child.parent >= 0 ? stage.live.lives.get(child.parent) : undefined;
+      return parent ? [[child, parent]] : [];
+    });
+  stage.onBegin = () => {
+    choose(FIRST);
+  };
+  stage.onWords = () => {
+    const known = pairs();
+    chart.begin();
+    chart.line([[-RANGE, -RANGE], [RANGE, RANGE]], styleColor("--rule"), 1);
+    const [plain, mark] = [styleColor("--before"), styleColor("--family")];
+    for (const [child, parent] of known) {
+      const kin = root >= 0 && stage.live.lives.founder(child.id) === root;
+      const within = (value: number) => Math.min(Math.max(value, -RANGE), RANGE);
+      chart.dot(within(parent.genome[meal]!), within(child.genome[meal]!), kin ? mark : plain, kin ? 4 : 3);
+    }
+    const own = stage.life();
+    if (own) card.replaceChildren(...about(own));
+    if (guess.value() && known.length > 0) guess.answer(verdict(known));
+  };
+  const about = (own: Life): HTMLElement[] => {
+    const parent = stage.life(own.parent);
+    const feels = (life: Life) => `a meal feels like ${show(life.genome[meal])}, moving like ${show(life.genome[moving])}`;
+    const age = (own.death >= 0 ? own.death : stage.live.last) - own.birth;
+    const ate = `${show(own.eaten[0])} meals in ${show(age)} steps of life, ${own.children} ${own.children === 1 ? "child" : "children"}`;
+    const kin = stage.frame ? [...stage.frame.id].filter((id) => stage.live.lives.founder(id) === root).length : 0;
+    const lines = [`Creature ${own.id}${own.death >= 0 ? " (dead)" : ""}: ${feels(own)}; ${ate}.`];
+    lines.push(parent ? `Its parent, ${parent.id}: ${feels(parent)}.` : "It is a founder.");
+    if (parent) lines.push("Its network began at random, with nothing that the parent had learned.");
+    lines.push(`${kin} of its family live.`);
+    return lines.map((text) => element("p", { text }));
+  };
+  const verdict = (known: [Life, Life][]): string => {
+    const apart = (a: number[], b: number[]) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]!), 0) / a.length;
+    const [children, parents] = [known.map(([child]) => child.genome[meal]!), known.map(([, parent]) => parent.genome[meal]!)];
+    const strangers = apart(children, [...parents.slice(1), parents[0]!]);
+    return (
+      `Only what feels good. In this world ${known.length} children differ from their parents by ${show(apart(children, parents))} in how a meal feels, ` +
+      `from other parents by ${show(strangers)}. How to find food each has to learn anew.`
+    );
+  };
+  const { canvas } = stage.arena.scene;
+  canvas.addEventListener("click", (event) => {
+    const { frame } = stage;
+    if (frame) choose(stage.arena.pick(stage.live, frame, ...stage.arena.scene.toWorld(event.clientX, event.clientY)));
+  });
+  canvas.addEventListener("keydown", (event) => {
+    const ids = stage.frame?.id;
+    if (event.key.toLowerCase() !== "n" || !ids || ids.length === 0) return;
+    event.preventDefault();
+    choose(ids.find((id) => id > stage.chosen) ?? ids[0]!);
+  });
+  section.addEventListener("reset", () => guess.answer(""));
+  Object.assign(stage, { choose, pairs });
+  return {
+    section,
+    stage,
+    autoplay: true,
+    open: async (place) => {
+      await openStage(stage, place);
+      if (place.notes.has("agent")) choose(Number(place.notes.get("agent")));
+    },
+  };
+}

@@ -1,0 +1,36 @@
+// Sliders of settings, and the numbers in the text that follow them: the markup names the paths, this binds them.
+import { show } from "../element";
+import type { Stage } from "./stage";
+
+/**
+ * Binds every `input[data-path]` of a scene to its world, and every `[data-of]` in its text to a setting. While a slider moves the
+ * numbers follow; when it rests the world begins again.
+ */
+export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void): () => void {
+  const knobs = [...section.querySelectorAll<HTMLInputElement>("input[data-path]")];
+  const paths = (knob: HTMLInputElement) => knob.dataset.path!.split(" ");
+  const show_ = () => {
+    for (const knob of knobs) {
+      const text = show(Number(knob.value), 5);
+      knob.parentElement!.querySelector("output")!.textContent = text;
+      for (const path of paths(knob)) {
+        for (const each of section.querySelectorAll(`[data-of="${CSS.escape(path)}"]`)) each.textContent = text;
+      }
+    }
+  };
+  const read = () => {
+    for (const knob of knobs) knob.value = String(stage.value(paths(knob)[0]!));
+    show_();
+  };
+  for (const knob of knobs) {
+    knob.addEventListener("input", show_);
+    knob.addEventListener("change", () => {
+      const wrong = stage.set(paths(knob), knob.value);
+      knob.setCustomValidity(wrong);
+      if (!wrong) begin();
+    });
+  }
+  section.addEventListener("reset", read);
+  read();
+  return read;
+}

@@ -1,0 +1,99 @@
+// Scene 7: other worlds to change; pictures, videos, configs and links of them.
+import type { Coloring } from "../color";
+import { save } from "../csv";
+import { styleColor } from "../element";
+import { columnOf } from "../series";
+import { configFile } from "../settings";
+import { Chart } from "./chart";
+import { bindKnobs } from "./knob";
+import { openStage, type Scene, type Worlds } from "./scene";
+import { Stage } from "./stage";
+
+const VIDEO_MS = 8000; // of a video
+const ABOUT: Record<string, string> = {
+  predators: "Predators (ringed) eat prey. Both learn, and what the sight of the other feels like evolves.",
+  poison: "Violet food costs energy. Poison can even feel good to a newborn.",
+  seasons: "Food grows twice as fast in summer and not at all in winter.",
+  pitfalls: "Triangles hurt whoever touches them.",
+};
+
+export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
+  const coloring: Coloring = { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! };
+  const stage = new Stage(section, worlds.predators!, { scene: "sandbox", speed: 2, coloring });
+  const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive" });
+  const reads: (() => void)[] = [];
+  let name = "predators";
+
+  const choose = (next: string) => {
+    name = next in ABOUT ? next : "predators";
+    stage.world = worlds[name]!;
+    for (const each of section.querySelectorAll<HTMLElement>("button[data-world]")) each.setAttribute("aria-pressed", String(each.dataset.world === name));
+    for (const each of section.querySelectorAll<HTMLElement>(".knobs")) each.hidden = each.dataset.world !== name;
+    section.querySelector("#sandbox-about")!.textContent = ABOUT[name]!;
+  };
+  stage.onBegin = () => stage.notes.set("world", name);
+  stage.onWords = () => {
+    const { series, layout } = stage.live;
+    const counts = layout.species.map((species) => series.get(columnOf(layout, species, "alive")));
+    chart.x.high = Math.max(1000, stage.live.last);
+    chart.y.high = Math.max(10, ...counts.flat());
+    chart.begin();
+    counts.forEach((values, i) => chart.line(values.map((value, k) => [series.step[k]!, value]), styleColor(i === 0 ? "--blue" : "--orange")));
+  };
+  for (const box of section.querySelectorAll<HTMLElement>(".knobs")) {
+    choose(box.dataset.world!);
+    reads.push(bindKnobs(box, stage, () => stage.begin()));
+  }
+  choose("predators");
+  const read = () => reads[Object.keys(ABOUT).indexOf(name)]!();
+  for (const each of section.querySelectorAll<HTMLElement>("button[data-world]")) {
+    each.addEventListener("click", () => {
+      choose(each.dataset.world!);
+      stage.changes.clear();
+      read();
+      stage.begin(1);
+      stage.setPlaying(true);
+    });
+  }
+  section.addEventListener("reset", read);
+  section.querySelector("#sandbox-picture")!.addEventListener("click", () => stage.arena.scene.canvas.toBlob((blob) => blob && saveBlob(`${name}.png`, blob)));
+  section.querySelector("#sandbox-config")!.addEventListener("click", () => save(`${name}.toml`, configFile(stage.world, stage.changes)));
+  bindVideo(section.querySelector("#sandbox-video")!, stage, () => name);
+  Object.assign(stage, { choose });
+  return {
+    section,
+    stage,
+    autoplay: true,
+    open: async (place) => {
+      choose(place.notes.get("world") ?? "predators");
+      await openStage(stage, place);
+      read();
+    },
+  };
+}
+
+function bindVideo(made: HTMLButtonElement, stage: Stage, name: () => string): void {
+  if (!("MediaRecorder" in window)) {
+    made.hidden = true; // this browser has none
+    return;
+  }
+  made.addEventListener("click", () => {
+    const recorder = new MediaRecorder(stage.arena.scene.canvas.captureStream(30));
+    const parts: Blob[] = [];
+    recorder.ondataavailable = ({ data }) => parts.push(data);
+    recorder.onstop = () => {
+      saveBlob(`${name()}.${recorder.mimeType.includes("mp4") ? "mp4" : "webm"}`, new Blob(parts, { type: recorder.mimeType }));
+      [made.disabled, made.textContent] = [false, "Record video"];
+    };
+    [made.disabled, made.textContent] = [true, "Recording 8 s"];
+    stage.setPlaying(true);
+    recorder.start();
+    setTimeout(() => recorder.stop(), VIDEO_MS);
+  });
+}
+
+function saveBlob(name: string, blob: Blob): void {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,25 @@
+// What a scene of the article is to the page: its section, its stage, and how it opens at a place.
+import type { LiveWorld } from "../types";
+import type { Place } from "./link";
+import type { Stage } from "./stage";
+
+export type Worlds = Record<string, LiveWorld>;
+
+export interface Scene {
+  section: HTMLElement;
+  stage?: Stage;
+  autoplay?: boolean; // whether it moves as soon as it is seen
+  /** Shows the place of a link; without it the page begins the world and runs it to the step. */
+  open?: (place: Place) => Promise<void>;
+}
+
+/** Begins the world of a link and runs it to its step. */
+export async function openStage(stage: Stage, place: Place): Promise<void> {
+  stage.changes.clear();
+  for (const [path, value] of place.changes) {
+    const wrong = stage.set([path], value);
+    if (wrong) throw new Error(wrong);
+  }
+  stage.begin(place.seed);
+  await stage.runTo(place.step, place.digest);
+}

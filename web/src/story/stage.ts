@@ -1,0 +1,226 @@
+// One world of the article on its canvas: it plays while it is seen, begins again, runs to a step, and has a link.
+import { Arena } from "../arena";
+import type { Coloring } from "../color";
+import { element, show } from "../element";
+import { Live } from "../live";
+import type { Actions, Moment } from "../live.worker";
+import { save } from "../csv";
+import { command, refusal } from "../settings";
+import type { Frame, Life, LiveWorld } from "../types";
+import { addressOf, type Place, SHORT } from "./link";
+
+const PICTURE_MS = 12; // of work for a world that plays, between two pictures
+const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
+const WORDS_MS = 150; // between two looks at the words
+export const CALM = matchMedia("(prefers-reduced-motion: reduce)");
+
+export interface Camera {
+  scene: string; // the id of its section
+  speed: number; // steps per picture
+  coloring: Coloring;
+  chosen?: number; // the agent that is followed from the start
+  rays?: boolean;
+  threads?: number; // 0 or nothing for as many as help
+  trace?: boolean; // whether the path of the chosen agent is noted
+}
+
+export class Stage {
+  live!: Live;
+  changes = new Map<string, string>();
+  seed = 1;
+  playing = false;
+  seen = false; // whether it is on the screen
+  frame: Frame | undefined;
+  chosen: number;
+  actions: Actions | undefined; // of the chosen agent, if a person drives it
+  notes = new Map<string, string>();
+  edited = false; // whether no config and notes give this world
+  pictures = 0;
+  onBegin: () => void = () => {};
+  onMoment: (moment: Moment) => void = () => {};
+  onPicture: () => void = () => {};
+  onWords: () => void = () => {};
+  readonly arena: Arena;
+  readonly ink: CanvasRenderingContext2D; // above the arena, in pixels of the page
+  readonly play = button("Play", "main");
+  readonly again = button("Reset");
+  readonly bar = element("div", { class: "bar" });
+  private readonly clock = element("span", { class: "clock" });
+  private readonly same = element("a", { class: "permalink", text: "link" });
+  private readonly mark = element("code", { class: "digest" });
+  private readonly how = element("p", { class: "how" });
+  private goal: { step: number; done: () => void } | undefined;
+  private wanted = "";
+  private wordsDue = 0;
+
+  constructor(
+    readonly host: HTMLElement,
+    public world: LiveWorld,
+    readonly camera: Camera,
+  ) {
+    const canvas = host.querySelector<HTMLCanvasElement>("canvas.world")!;
+    const above = element("canvas", { class: "ink" });
+    above.setAttribute("aria-hidden", "true");
+    canvas.after(above);
+    this.arena = new Arena(canvas);
+    this.arena.showRays = camera.rays ?? false;
+    this.arena.showTrail = false;
+    this.ink = above.getContext("2d")!;
+    this.chosen = camera.chosen ?? -1;
+    this.play.addEventListener("click", () => this.setPlaying(!this.playing));
+    this.again.addEventListener("click", () => this.reset());
+    this.same.addEventListener("click", (event) => this.copy(event));
+    this.bar.append(this.play, this.again, this.clock, this.same, this.mark);
+    this.how.hidden = true;
+    (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
+  }
+
+  /** Begins the world, with what differs from its config. */
+  begin(seed = this.seed): void {
+    this.live?.close();
+    this.finish();
+    this.how.hidden = true;
+    [this.seed, this.frame, this.edited, this.actions, this.wanted] = [seed, undefined, false, undefined, ""];
+    this.chosen = this.camera.chosen ?? -1;
+    this.notes = new Map();
+    this.live = new Live(this.world, new Map(this.changes), seed, this.camera.threads ?? 0);
+    this.live.chosen = this.chosen;
+    this.live.onMoment = (moment) => this.onMoment(moment);
+    this.arena.forgetTrail();
+    this.arena.fit(this.live);
+    this.onBegin();
+  }
+
+  /** Begins again as the scene's config and the first seed have it. */
+  reset(): void {
+    this.changes.clear();
+    this.setPlaying(false);
+    this.begin(1);
+    this.host.closest("section")!.dispatchEvent(new CustomEvent("reset"));
+  }
+
+  /** Another value of a setting: the world begins again. Returns why it is refused, or "". */
+  set(paths: string[], value: string): string {
+    for (const path of paths) {
+      const setting = this.world.settings.find((each) => each.path === path);
+      if (!setting) return `${path}: is no setting that this scene can change`;
+      const wrong = refusal(setting, value);
+      if (wrong) return wrong;
+      if (setting.choices.length > 0 ? value === setting.value : Number(value) === Number(setting.value)) this.changes.delete(path);
+      else this.changes.set(path, value);
+    }
+    return "";
+  }
+
+  /** The value of a setting in this world. */
+  value(path: string): number {
+    return Number(this.changes.get(path) ?? this.world.settings.find((each) => each.path === path)?.value);
+  }
+
+  setPlaying(on: boolean): void {
+    this.playing = on;
+    this.play.textContent = on ? "Pause" : "Play";
+    this.play.setAttribute("aria-pressed", String(on));
+  }
+
+  /** Runs to a step as fast as it can; resolves when it is there and its digest is known, or when it cannot go on. */
+  runTo(step: number, wanted = ""): Promise<void> {
+    this.setPlaying(false);
+    this.finish();
+    this.wanted = wanted;
+    return new Promise((done) => (this.goal = { step, done }));
+  }
+
+  get running(): boolean {
+    return this.goal !== undefined;
+  }
+
+  /** Where it is. */
+  place(): Place {
+    return { scene: this.camera.scene, seed: this.seed, step: this.live.last, digest: this.live.digest(), changes: this.changes, notes: this.notes };
+  }
+
+  life(id = this.chosen): Life | undefined {
+    return this.live.lives.get(id);
+  }
+
+  /** Once for each picture of the page. */
+  picture(): void {
+    if (!this.live) return;
+    this.move();
+    if (!this.seen) return;
+    const { before } = this.live.around(Infinity);
+    this.frame = before;
+    const { ink, arena } = this;
+    arena.draw(this.live, before, this.camera.coloring, this.chosen);
+    const { clientWidth, clientHeight } = ink.canvas;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    [ink.canvas.width, ink.canvas.height] = [clientWidth * ratio, clientHeight * ratio];
+    ink.scale(ratio, ratio);
+    this.onPicture();
+    this.pictures++;
+    if (performance.now() < this.wordsDue) return;
+    this.wordsDue = performance.now() + WORDS_MS;
+    this.words();
+  }
+
+  /** Pixels of the canvas of a place in the world. */
+  at(x: number, y: number): [number, number] {
+    const box = this.ink.canvas.getBoundingClientRect();
+    const [px, py] = this.arena.scene.toPage(x, y);
+    return [px - box.left, py - box.top];
+  }
+
+  private move(): void {
+    const { live, goal } = this;
+    if (goal) {
+      if (live.error || live.over || live.last >= goal.step) {
+        if (live.error || live.digest()) this.finish();
+        else live.look();
+      } else live.advance(goal.step - live.last, RUN_MS, { trace: this.camera.trace, actions: this.actions });
+    } else if (this.playing && this.seen) this.advance(this.camera.speed);
+    else live.look();
+  }
+
+  /** Some steps, as the person who drives it tells; a scene may do it in another way. */
+  advance(steps: number): boolean {
+    return this.live.advance(steps, PICTURE_MS, { trace: this.camera.trace, actions: this.actions });
+  }
+
+  private finish(): void {
+    const { goal } = this;
+    this.goal = undefined;
+    goal?.done();
+  }
+
+  private words(): void {
+    const { live } = this;
+    const digest = live.digest();
+    if (live.over && this.playing) this.setPlaying(false);
+    this.clock.textContent = live.error || `step ${show(live.last)}${live.over ? ", all dead" : ""}`;
+    this.same.href = addressOf(this.place());
+    this.mark.textContent = digest ? digest.slice(0, SHORT) : "";
+    const same = this.wanted !== "" && digest.startsWith(this.wanted);
+    if (digest && this.wanted && this.running === false) this.mark.textContent += same ? ", as in the link" : `, in the link ${this.wanted}`;
+    this.onWords();
+  }
+
+  private copy(event: Event): void {
+    event.preventDefault();
+    const address = addressOf(this.place());
+    history.replaceState(null, "", address);
+    void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse; the address has it too
+    this.same.textContent = "link copied";
+    setTimeout(() => (this.same.textContent = "link"), 1500);
+    const config = button("Save the config", "link");
+    config.addEventListener("click", () => save(`${this.world.name}.toml`, this.world.toml));
+    const same = element("code", { text: command(this.world, this.changes, this.seed, this.live.last) });
+    const said = this.edited ? "You steered, so only the link has these bits. It began as " : "The same bits in Python: ";
+    this.how.replaceChildren(said, same, " ", config);
+    this.how.hidden = false;
+  }
+}
+
+export function button(text: string, kind = ""): HTMLButtonElement {
+  return Object.assign(element("button", { text, class: kind }), { type: "button" });
+}
