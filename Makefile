@@ -43,7 +43,7 @@ sanitized: tools $(UV)
 test-long: sync
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \
 	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
-	  $(RUN) $(BROWSER) $(EXTRA) --extra remote --group viewer --group cuda --group wheel \
+	  $(RUN) $(BROWSER) $(EXTRA) --extra remote --group store --group viewer --group cuda --group wheel \
 	  pytest --numprocesses auto --dist worksteal -m "long or repeated"
 	$(RUN) python tests/soak.py
 	$(RUN) python tests/cuda_step.py

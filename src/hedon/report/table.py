@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import polars as pl
+
 from hedon.analysis.result import ResultTable
 from hedon.statistic.interval import SHOWN_FROM
 
@@ -11,19 +13,21 @@ NOTHING = "-"
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that only the files hold."""
 _INTERVAL = ("low", "high")
+_KEYS = ("condition", "species", "fitness", "quantity", "test")
+"""Columns that tell the rows of one gene apart."""
 
 
 def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str], list[list[str]]]:
     """What a reader sees of a table: headers and rows.
 
-    The bounds of an interval become one column, empty below three worlds; a column `condition` with a single
-    value is left out, and so is every column without any.
+    Neutral genes, which show what chance does, become one row. The bounds of an interval become one column, empty below
+    three worlds; a column `condition` with a single value is left out, and so is every column without any.
 
     Args:
         table: the results.
         hidden: columns that are left out too.
     """
-    rows = table.rows
+    rows = _with_neutral_folded(table.rows)
     single = "condition" in rows.columns and rows["condition"].n_unique() == 1
     merged = all(bound in rows.columns for bound in _INTERVAL) and "answer" not in rows.columns
     names = [
@@ -35,6 +39,27 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
     filled = [i for i in range(len(names)) if any(row[i] for row in shown)]
     return [headers[i] for i in filled], [[row[i] for i in filled] for row in shown]
+
+
+def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
+    """The rows with those of several neutral genes as one: their number, how many have a small p, and their means."""
+    if rows.is_empty() or rows.schema.get("weight") != pl.String:
+        return rows
+    keys = [name for name in _KEYS if name in rows.columns]
+    marked = rows.with_columns(pl.int_range(pl.len()).alias("place"))
+    is_neutral = pl.col("weight").str.starts_with("neutral_").fill_null(False)
+    if marked.filter(is_neutral)["weight"].n_unique() < 2:
+        return rows
+    values = {
+        name: pl.col(name).mean() if kind.is_float() else pl.col(name).max()
+        for name, kind in rows.schema.items()
+        if kind.is_numeric() and name not in _INTERVAL and not name.startswith("p")
+    }
+    small = pl.format(": {} with p < 0.05", (pl.col("p") < 0.05).sum()) if "p" in rows.columns else pl.lit("")
+    label = pl.format("{} neutral{}", pl.len(), small.first()).alias("weight")
+    groups = marked.filter(is_neutral).group_by(keys or [pl.lit(0).alias("all")], maintain_order=True)
+    lines = groups.agg(pl.col("place").min(), label, **values)
+    return pl.concat([marked.filter(~is_neutral), lines], how="diagonal_relaxed").sort("place").select(rows.columns)
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:

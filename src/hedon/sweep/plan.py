@@ -191,7 +191,7 @@ def rounds_of(seeds: Sequence[int], worlds: int) -> tuple[tuple[int, ...], ...]:
     for i in range(len(seeds)):
         if i - ends[-1] == worlds or len(seed_text(seeds[ends[-1] : i + 1])) > LONGEST_SEEDS:
             ends.append(i)
-    return tuple(tuple(seeds[low:high]) for low, high in pairwise([*ends, len(seeds)]))
+    return tuple(tuple(seeds[low:high]) for low, high in pairwise([*ends, len(seeds)]) if high > low)
 
 
 def write_plan(file: SweepFile, store: Store) -> SweepPlan:

@@ -9,13 +9,17 @@ import polars as pl
 
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
-from hedon.config import Config, load_config
+from hedon.config import Config, flatten, load_config
 from hedon.config.gene import gene_of
 from hedon.config.layout import Gene
+from hedon.config.problem import format_value
 from hedon.config.species import ONLY, SpeciesConfig
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
+from hedon.text import brief
 
+MOST_DIFFERENCES = 3
+"""Most settings that a condition is named by."""
 SEED = 20240717
 """Seed of the bootstrap and the neutral walks, so that the same records give the same numbers."""
 
@@ -141,11 +145,10 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
         RecordError, ConfigError: a run cannot be read.
     """
     kept: dict[tuple[str, int], WorldRecord] = {}
-    labels: dict[str, str] = {}  # config digest (or folder, where there is none) to condition
+    runs = list(runs)
+    labels = _labels(runs)
     for run in runs:
-        key = run.manifest.config_digest or str(run.path)
-        condition = labels.setdefault(key, _label(run, set(labels.values())))
-        for world in _run_worlds(run, condition):
+        for world in _run_worlds(run, labels[_key(run)]):
             before = kept.get((world.condition, world.seed))
             if before is None or before.last_step < world.last_step:
                 kept[world.condition, world.seed] = world
@@ -250,13 +253,40 @@ def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFra
     return int(died.to_numpy().max())  # within the interval of the rows
 
 
-def _label(run: Run, taken: set[str]) -> str:
-    """A short name of the setting that no other condition has: "baseline (released)", or with the folder."""
-    manifest = run.manifest
-    name = manifest.name or manifest.preset or run.path.name
-    label = f"{name} ({manifest.fidelity})" if manifest.fidelity else name
-    if manifest.modified:
-        label += ", modified"
-    while label in taken:
-        label += f" [{run.path.name}]"
-    return label
+def _labels(runs: Sequence[Run]) -> dict[str, str]:
+    """A short name of each setting, by `_key`, that no other has: "baseline (released)", or with what differs."""
+    first: dict[str, Run] = {}
+    for run in runs:
+        first.setdefault(_key(run), run)
+    alike: dict[str, list[str]] = {}
+    for key, run in first.items():
+        name = run.manifest.name or run.manifest.preset or run.path.name
+        alike.setdefault(f"{name} ({run.manifest.fidelity})" if run.manifest.fidelity else name, []).append(key)
+    labels: dict[str, str] = {}
+    for label, keys in alike.items():
+        differs = _differences([first[key] for key in keys]) if len(keys) > 1 else [""]
+        for key, words in zip(keys, differs, strict=True):
+            own = f"{label}: {words}" if words else f"{label}, modified" if first[key].manifest.modified else label
+            while own in labels.values():
+                own += f" [{first[key].path.name}]"
+            labels[key] = own
+    return labels
+
+
+def _key(run: Run) -> str:
+    """What runs of one setting have in common: the digest of their config, or the folder where there is none."""
+    return run.manifest.config_digest or str(run.path)
+
+
+def _differences(runs: Sequence[Run]) -> list[str]:
+    """What tells the settings of some runs apart, a phrase for each; empty where that is too much for a name."""
+    values = [flatten(load_config(str(run.path / CONFIG))) for run in runs]
+    paths = dict.fromkeys(path for each in values for path in each)
+    varied = [path for path in paths if any(each.get(path) != values[0].get(path) for each in values)]
+    if len(varied) > MOST_DIFFERENCES:
+        return [""] * len(runs)
+    return [", ".join(f"{path} {_said(each.get(path))}" for path in varied) for each in values]
+
+
+def _said(value: Any) -> str:
+    return "absent" if value is None else brief(format_value(value), 40)

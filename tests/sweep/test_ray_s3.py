@@ -1,0 +1,108 @@
+"""A sweep on Ray whose place is an S3 server: a node is killed, and the table is that of one machine.
+
+Nothing is shared but the server: what a killed node had goes on elsewhere from the state that it sent.
+"""
+
+import json
+import os
+import secrets
+import shutil
+import signal
+import socket
+import threading
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import gettempdir
+
+import pytest
+from sweep_case import assert_kept_whole, assert_same_table, planned, run_sweep, sweep_file, table_of
+from test_ray import KILLS, STEPS, parent, two_nodes
+
+from hedon.jobs.store import Store
+from hedon.sweep.work import STATE
+
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(
+        any(find_spec(name) is None for name in ("ray", "s3fs", "moto")),
+        reason="needs further packages: uv sync --extra ray --extra remote --group store",
+    ),
+]
+
+
+@pytest.fixture
+def url(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A place on a server of this machine, which all that reads the environment finds."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    for name, value in {
+        "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
+        "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
+        "AWS_ACCESS_KEY_ID": "hedon-test-key",
+        "AWS_SECRET_ACCESS_KEY": "hedon-test-key",
+        "AWS_DEFAULT_REGION": "us-east-1",
+    }.items():
+        monkeypatch.setenv(name, value)
+    server = import_module("moto.server").ThreadedMotoServer(ip_address="127.0.0.1", port=port, verbose=False)
+    server.start()
+    try:
+        import_module("s3fs").S3FileSystem(skip_instance_cache=True).mkdir("lab")
+        yield f"s3://lab/{secrets.token_hex(8)}"
+    finally:
+        server.stop()
+
+
+def made_on(raylet: int) -> dict[Path, int]:
+    """The process of each batch that a node makes, by the folder of its run, which is of that machine alone."""
+    found = {}
+    for lock in Path(gettempdir()).glob("hedon-sweep-*/*/.lock"):
+        try:
+            process = json.loads(lock.read_text())["process"]
+        except (OSError, ValueError):  # it has just begun, or ended
+            continue
+        if parent(process) == raylet:
+            found[lock.parent] = process
+    return found
+
+
+@pytest.mark.parametrize("kill", range(KILLS))
+def test_a_node_that_dies_costs_no_result_of_a_sweep_on_s3(kill, url, tmp_path, monkeypatch):
+    file = sweep_file(tmp_path, STEPS, worlds=1)
+    file.write_text('keep = ["agents", "run"]\n' + file.read_text())
+    alone, here = planned(file, str(tmp_path / "alone"))
+    assert {outcome.status for outcome in run_sweep(alone, here).values()} == {"finished"}
+    plan, store = planned(file, url)
+    killed, over = list[str](), threading.Event()
+    with two_nodes(monkeypatch) as (cluster, node):
+        (raylet,) = (info.process.pid for info in node.all_processes["raylet"])
+
+        def kill_in_the_middle() -> None:
+            watched = Store(url)
+            while not killed and not over.wait(0.05):
+                sent = {name.removesuffix(".zip") for name in watched.names(STATE)}
+                for folder, process in made_on(raylet).items():
+                    if folder.name in sent:
+                        os.kill(process, signal.SIGSTOP)  # all that runs on a machine stops at once
+                        killed.append(folder.name)
+                        cluster.remove_node(node, allow_graceful=False)
+                        os.kill(process, signal.SIGKILL)
+                        shutil.rmtree(folder)  # its disk is lost too
+                        break
+
+        killer = threading.Thread(target=kill_in_the_middle, daemon=True)
+        killer.start()
+        try:
+            outcomes = run_sweep(plan, store, 0.0, ray=str(cluster.address))
+        finally:
+            over.set()
+            killer.join()
+    assert killed, "the second node was to have a batch whose state was sent"
+    assert {name: outcome.status for name, outcome in outcomes.items()} == {
+        batch.name: "finished" for batch in plan.batches()
+    }
+    assert store.names(STATE) == []
+    assert_same_table(table_of(url), table_of(here.location))
+    assert_kept_whole(store, plan)

@@ -1,0 +1,41 @@
+"""Neutral genes are one row of what a reader sees, and conditions are named by what differs."""
+
+from pathlib import Path
+
+from resumed_run import small_run
+
+from hedon.analysis.result import make_table
+from hedon.analysis.world.record import read_worlds
+from hedon.record.reader import open_run
+from hedon.report.table import cells
+
+
+def test_neutral_genes_are_one_row_of_each_group():
+    rows = [
+        {"condition": condition, "weight": weight, "mean": mean, "low": 0.0, "high": 9.0, "worlds": 3, "p": p}
+        for condition in ("a", "b")
+        for weight, mean, p in (("w_food", 1.0, 0.5), ("neutral_1", 2.0, 0.01), ("neutral_2", 4.0, 0.2))
+    ]
+    table = make_table("any", "Any", rows)
+    headers, shown = cells(table)
+    assert [row[headers.index("weight")] for row in shown] == ["w_food", "2 neutral: 1 with p < 0.05"] * 2
+    assert [row[headers.index("mean")] for row in shown] == ["1.00", "3.00"] * 2
+    assert [row[headers.index("95 % interval")] for row in shown][1] == ""
+    assert table.rows.height == 6, "the files have all"
+    one = make_table("one", "One", [row for row in rows if row["weight"] != "neutral_2"])
+    assert [row[headers.index("weight")] for row in cells(one)[1]] == ["w_food", "neutral_1"] * 2
+    assert cells(make_table("none", "None", [{"weight": 3.0}, {"weight": 4.0}]))[1] == [["3.00"], ["4.00"]]
+
+
+def test_conditions_of_one_name_are_told_apart_by_what_differs(tmp_path: Path):
+    for name, cost in (("a", "0.001"), ("b", "0.002")):
+        small_run(tmp_path / name, 64, seeds=(1,), overrides=(f"energy.basic_cost={cost}",))
+    small_run(tmp_path / "c", 64, seeds=(2,), overrides=("energy.basic_cost=0.001",))
+    worlds = read_worlds(open_run(tmp_path / name) for name in "abc")
+    assert [(world.condition, world.seed) for world in worlds] == [
+        ("baseline (corrected): energy.basic_cost 0.001", 1),
+        ("baseline (corrected): energy.basic_cost 0.002", 1),
+        ("baseline (corrected): energy.basic_cost 0.001", 2),
+    ]
+    (alone,) = read_worlds([open_run(tmp_path / "a")])
+    assert alone.condition == "baseline (corrected), modified"
