@@ -43,13 +43,15 @@ def analyze(
     """
     # Imported here because this takes seconds: other commands must not wait for it.
     from hedon.cli.display.analysis import analysis_group
+    from hedon.cli.display.step import StepDisplay
     from hedon.record.reader import open_run
     from hedon.report.analysis import ANALYSIS, write_analysis
     from hedon.report.analysis import analyze as answer
     from hedon.report.topic import choose_topics
 
     topics = choose_topics(only)
-    analysis = answer([open_run(run) for run in runs], topics)
+    with StepDisplay("analyzing") as tell:
+        analysis = answer([open_run(run) for run in runs], topics, tell)
     folder = out or (runs[0] / ANALYSIS if len(runs) == 1 else Path(ANALYSIS))
     console = make_console()
     console.print(analysis_group(analysis.tables))

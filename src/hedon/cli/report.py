@@ -45,12 +45,14 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
 
+    from hedon.cli.display.step import StepDisplay
     from hedon.cli.display.summary import summary_table
     from hedon.record.reader import open_run
     from hedon.report.run import write_report
 
     runs = [open_run(path) for path in (run, *others)]
-    files = write_report(*runs, folder=out)
+    with StepDisplay("writing the report") as tell:
+        files = write_report(*runs, folder=out, tell=tell)
     for file in files[: len(runs)]:
         console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
     for file in files:

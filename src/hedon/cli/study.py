@@ -87,10 +87,14 @@ def plan(
       hedon study plan weights-baseline history-baseline --seeds 1-2 --steps 1024000
     """
     from hedon.cli.display.listing import listing
+    from hedon.cli.display.step import StepDisplay
     from hedon.study.cost import request_cost
 
     _, request = _request(names, seeds, steps, fidelity, quick=quick)
-    make_console().print(listing(request, request_cost(request, runs, threads)))
+    with StepDisplay("planning") as tell:
+        tell(0, 1, "measuring the speed of this machine takes some seconds")
+        cost = request_cost(request, runs, threads)
+    make_console().print(listing(request, cost))
 
 
 @app.command()

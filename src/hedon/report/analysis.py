@@ -13,7 +13,7 @@ from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.summary import plain
-from hedon.report.topic import TOPICS, run_topics
+from hedon.report.topic import TOPICS, Tell, run_topics, tell_nobody
 
 ANALYSIS = "analysis"
 """Folder of the answers within the folder of a single run."""
@@ -34,18 +34,20 @@ class Analysis:
     tables: Mapping[str, ResultTable]
 
 
-def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS)) -> Analysis:
+def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody) -> Analysis:
     """Answers some topics about all runs together; runs of equal configs count as one condition.
 
     Args:
         runs: Of one condition or several.
         topics: Keys of `TOPICS`, in the order of their tables.
+        tell: Is told of each step.
 
     Raises:
         RecordError, ConfigError: a run cannot be read.
     """
+    tell(0, len(topics), "reading the records")
     conditions = by_condition(read_worlds(runs))
-    return Analysis(tuple(runs), conditions, {table.name: table for table in run_topics(conditions, topics)})
+    return Analysis(tuple(runs), conditions, {table.name: table for table in run_topics(conditions, topics, tell)})
 
 
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:

@@ -25,11 +25,12 @@ from hedon.report.condition import condition_figures
 from hedon.report.figure import WORLD
 from hedon.report.page import FigureFile, report_pages
 from hedon.report.summary import summarize
+from hedon.report.topic import TOPICS, Tell, tell_nobody
 
 HTML, MARKDOWN = "report.html", "report.md"
 
 
-def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
+def write_report(*runs: Run, folder: Path | str | None = None, tell: Tell = tell_nobody) -> list[Path]:
     """Writes the report of some runs, over those that are there.
 
     Where another report is being written into the same folder, this one waits for it. Damaged parts are left out; the
@@ -38,6 +39,7 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
     Args:
         runs: one or more.
         folder: for all but the summaries; by default that of the run, or `report` for several.
+        tell: is told of each step.
 
     Returns:
         The files written: a `summary.json` per run, `report.html`, `report.md`, `analysis.json` (beside its CSV
@@ -49,7 +51,9 @@ def write_report(*runs: Run, folder: Path | str | None = None) -> list[Path]:
     folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
     faults: list[RecordError] = []
     with one_writer(folder, "the report"):
-        analysis = analyze(runs)
+        # All figures together count as many steps as the topics.
+        analysis = analyze(runs, tell=lambda done, of, step: tell(done, 2 * of, step))
+        tell(len(TOPICS), 2 * len(TOPICS), "figures")
         summaries = [_write_summary(run) for run in runs]
         (folder / FIGURES).mkdir(exist_ok=True)
         figures: list[FigureFile] = []

@@ -54,17 +54,37 @@ ONE_PARENT = ("genealogy", "price", "drift", "reversion", "mutation")
 """Topics that follow genes along pedigrees, from one parent to its child."""
 
 
-def run_topics(conditions: Conditions, names: Sequence[str] = tuple(TOPICS)) -> list[ResultTable]:
+Tell = Callable[[int, int, str], None]
+"""Is told of each step before it begins: how many are done, of how many, and what comes."""
+
+
+def tell_nobody(done: int, of: int, step: str) -> None:
+    """A `Tell` for those who need not know.
+
+    Args:
+        done: steps.
+        of: how many there are.
+        step: what comes.
+    """
+
+
+def run_topics(
+    conditions: Conditions, names: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody
+) -> list[ResultTable]:
     """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed.
 
     Args:
         conditions: Worlds by condition.
         names: Keys of `TOPICS`, in the order of their tables.
+        tell: Is told of each topic.
     """
     trees = {
         condition: alone
         for condition, worlds in conditions.items()
         if (alone := [world for world in worlds if world.own.birth.mating == "none"])
     }
-    tables = [table for name in names for table in TOPICS[name](trees if name in ONE_PARENT else conditions)]
+    tables: list[ResultTable] = []
+    for done, name in enumerate(names):
+        tell(done, len(names), name)
+        tables += TOPICS[name](trees if name in ONE_PARENT else conditions)
     return [table for table in tables if not table.rows.is_empty()]
