@@ -89,6 +89,7 @@ viewer: sync
 # The site of the documentation, in build/docs: python3 -m http.server --directory build/docs
 docs: sync
 	$(RUN) $(SITE) sphinx-build --quiet --fail-on-warning --conf-dir docs/site . build/docs
+	$(RUN) $(SITE) python docs/site/paper.py build/docs/docs/paper/paper.pdf
 
 clean:
 	rm -rf build web/node_modules .venv .uv .pytest_cache .ruff_cache
