@@ -1,0 +1,254 @@
+"""The numbers on pages of results are those of the tables beside them, and the scoreboard says what the tool says."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+from scipy import stats
+
+from hedon.statistic import holm
+from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RUN, WINDOW
+
+RESULTS = Path(__file__).parents[2] / "docs" / "results"
+CONTESTS = (1, 2, 3, 5, 8)
+FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
+FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")
+HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-less-food")
+
+
+def page(name: str) -> str:
+    return (RESULTS / name).read_text(encoding="utf-8")
+
+
+def table(path: str) -> pl.DataFrame:
+    return pl.read_parquet(RESULTS / path) if path.endswith(".parquet") else pl.read_csv(RESULTS / path)
+
+
+def text(value: float, digits: int, sign: bool = False) -> str:
+    """A number as pages show it: with a true minus, and nothing before a rounded 0."""
+    shown = f"{value:{'+' if sign else ''}.{digits}f}"
+    shown = shown.lstrip("-+") if float(shown) == 0 else shown
+    return shown.replace("-", "\N{MINUS SIGN}")
+
+
+def span(values: np.ndarray, digits: int = 3, sign: bool = True) -> str:
+    """Mean and 95 % interval by Student's t."""
+    bounds = stats.ttest_1samp(values, 0).confidence_interval()
+    low, high = text(bounds.low, digits), text(bounds.high, digits)
+    return f"{text(values.mean(), digits, sign)} ({low} … {high})"
+
+
+def p_of(values: np.ndarray) -> float:
+    return float(stats.ttest_1samp(values, 0).pvalue)
+
+
+def p_text(p: float) -> str:
+    """A p as pages show it: two digits, below 0.01 one more, and four below 0.001."""
+    return f"{p:.4f}" if p < 0.001 else f"{p:.3f}" if p < 0.0095 else f"{p:.2f}"
+
+
+def shares(name: str) -> np.ndarray:
+    """Of each world of a contest, the share of the first group at the end, less one half."""
+    worlds = table(f"compete/{name}/tables/contest_world.csv")
+    first, second = (worlds[column].to_numpy() for column in worlds.columns[1:3])
+    return first / (first + second) - 0.5
+
+
+def coefficient(name: str) -> str:
+    row = table(f"compete/{name}/tables/contest.csv").row(0, named=True)
+    return row["value"], f"({text(row['low'], 3)} … {text(row['high'], 3)})"
+
+
+def test_contests_of_24_worlds():
+    each = [shares(f"food-{food}-24") for food in CONTESTS]
+    p = [p_of(values) for values in each]
+    shown = page("start.md")
+    for food, values, own, corrected in zip(CONTESTS, each, p, holm(p), strict=True):
+        s, bounds = coefficient(f"food-{food}-24")
+        row = re.search(rf"^\| food {food} .*$", shown, re.MULTILINE)
+        assert row is not None
+        assert f"| {text(s, 3)} {bounds} | {span(values, 3, sign=False)} | {(values > 0).sum()}" in row[0]
+        number = re.findall(r"[\d.]+", row[0].split("|")[-3] + row[0].split("|")[-2])
+        assert [float(each) for each in number] == [
+            pytest.approx(value, abs=0.0051 if value > 0.01 else 0.0005) for value in (own, corrected)
+        ]
+
+
+def test_contests_of_eight_worlds_are_told_by_worlds_first():
+    shown = page("start.md")
+    for name in ("food", "paper"):
+        values = shares(name)
+        signed_rank = stats.wilcoxon(values).pvalue
+        assert f"{p_of(values):.3f} by t, {signed_rank:.3f} by Wilcoxon" in shown
+
+
+def slopes(path: str, weights: tuple[str, ...], outcome: str) -> dict[int, np.ndarray]:
+    """Of each world, the slopes of relative fitness with each weight, by least squares on all of them."""
+    found = {}
+    for (seed,), rows in table(path).group_by("seed", maintain_order=True):
+        fitness = rows[outcome].to_numpy()
+        inputs = np.column_stack([np.ones(len(rows)), *(rows[weight].to_numpy() for weight in weights)])
+        found[seed] = np.linalg.lstsq(inputs, fitness / fitness.mean(), rcond=None)[0][1:]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("outcome", "weight", "label"),
+    [
+        ("lifespan", 3, "lifespan: seeing predators, all ten"),
+        ("descendants", 3, "living descendants: seeing predators, all ten"),
+        ("offspring", 2, "children: seeing prey, all ten"),
+        ("descendants", 2, "living descendants: seeing prey, all ten"),
+        ("offspring", 3, "… **all ten**"),
+    ],
+)
+def test_slopes_of_prey_by_group_of_founders(outcome, weight, label):
+    weights = FOUNDERS["predator"]
+    first = [slopes(f"predator/{name}/founders-outcome.csv", weights, outcome) for name in HUNTED]
+    second = slopes("predator/predator-6-10/founders-outcome.csv", weights, outcome)
+    alone = slopes("predator/prey-alone/founders-outcome.csv", weights, outcome)
+    alone |= slopes("predator/prey-alone-6-10/founders-outcome.csv", weights, outcome)
+    hunted = np.array(
+        [np.mean([each[seed][weight] for each in first]) for seed in range(1, 6)]
+        + [second[seed][weight] for seed in range(6, 11)]
+    )
+    without = np.array([alone[seed][weight] for seed in range(1, 11)])
+    (row,) = [line for line in page("predator.md").splitlines() if line.startswith(f"| {label} ")]
+    for values in (hunted, hunted - without):
+        assert f"{span(values)}, p {p_of(values):.2f}" in row
+
+
+@pytest.mark.parametrize("outcome", ["offspring", "lifespan", "food", "descendants"])
+def test_slopes_with_seeing_obstacles(outcome):
+    label = {"offspring": "children", "descendants": "living descendants"}.get(outcome, outcome)
+
+    def by_group(*names: str) -> np.ndarray:
+        found = [slopes(f"pitfall/{name}/founders-outcome.csv", FOUNDERS["pitfall"], outcome) for name in names]
+        return np.array([np.mean([each[seed][3] for each in found]) for seed in range(1, 6)])
+
+    right, wrong = by_group("pitfall", "pitfall-weak"), by_group("pitfall-wrong", "pitfall-weak-wrong")
+    (row,) = [line for line in page("pitfall.md").splitlines() if line.startswith(f"| {label} |")]
+    for values in (right, wrong, right - wrong):
+        assert f"{span(values)}, p {p_text(p_of(values))}" in row
+
+
+def test_founders_by_their_gene_of_the_learning_rate():
+    founders = table("inner/learning-rate-16/tables/founder.parquet")
+    relative = [(pl.col(name) / pl.col(name).mean().over("seed")).alias(name) for name in ("descendants", "food")]
+    founders = founders.with_columns(relative)
+    for low, high in ((-2, -1), (-1, 0), (0, 0.4), (0.4, 1.5), (1.5, 2)):
+        here = founders.filter(pl.col("g_learning_rate").is_between(low, high, closed="left"))
+        means = " | ".join(text(here[name].to_numpy().mean(), 2) for name in ("descendants", "food"))
+        ends = [text(end, 0 if end == int(end) else 1) for end in (low, high)]
+        assert f"| {ends[0]} to {ends[1]} | {len(here)} | {means} |" in page("inner.md")
+
+
+def test_ten_seeds_of_the_baseline():
+    worlds, drift, shown = (
+        table("acting/tables/acting_worlds.csv"),
+        table("acting/tables/drift.csv"),
+        page("baseline.md"),
+    )
+    for gene, label in (("w_food", "weight of food, 5000 born last"), ("w_action", "weight of action")):
+        by_arm = [worlds.filter(arm=arm)[gene].to_numpy() for arm in ("bfloat16", "float32")]
+        (row,) = [line for line in shown.splitlines() if line.startswith(f"| {label} | {text(by_arm[0].mean(), 2)}")]
+        assert row.endswith(" | ".join(span(values, 2, sign=False) for values in by_arm) + " |")
+    scores = drift.filter((pl.col("weight") == "w_normal") & (pl.col("test") == "direction"))
+    for row in scores.to_dicts():
+        told = f"{text(row['effect'], 2)} ({text(row['low'], 2)} … {text(row['high'], 2)}), p {p_text(row['p_holm'])}"
+        assert told in shown
+
+
+def test_the_baseline_at_full_length():
+    shown = page("baseline.md")
+    for gene, label in (("w_normal", "weight of food, 5000 born last"), ("w_action", "weight of action")):
+        means = table("full/tables/drift_world.csv").filter(weight=gene)["mean"].to_list()
+        assert f"| {label} | {text(means[0], 2)} | {text(means[1], 2)} |" in shown
+
+
+def test_slopes_of_the_near_landscape():
+    surface, shown = table("landscape/near/tables/surface.csv"), page("landscape.md")
+    for quantity, label in (("slope at 0", "slope"), ("curvature", "curvature")):
+        (row,) = [line for line in shown.splitlines() if line.startswith(f"| {label} of living descendants |")]
+        mine = surface.filter(fitness="descendants", quantity=f"{quantity}, quadratic")
+        for found in mine.to_dicts():
+            assert f"({text(found['low'], 2)} … {text(found['high'], 2)})" in row
+
+
+def test_extinct_worlds_of_the_map_of_costs():
+    worlds = table("cost/worlds.csv")
+    gone = worlds.filter(pl.col("extinct")).row(0, named=True)
+    assert worlds["extinct"].sum() == 1
+    assert len(worlds) == 100
+    assert f"one (0.03 … 5.4 %): seed {gone['seed']} at step {gone['extinct_step']:,}" in page("cost.md")
+
+
+def test_the_papers_program_over_its_five_worlds():
+    summary, shown = json.loads(page("program/baseline/summary.json")), page("released.md")
+    lifetime = summary["mean_lifetime"]
+    assert f"{lifetime['mean']:,.0f} ({lifetime['low']:,.0f} … {lifetime['high']:,.0f}) steps" in shown
+    assert [world["seed"] for world in summary["worlds"]] == [1, 2, 3, 4, 5]
+
+
+def window_rows(name: str) -> list[str]:
+    """The rows that compare first windows with those of the sequel's program."""
+    rows = table(f"{name}/first-windows.csv")
+    if name == "predator":
+        prey, predators = rows.filter(species="prey"), rows.filter(species="predator")
+        columns = [("births", prey), ("deaths_eaten", prey), ("food_normal", prey), ("energy_mean", prey)]
+        alive, run = [("alive", prey), ("alive", predators)], PREDATOR_RUN
+    else:
+        columns = [(column, rows) for column in PITFALL_COLUMNS[1:]]
+        alive, run = [("alive", rows)], PITFALL_RUN
+
+    def range_of(column: str, mine: pl.DataFrame, number: int) -> str:
+        values = mine.filter(step=number * WINDOW)[column].to_list()
+        shown = [f"{value:.1f}" if column == "energy_mean" else str(value) for value in (min(values), max(values))]
+        return "\N{EN DASH}".join(dict.fromkeys(shown))
+
+    made = []
+    for number, told in run.items():
+        theirs = [", ".join(map(str, told[: len(alive)])), *map(str, told[len(alive) :])]
+        ours = [", ".join(range_of(*each, number) for each in alive), *(range_of(*each, number) for each in columns)]
+        made.append("| " + " | ".join([str(number), *theirs, *ours]) + " |")
+    return made
+
+
+@pytest.mark.parametrize("name", ["predator", "pitfall"])
+def test_first_windows_beside_the_sequels_program(name):
+    rows = window_rows(name)
+    assert len(rows) >= 5
+    for row in rows:
+        assert row in page(f"{name}.md")
+
+
+VERDICT = re.compile(
+    r"\*?\*?(holds|fails|undecided)\*?\*? \((\d+) worlds?(?:, [^)]*)?\) \[[^]]*\]\((\S+?/tables/verdict\.csv)\)"
+)
+
+
+def test_the_scoreboard_prints_the_verdicts_of_the_tool():
+    rows = [line.split("|")[1:-1] for line in page("README.md").splitlines() if "verdict.csv" in line]
+    judged = 0
+    for claim, told, *_ in rows:
+        names = re.findall(r"`([^`]+)`", claim)
+        assert len(names) == 1, claim
+        for verdict, worlds, path in VERDICT.findall(told):
+            found = table(path).filter(claim=names[0])
+            match = found.filter((pl.col("verdict") == verdict) & (pl.col("worlds") == int(worlds)))
+            assert len(match), (names[0], verdict, worlds, path)
+            judged += 1
+    assert judged == sum(line.count("verdict.csv)") for line in page("README.md").splitlines() if "|" in line)
+    assert judged >= 12
+
+
+def test_no_word_of_the_tool_is_used_for_an_opinion():
+    """What we think stands in a column of its own, in other words than the verdicts."""
+    header, *rows = [line for line in page("README.md").splitlines() if line.startswith("|")]
+    assert "what we think so far" in header
+    opinions = [line.split("|")[-2] for line in rows[1:]]
+    assert len(opinions) >= 10
+    assert not [each for each in opinions if re.search(r"\b(holds|fails|undecided)\b", each)]
