@@ -1,6 +1,6 @@
 /// All that the engine asks of a system besides the standard library, such as its clock: memory and threads. One file
-/// answers for each kind of system: `platform_native.cpp` and, for WebAssembly in a page, `platform_web.cpp`.
-/// Everything else is the same everywhere.
+/// answers for each kind of system: `platform_posix.cpp`, `platform_windows.cpp` and, for WebAssembly in a page,
+/// `platform_web.cpp`. Everything else is the same everywhere.
 #pragma once
 
 #include <atomic>
@@ -17,6 +17,9 @@ void* reserve_pages(size_t bytes);
 
 /// Gives memory back that `reserve_pages` gave.
 void release_pages(void* block, size_t bytes);
+
+/// Memory of this machine [byte]. A page is not told.
+int64_t physical_memory();
 
 /// Number of processors that this process may use; in a page, of threads that there can be.
 int available_processors();

@@ -1,6 +1,8 @@
 #include "binding/device.h"
 
+#if !defined(_WIN32)
 #include <dlfcn.h>
+#endif
 
 #include "binding/error.h"
 
@@ -25,14 +27,23 @@ void need_fit(const DeviceProgram& program, const Config& config) {
   }
 }
 
-}  // namespace
-
-const DeviceProgram* open_device(const std::string& file) {
+/// The function of a device's library that gives its program.
+DeviceEntry find_entry(const std::string& file) {
+#if defined(_WIN32)
+  throw EngineError(file + " cannot be loaded: there are devices on Linux alone");
+#else
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw EngineError("the library of the device cannot be loaded: " + std::string(dlerror()));
   const DeviceEntry entry = reinterpret_cast<DeviceEntry>(dlsym(library, "hedon_device"));
   if (entry == nullptr) throw EngineError(file + " is not the library of a device");
-  const DeviceProgram& program = *entry();
+  return entry;
+#endif
+}
+
+}  // namespace
+
+const DeviceProgram* open_device(const std::string& file) {
+  const DeviceProgram& program = *find_entry(file)();
   if (program.layout != device_layout())
     throw EngineError(file + " was built from other sources than the engine: build both again");
   const std::string problem = program.open();

@@ -1,14 +1,13 @@
 #include "binding/python_simulation.h"
 
 #include <nanobind/stl/string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 
 #include "base/float_mode.h"
+#include "base/platform.h"
 #include "binding/config.h"
 #include "binding/device.h"
 #include "binding/error.h"
@@ -37,7 +36,7 @@ void need_memory(const Config& config, size_t walls, size_t worlds, int threads)
   const MemoryNeed need =
       Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
   const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
-  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  const double present = static_cast<double>(physical_memory());
   if (needed > present) {
     char text[160];
     snprintf(text, sizeof text,
@@ -48,10 +47,10 @@ void need_memory(const Config& config, size_t walls, size_t worlds, int threads)
   }
   // A limit on addresses (ulimit -v) shows only when memory is reserved.
   const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
-  void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (probe == MAP_FAILED)
+  void* const probe = reserve_pages(bytes);
+  if (probe == nullptr)
     throw EngineError("the system refuses memory for the worlds, though there is enough: check the limit `ulimit -v`");
-  munmap(probe, bytes);
+  release_pages(probe, bytes);
 }
 
 std::vector<Segment> to_segments(const WallsIn& walls) {

@@ -1,9 +1,10 @@
 #include "binding/released.h"
 
 #include <nanobind/nanobind.h>
-#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <thread>
 
 namespace hedon {
 namespace {
@@ -21,7 +22,7 @@ Released::~Released() {
   try {
     PyEval_RestoreThread(state_);
   } catch (...) {  // pthread_exit unwinds
-    for (;;) pause();
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
   }
   if (away.fetch_sub(1) == 1) nanobind::set_leak_warnings(true);
 }

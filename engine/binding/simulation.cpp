@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/float_mode.h"
+#include "base/platform.h"
 #include "binding/checkpoint.h"
 #include "binding/config.h"
 #include "binding/device.h"
@@ -243,6 +244,8 @@ void bind_simulation(nb::module_& module) {
       nb::sig(
           "def memory_needed(config: dict[str, typing.Any], walls: int, worlds: int, threads: int) -> dict[str, int]"),
       "Bytes that a simulation would reserve, by purpose; 0 threads for all processors.");
+  module.def("physical_memory", &physical_memory, nb::sig("def physical_memory() -> int"),
+             "Bytes of memory of this machine.");
   module.def(
       "open_device", [](const std::string& file) { open_device(file); }, nb::arg("file"),
       "Loads the library of a device and finds the device. EngineError: why it cannot be used.");

@@ -1,5 +1,6 @@
 """A run that does not fit into memory is refused before it begins."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 from worlds import make_simulation
 
+from hedon import _engine
 from hedon.cli.main import app
 from hedon.config.load import load_config
 from hedon.error import HedonError
@@ -52,6 +54,10 @@ def test_the_command_ends_with_code_2(tmp_path):
     assert "population.capacity (10,000)" in answer.stderr
     assert "Traceback" not in answer.stderr
     assert not (tmp_path / "run").exists()
+
+
+def test_the_engine_knows_the_memory_of_the_machine():
+    assert _engine.physical_memory() == os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def test_a_container_says_how_much_there_is(tmp_path: Path):

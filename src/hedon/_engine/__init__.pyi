@@ -23,6 +23,9 @@ def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int)
     Bytes that a simulation would reserve, by purpose; 0 threads for all processors.
     """
 
+def physical_memory() -> int:
+    """Bytes of memory of this machine."""
+
 def open_device(file: str) -> None:
     """
     Loads the library of a device and finds the device. EngineError: why it cannot be used.

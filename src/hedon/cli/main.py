@@ -1,7 +1,6 @@
 """The command `hedon`."""
 
 import errno
-import resource
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -26,6 +25,7 @@ from hedon.cli.run import run
 from hedon.cli.video import video
 from hedon.cli.view import view
 from hedon.error import HedonError
+from hedon.limit import address_limit
 from hedon.text import printable
 
 NO_MEMORY = (
@@ -145,8 +145,8 @@ def _refuse_gone(words: Sequence[str]) -> None:
 
 def _require_addresses() -> None:
     """Ends the command if a limit on addresses leaves no room for its libraries."""
-    allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if allowed != resource.RLIM_INFINITY and allowed < ADDRESSES:
+    allowed = address_limit()
+    if allowed is not None and allowed < ADDRESSES:
         fail(
             f"`ulimit -v` allows this process {allowed / 1e9:.1f} GB of addresses, and hedon needs "
             f"at least {ADDRESSES / 1e9:.0f} GB: raise the limit"

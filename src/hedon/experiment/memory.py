@@ -1,7 +1,5 @@
 """Checks, before a run begins, whether it fits into the memory of this machine."""
 
-import os
-import resource
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,6 +7,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.engine import engine_input
 from hedon.error import HedonError
+from hedon.limit import address_limit
 from hedon.record.schema import columns_of, run_tables
 from hedon.record.writer import PART_ROWS
 
@@ -48,9 +47,8 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
 
 def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
     """Memory that this process can use: of the machine, of its container, or by `ulimit -v` [byte]."""
-    present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    addresses, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if addresses != resource.RLIM_INFINITY:
+    present = _engine.physical_memory()
+    if (addresses := address_limit()) is not None:
         present = min(present, addresses)
     for path in limits:
         try:

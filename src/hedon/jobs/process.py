@@ -1,7 +1,7 @@
 """Makes the runs of a plan, as many at a time as fill the processors, and passes Ctrl-C and SIGTERM on to them."""
 
-import os
 import signal
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class _Worker(Generic[T]):
     Attributes:
         job: its job.
         threads: number of threads that it uses.
-        process, pid, link: the process, its number, and our end of the pipe from it.
+        process, link: the process, and our end of the pipe to it.
         told: how many signals were passed on to it.
         ready: whether its run has begun, so that it counts signals.
     """
@@ -38,7 +38,6 @@ class _Worker(Generic[T]):
     job: T
     threads: int
     process: BaseProcess
-    pid: int
     link: Connection
     told: int = 0
     ready: bool = False
@@ -82,8 +81,9 @@ def make_here(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path
     """
     waiting, workers = list(jobs), list[_Worker[T]]()
     outcomes: dict[Path, Outcome] = {}
-    # Python starts this helper with the first process, and unblocks signals then.
-    resource_tracker.ensure_running()
+    if sys.platform != "win32":
+        # Python starts this helper with the first process, and unblocks signals then.
+        resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
             while not interrupted.count and (given := next_share(waiting, [w.threads for w in workers], threads)):
@@ -119,11 +119,10 @@ def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> in
 
 
 def _pass_on(worker: _Worker[Any]) -> None:
-    """Passes one signal on. The system merges equal signals that wait, so the second is a different one."""
-    number = SIGNALS[min(worker.told, len(SIGNALS) - 1)]
+    """Passes one signal on, by the pipe: Windows has no signals between processes."""
     worker.told += 1
-    with suppress(ProcessLookupError):  # it has just ended; its last message still waits in the pipe
-        os.kill(worker.pid, number)
+    with suppress(OSError):  # it has just ended; its last message still waits in the pipe
+        worker.link.send(SIGNALS[0])
 
 
 def _start(job: T, threads: int) -> _Worker[T]:
@@ -133,13 +132,15 @@ def _start(job: T, threads: int) -> _Worker[T]:
     with _blocked_signals():
         process.start()
     theirs.close()
-    assert process.pid is not None  # it has been started
-    return _Worker(job, threads, process, process.pid, ours)
+    return _Worker(job, threads, process, ours)
 
 
 @contextmanager
 def _blocked_signals() -> Iterator[None]:
     """Blocks signals, so that a new process begins with them blocked; this process gets them afterwards."""
+    if sys.platform == "win32":  # a new process has Ctrl-C until it leaves the terminal
+        yield
+        return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield

@@ -1,12 +1,15 @@
 """What a job is, and one job in its own process, which reports its progress to the parent process."""
 
+import _thread
 import os
 import signal
+import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
+from threading import Thread
 from typing import Protocol
 
 from hedon.error import HedonError
@@ -96,27 +99,44 @@ class _Teller:
             self._link.send(moment)
         except OSError:
             self._alone = True
-            os.kill(os.getpid(), signal.SIGTERM)
+            signal.raise_signal(signal.SIGTERM)
 
 
 def work(job: Job, threads: int, link: Connection) -> None:
     """Does a job, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
 
-    The process leaves its parent's session: a terminal sends Ctrl-C only to the parent, which passes it on as soon as
-    the run counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
+    The process leaves the terminal: Ctrl-C reaches only the parent, which passes it on by the pipe as soon as the run
+    counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
 
     Args:
         job: to do.
         threads: for it.
         link: to the parent.
     """
-    os.setsid()
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    _leave_terminal()
+    Thread(target=_listen, args=(link,), daemon=True).start()
     outcome = attempt(job, threads, _Teller(link))
     with suppress(OSError):  # the parent may have ended; what is on disk says it too
         link.send(outcome)
+
+
+def _leave_terminal() -> None:
+    if sys.platform == "win32":
+        import ctypes
+
+        ctypes.windll.kernel32.SetConsoleCtrlHandler(None, True)  # no Ctrl-C from now on
+    else:
+        os.setsid()
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+
+
+def _listen(link: Connection) -> None:
+    """Does for every number that the parent sends what a signal would, until the parent has ended."""
+    with suppress(EOFError, OSError):
+        while True:
+            _thread.interrupt_main(link.recv())
 
 
 def attempt(job: Job, threads: int, display: Display | None = None) -> Outcome:

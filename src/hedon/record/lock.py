@@ -1,10 +1,13 @@
 """Locks on folders. The operating system releases a lock when its process ends, in whatever way it ends."""
 
 import errno
-import fcntl
+import hashlib
 import json
 import os
 import socket
+import sys
+import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,14 +16,49 @@ from types import TracebackType
 from hedon.record.error import InUseError, RecordError
 from hedon.record.folder import LOCK, require_plain, require_unicode
 
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """Errors of file systems without locks: there, only the user can prevent two runs in one folder."""
+
+if sys.platform == "win32":
+    import msvcrt
+
+    _BEYOND = 1 << 30
+    """A byte far behind the end of the file: nobody can read what is locked [byte]."""
+    _LOOK_SECONDS = 0.05
+
+    def _take(descriptor: int, wait: bool) -> None:
+        while True:
+            os.lseek(descriptor, _BEYOND, os.SEEK_SET)
+            try:
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+                return
+            except OSError as error:
+                if error.errno not in (errno.EACCES, errno.EDEADLK):
+                    raise
+                if not wait:
+                    raise BlockingIOError from None
+            time.sleep(_LOOK_SECONDS)
+
+    def _open_writer(folder: Path) -> int:
+        """Of a file elsewhere that stands for the folder, which Windows does not open."""
+        name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:32]
+        return os.open(Path(tempfile.gettempdir()) / f"hedon-{name}.lock", os.O_RDWR | os.O_CREAT)
+
+else:
+    import fcntl
+
+    def _take(descriptor: int, wait: bool) -> None:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+
+    def _open_writer(folder: Path) -> int:
+        return os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
 
 
 class FolderLock:
     """Locks a run's folder for this process. Use it as a context manager.
 
-    The lock is advisory (`flock`) and ends with its process. The lock file stays and says which process had it last.
+    The lock ends with its process, and hinders nobody to read. The lock file stays and says which process had it last.
 
     Args:
         folder: made if it does not exist.
@@ -36,11 +74,11 @@ class FolderLock:
         path = folder / LOCK
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+            self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | _NO_LINK, 0o644)
         except OSError as error:
             raise RecordError(f"cannot write the run's folder {folder}: {error}") from error
         try:
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _take(self._descriptor, wait=False)
             _write_owner(self._descriptor)
         except BlockingIOError:
             owner = _read_owner(self._descriptor)
@@ -64,7 +102,7 @@ class FolderLock:
 def one_writer(folder: Path, what: str) -> Iterator[None]:
     """Makes a folder and lets one process at a time write into it; the others wait.
 
-    The lock is on the folder itself, so that no file is left in it.
+    No file is left in it.
 
     Args:
         folder: made if it is missing.
@@ -75,10 +113,10 @@ def one_writer(folder: Path, what: str) -> Iterator[None]:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        descriptor = _open_writer(folder)
         try:
             with suppress(OSError):  # a file system without locks
-                fcntl.flock(descriptor, fcntl.LOCK_EX)
+                _take(descriptor, wait=True)
             yield
         finally:
             os.close(descriptor)
@@ -89,12 +127,14 @@ def one_writer(folder: Path, what: str) -> Iterator[None]:
 def _write_owner(descriptor: int) -> None:
     text = json.dumps({"host": socket.gethostname(), "process": os.getpid()})
     os.ftruncate(descriptor, 0)
-    os.pwrite(descriptor, text.encode(), 0)
+    os.lseek(descriptor, 0, os.SEEK_SET)
+    os.write(descriptor, text.encode())
 
 
 def _read_owner(descriptor: int) -> str:
     try:
-        owner = json.loads(os.pread(descriptor, 1000, 0))
+        os.lseek(descriptor, 0, os.SEEK_SET)
+        owner = json.loads(os.read(descriptor, 1000))
         return f" (process {int(owner['process'])} on {owner['host']})"
     except (OSError, ValueError, KeyError, TypeError):  # its owner has not written it yet
         return ""

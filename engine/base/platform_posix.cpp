@@ -1,10 +1,12 @@
-/// The system that a process of an operating system has.
-#if !defined(__wasm__)
+/// The system that a process of Linux, macOS or another kind of Unix has.
+#if !defined(__wasm__) && !defined(_WIN32)
 
 #include <pthread.h>
-#include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#if defined(__linux__)
+#include <sched.h>
+#endif
 
 #include <thread>
 #include <utility>
@@ -24,9 +26,15 @@ void* reserve_pages(size_t bytes) {
 
 void release_pages(void* block, size_t bytes) { munmap(block, bytes); }
 
+int64_t physical_memory() {
+  return static_cast<int64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
+}
+
 int available_processors() {
+#if defined(__linux__)
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+#endif
   const unsigned count = std::thread::hardware_concurrency();
   return count > 0 ? static_cast<int>(count) : 1;
 }
