@@ -105,6 +105,8 @@ class Team {
   static void relax() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    asm volatile("isb");  // waits about as long as x86's pause; ARM's yield waits for nothing on most processors
 #endif
   }
 

@@ -9,6 +9,8 @@ extern const Kernel PORTABLE_KERNEL;
 #if defined(__x86_64__)
 extern const Kernel AVX2_KERNEL;
 extern const Kernel AVX512_KERNEL;
+#elif defined(__aarch64__)
+extern const Kernel NEON_KERNEL;
 #endif
 
 namespace {
@@ -36,6 +38,8 @@ struct KernelList {
       add(AVX512_KERNEL);
     }
     if (has_fma) add(AVX2_KERNEL);
+#elif defined(__aarch64__)
+    add(NEON_KERNEL);
 #endif
     add(PORTABLE_KERNEL);
   }

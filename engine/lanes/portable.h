@@ -106,7 +106,7 @@ HEDON_INLINE Lanes lower_half(Lanes a) {
 }
 
 HEDON_INLINE LaneMask first_lanes(int32_t count) {
-  LaneMask mask;
+  LaneMask mask = {};
   for (int i = 0; i < 16; ++i) mask.part[i / 4][i % 4] = i < count ? -1 : 0;
   return mask;
 }

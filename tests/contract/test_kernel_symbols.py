@@ -16,11 +16,12 @@ import pytest
 ROOT = Path(__file__).parents[2]
 CMAKE = (ROOT / "CMakeLists.txt").read_text()
 IS_X86 = platform.machine() in ("x86_64", "AMD64")
+IS_ARM = platform.machine() in ("aarch64", "arm64")
 
 
 def unit_flags(name: str) -> list[str]:
     """The flags that CMakeLists.txt gives to this unit."""
-    if name == "portable":
+    if name in ("portable", "neon"):
         return []
     found = re.search(rf'engine/kernel/{name}\.cpp PROPERTIES\s+COMPILE_OPTIONS "([^"]+)"', CMAKE)
     assert found, f"CMakeLists.txt gives no flags to {name}.cpp"
@@ -36,6 +37,7 @@ def unit_flags(name: str) -> list[str]:
             pytest.param(n, marks=pytest.mark.skipif(not IS_X86, reason="not an x86 processor"))
             for n in ("avx2", "avx512")
         ),
+        pytest.param("neon", marks=pytest.mark.skipif(not IS_ARM, reason="not an ARM processor")),
     ],
 )
 def test_unit_defines_only_its_table(name: str, level: str, tmp_path: Path):
@@ -66,4 +68,4 @@ def test_kernels_include_no_standard_library():
     assert len(paths) > 10
     for path in paths:
         included = re.findall(r"#include <([^>]+)>", path.read_text())
-        assert set(included) <= {"cstdint", "immintrin.h"}, path.name
+        assert set(included) <= {"cstdint", "immintrin.h", "arm_neon.h"}, path.name

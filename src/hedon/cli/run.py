@@ -62,7 +62,7 @@ def run(
     ] = None,
     backend: Annotated[
         str | None,
-        typer.Option(help="What computes: avx512, avx2, portable or cuda; by default the fastest instruction set."),
+        typer.Option(help="What computes: avx512, avx2, neon, portable, cuda; by default the fastest instruction set."),
     ] = None,
     report: Report = True,
 ) -> None:

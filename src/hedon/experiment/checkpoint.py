@@ -17,7 +17,7 @@ from hedon.record.checkpoint import Checkpoint, CheckpointHead
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
 
-SAME_BITS = (frozenset({"avx2", "avx512", "cuda", EMULATED}),)
+SAME_BITS = (frozenset({"avx2", "avx512", "neon", "cuda", EMULATED}),)
 """Instruction sets and devices that compute the same bits, so that one can continue what another began."""
 SHOWN = 5
 """Most differing settings that a message lists."""
