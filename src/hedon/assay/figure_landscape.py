@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from hedon.assay.end import End, on_surface
 from hedon.assay.landscape import Landscape, MeasureSurface
-from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled, weight_title
+from hedon.config.title import weight_title
+from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled
 
 _TITLES = {
     "descendants": "living descendants",

@@ -7,8 +7,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from hedon.config.color import species_color
 from hedon.figure.style import DOTS_PER_INCH, MUTED, styled
-from hedon.figure.world import draw_agents, draw_foods, draw_obstacles, draw_ring, draw_walls, species_color
+from hedon.figure.world import draw_agents, draw_foods, draw_obstacles, draw_ring, draw_walls
 from hedon.record.snapshot import Snapshot
 
 CAPTION = 34

@@ -9,15 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hedon.analysis.world.population import history
+from hedon.config.color import NEUTRAL_COLOR, weight_colors
+from hedon.config.title import weight_title
 from hedon.figure.style import (
     MUTED,
-    NEUTRAL_COLOR,
     new_figure,
     say_empty,
     step_unit,
     styled,
-    weight_colors,
-    weight_title,
 )
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import polars as pl
 from matplotlib.figure import Figure
 
+from hedon.config.color import NEUTRAL_COLOR
 from hedon.figure.style import (
     BLUE,
     INK,
     MUTED,
-    NEUTRAL_COLOR,
     SEED_COLORS,
     VERMILION,
     legend_above,

@@ -1,10 +1,10 @@
 """How every figure looks: colors that the color-blind can tell apart, quiet axes, sizes for a page.
 
-Colors: Okabe & Ito (2008), "Color universal design", and grays.
+Colors: Okabe & Ito (2008), "Color universal design", and grays. `config.color` has those of species, foods and weights.
 """
 
 import io
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from hedon.config.config import Config
-from hedon.config.layout import EXTRA
+from hedon.config.color import food_colors as food_colors
+from hedon.config.color import meal_colors as meal_colors
 from hedon.record.atomic import write_atomically
 
 INK = "#22303c"
@@ -28,10 +28,6 @@ GRID = "#e9edf0"
 BLUE, VERMILION, GREEN, ORANGE = "#0072b2", "#d55e00", "#009e73", "#e69f00"
 SKY, PINK, YELLOW, VIOLET = "#56b4e9", "#cc79a7", "#f0e442", "#5e4fa2"
 
-ACTION_COLOR = BLUE
-NEUTRAL_COLOR = "#8d99a4"
-FOOD_COLORS = (GREEN, ORANGE, PINK, SKY, VERMILION, VIOLET, YELLOW, MUTED)
-PREY_COLORS = (VERMILION, VIOLET, SKY, PINK)
 SEED_COLORS = (BLUE, VERMILION, GREEN, ORANGE, PINK, SKY, VIOLET, MUTED, YELLOW, INK)
 
 STYLE: dict[Any, Any] = {
@@ -134,28 +130,6 @@ def _lay_out(figure: Figure) -> None:
         figure.set_layout_engine("none")
 
 
-def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind: the wanted ones, where they are given, else the defaults in order.
-
-    Args:
-        food_kinds: names, in the order of the config.
-        wanted: a color for each; else none of them counts.
-    """
-    given = wanted if len(wanted) == len(food_kinds) else [FOOD_COLORS[i % 8] for i in range(len(food_kinds))]
-    return dict(zip(food_kinds, given, strict=True))
-
-
-def meal_colors(config: Config, prey: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind of a config, and per species that is eaten.
-
-    Args:
-        config: with the colors of its foods.
-        prey: names of the species that are eaten.
-    """
-    foods = food_colors(list(config.food), [food.color for food in config.food.values()])
-    return foods | {name: PREY_COLORS[i % len(PREY_COLORS)] for i, name in enumerate(prey)}
-
-
 def seed_color(index: int) -> str:
     """The color of a world."""
     return SEED_COLORS[index % len(SEED_COLORS)]
@@ -226,47 +200,3 @@ def draw_message(text: str) -> Figure:
         axes.axis("off")
         say_empty(axes, text)
     return figure
-
-
-def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
-    """What the panel of each weight is called: those that enter the reward, and the first neutral marker.
-
-    Args:
-        reward_names: columns of the weights that enter the reward.
-        neutral_names: columns of the genes without effect.
-    """
-    return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
-
-
-def weight_title(name: str) -> str:
-    """What a gene is called: the weight of action, of seeing something or of a food, or by its name."""
-    for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
-        if name.startswith("w_") and name.endswith(ending):
-            return weight_title(name.removesuffix(ending)) + said
-    if name == "w_action":
-        return "weight of action"
-    if name.startswith(EXTRA):
-        return f"{name.removeprefix(EXTRA)}, read by a rule"
-    what = name.removeprefix("w_")
-    if what.startswith("see_"):
-        return f"weight of seeing {what.removeprefix('see_')}"
-    return f"weight of {what} food" if name.startswith("w_") else f"gene {name}"
-
-
-def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
-    """A color per weight: that of the food kind, or those of action, of other rewards and of neutral markers.
-
-    Args:
-        names: genome columns.
-        kinds: color per food kind.
-    """
-    others = iter(_OTHER_COLORS * 8)
-    colors = {}
-    for name in names:
-        known = {"w_action": ACTION_COLOR}.get(name) or kinds.get(name.removeprefix("w_"))
-        colors[name] = known or (NEUTRAL_COLOR if name.startswith("neutral_") else next(others))
-    return colors
-
-
-_OTHER_COLORS = ("#b8322a", "#3a5fa8", "#7a4fa3", "#b07d1a")
-"""Colors of weights that are neither for a food nor for action."""

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import ALIVE, Genealogy, ancestry
+from hedon.config.title import weight_title
 from hedon.figure.style import (
     BLUE,
     ORANGE,
@@ -17,7 +18,6 @@ from hedon.figure.style import (
     new_figure,
     step_unit,
     styled,
-    weight_title,
 )
 
 MOST = 300

@@ -13,9 +13,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
+from hedon.config.color import NEUTRAL_COLOR
+from hedon.config.title import weight_title
 from hedon.figure.style import (
     MUTED,
-    NEUTRAL_COLOR,
     PALE,
     draw_message,
     head,
@@ -24,7 +25,6 @@ from hedon.figure.style import (
     seed_color,
     step_unit,
     styled,
-    weight_title,
 )
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes

@@ -10,17 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Wedge
 
+from hedon.config.color import OBSTACLE_COLOR, species_color
 from hedon.figure.outline import wall_outline
 from hedon.figure.style import INK, MUTED, PALE, new_figure, styled
 from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"
 """Color of agents where no color stands for their energy."""
-OBSTACLE_COLOR = "#c9a26b"
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
-_AGENT_RAY = "#1f63a0"
-_SPECIES_COLORS = (MUTED, "#b8322a", "#3a5fa8", "#7a4fa3")
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
 _LEGEND_COLUMNS = 5  # as many as fit beside each other
 _WIDTH = 7.2  # of the figure [inch]
@@ -156,7 +154,8 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
     discs = None
     for species in np.unique(snapshot.species).tolist():
         mine = snapshot.species == species
-        edge = {"edgecolors": species_color(species), "linewidths": 1.8 if species else 0.5}
+        several = len(snapshot.species_names) > 1
+        edge = {"edgecolors": species_color(species) if several else MUTED, "linewidths": 1.8 if several else 0.5}
         discs = _discs(axes, centers[mine], float(snapshot.radius[species]), **edge)
         if top is None:
             discs.set_facecolor(AGENT_COLOR)
@@ -190,11 +189,6 @@ def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
     _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
 
 
-def species_color(index: int) -> str:
-    """The color of a species' outline."""
-    return _SPECIES_COLORS[index]
-
-
 def _top_energy(energy: np.ndarray) -> float:
     """The energy that is drawn darkest: few agents have more; a newcomer's 40 stays in sight in poor worlds."""
     return max(float(np.quantile(energy, 0.95)), 40.0)
@@ -224,7 +218,7 @@ def _draw_rays(axes: Axes, snapshot: Snapshot, index: int, colors: Mapping[str, 
 
 
 def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
-    species = [_AGENT_RAY, *_SPECIES_COLORS[1:]][: len(snapshot.species_names)]
+    species = [species_color(i) for i in range(len(snapshot.species_names))]
     solid = [MUTED, OBSTACLE_COLOR] if len(snapshot.obstacles) else [MUTED]
     return [*species, *(colors[kind] for kind in snapshot.food_kinds), *solid]
 

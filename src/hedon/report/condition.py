@@ -6,6 +6,8 @@ import polars as pl
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
+from hedon.config.color import meal_colors, weight_colors
+from hedon.config.title import weight_titles
 from hedon.figure.demography import draw_demography
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.lineage import draw_lineages
@@ -13,7 +15,6 @@ from hedon.figure.named import NamedFigure
 from hedon.figure.population import draw_population
 from hedon.figure.regime import draw_regimes
 from hedon.figure.selection import draw_selection
-from hedon.figure.style import meal_colors, weight_colors, weight_titles
 from hedon.figure.survival import draw_survival
 from hedon.figure.weight import draw_weights
 from hedon.report import figure

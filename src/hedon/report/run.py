@@ -11,8 +11,9 @@ from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
 
+from hedon.config.color import food_colors
 from hedon.figure.named import NamedFigure
-from hedon.figure.style import food_colors, save_figure, svg_bytes
+from hedon.figure.style import save_figure, svg_bytes
 from hedon.figure.world import draw_world, telling_agent
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError

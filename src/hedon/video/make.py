@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
+from hedon.config.color import meal_colors
 from hedon.figure.film import Film
-from hedon.figure.style import meal_colors
 from hedon.video.encoder import Encoder, check_target, find_ffmpeg
 from hedon.video.error import VideoError
 from hedon.video.moment import Footage

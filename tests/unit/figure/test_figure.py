@@ -10,10 +10,12 @@ from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
 from hedon.analysis.world.population import history
+from hedon.config.color import food_colors
+from hedon.config.title import weight_title
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
-from hedon.figure.style import food_colors, save_figure, step_unit, weight_title
+from hedon.figure.style import save_figure, step_unit
 from hedon.figure.trace import over_worlds
 from hedon.figure.weight import draw_weights
 from hedon.figure.world import draw_world, ray_segments, telling_agent

@@ -10,10 +10,12 @@ import pytest
 from markdown_it import MarkdownIt
 from synthetic_run import write_run
 
+from hedon.config.color import weight_colors
+from hedon.config.title import weight_titles
 from hedon.figure.lineage import draw_lineages
 from hedon.figure.regime import REGIME_COLORS, draw_regimes
 from hedon.figure.selection import draw_selection
-from hedon.figure.style import svg_bytes, weight_colors, weight_titles
+from hedon.figure.style import svg_bytes
 from hedon.figure.survival import draw_survival
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run

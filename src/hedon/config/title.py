@@ -1,0 +1,30 @@
+"""What a gene is called where people read it."""
+
+from collections.abc import Sequence
+
+from hedon.config.layout import EXTRA
+
+
+def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
+    """What the panel of each weight is called: those that enter the reward, and the first neutral marker.
+
+    Args:
+        reward_names: columns of the weights that enter the reward.
+        neutral_names: columns of the genes without effect.
+    """
+    return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
+
+
+def weight_title(name: str) -> str:
+    """What a gene is called: the weight of action, of seeing something or of a food, or by its name."""
+    for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
+        if name.startswith("w_") and name.endswith(ending):
+            return weight_title(name.removesuffix(ending)) + said
+    if name == "w_action":
+        return "weight of action"
+    if name.startswith(EXTRA):
+        return f"{name.removeprefix(EXTRA)}, read by a rule"
+    what = name.removeprefix("w_")
+    if what.startswith("see_"):
+        return f"weight of seeing {what.removeprefix('see_')}"
+    return f"weight of {what} food" if name.startswith("w_") else f"gene {name}"
