@@ -48,7 +48,7 @@ struct AgentProbe {
 constexpr size_t SPARE = size_t{4} << 20;  ///< bytes that a world needs besides its own, with room to spare
 
 std::string text, message, path;
-WorldInput input;
+WorldInput input, made;  ///< what was read last, and what the world was made from
 std::unique_ptr<Simulation> simulation;
 std::vector<float> scratch;
 Pace pace;
@@ -101,6 +101,22 @@ int change(const std::string& refused) {
   if (!refused.empty()) return fail(refused);
   edited = true;
   return report_fault();
+}
+
+/// Makes the world of an input, at its first step; the world before is gone.
+void make_world(const WorldInput& from, int32_t threads) {
+  simulation.reset();
+  made = from;
+  simulation = std::make_unique<Simulation>(made.config, made.walls, static_cast<int32_t>(made.outer_walls),
+                                            std::vector<uint64_t>{made.seed}, threads, find_kernel("portable"),
+                                            std::vector<int32_t>{});
+  scratch.assign(static_cast<size_t>(scratch_stride() * threads) + 16, 0.0f);
+  pace = Pace();
+}
+
+double bytes_needed(const WorldInput& of, int32_t threads) {
+  const MemoryNeed need = Simulation::bytes_needed(of.config, static_cast<int32_t>(of.walls.size()), 1, threads);
+  return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
 }
 
 template <class T>
@@ -160,10 +176,7 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
 }
 
 /// Bytes that the world of the input needs; a page refuses what it cannot have before it reserves it.
-HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) {
-  const MemoryNeed need = Simulation::bytes_needed(input.config, static_cast<int32_t>(input.walls.size()), 1, threads);
-  return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
-}
+HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) { return bytes_needed(input, threads); }
 
 /// Makes the world of the input, with that many threads, which change no result; the world before is gone.
 HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
@@ -176,13 +189,28 @@ HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   if (room == nullptr)
     return fail("there is no memory left for this world: lower population.capacity or world.rollout_steps");
   release_pages(room, bytes);
-  simulation = std::make_unique<Simulation>(input.config, input.walls, static_cast<int32_t>(input.outer_walls),
-                                            std::vector<uint64_t>{input.seed}, threads, find_kernel("portable"),
-                                            std::vector<int32_t>{});
-  scratch.assign(static_cast<size_t>(scratch_stride() * threads) + 16, 0.0f);
-  pace = Pace();
+  make_world(input, threads);
   prepare_step(Alone{}, world());
   return report_fault();
+}
+
+/// Lets the world go on with the settings of the input, as `hedon branch` does. The copy that was kept is forgotten. If
+/// the state does not fit the settings, the world stays as it is.
+HEDON_EXPORT(hedon_change) int hedon_change() {
+  if (need_rest() != 0) return 1;
+  const int32_t threads = simulation->pool().size();
+  if (bytes_needed(input, threads) != bytes_needed(made, threads)) return fail("this setting needs a new beginning");
+  kept.reset();
+  const Checkpoint state = simulation->save(0);
+  const WorldInput before = made;
+  make_world(input, threads);
+  std::string wrong = simulation->restore(0, state);
+  if (!wrong.empty()) {
+    make_world(before, threads);
+    simulation->restore(0, state);
+  }
+  prepare_step(Alone{}, world());
+  return change(wrong);
 }
 
 /// Advances by up to `steps` steps, but not past the end of a window that has not been learned. Returns the steps

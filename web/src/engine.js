@@ -156,6 +156,13 @@ export class Engine {
     return engine;
   }
 
+  /** Lets the world go on with the settings of another text; its snapshot is forgotten. @param {string} text */
+  change(text) {
+    this.#needOf(text, this.threads);
+    this.#need(this.exports.hedon_change());
+    this.known.clear();
+  }
+
   /** Bytes that the world of a text needs, which `hedon_make` then makes. @param {string} text @param {number} threads */
   #needOf(text, threads) {
     const bytes = new TextEncoder().encode(text);

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from hedon.config.config import Config
 from hedon.config.dump import diff, digest
+from hedon.config.fixed import fixed_path
 from hedon.config.load import load_config
-from hedon.config.species import default_path
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts
@@ -26,20 +26,6 @@ from hedon.record.provenance import to_unicode
 from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 from hedon.record.schema import columns_of
-
-SHAPE = (
-    "arena.",
-    "sensor.ray_count",
-    "sensor.touch_sectors",
-    "sensor.scaling",
-    "genome.neutral_count",
-    "world.founders",
-    "world.networks",
-    "reward.memory",
-    "world.rollout_steps",
-)
-"""Settings and sections that fix the shapes of a world's arrays, or how it began. The kinds of food and their
-capacities do so too, and whether anybody starves to death, where agents would else die of age and energy alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,10 +161,7 @@ def _check_shape(config: Config, changed: Config) -> None:
     fixed = [
         path
         for path, _, _ in diff(config, changed)
-        if default_path(path).startswith(SHAPE)
-        or path == "food"
-        or (path.startswith("food.") and path.endswith(".capacity"))
-        or (path.endswith(".at_zero") and columns_of(config).causes != columns_of(changed).causes)
+        if fixed_path(path) or (path.endswith(".at_zero") and columns_of(config).causes != columns_of(changed).causes)
     ]
     if fixed:
         raise RecordError(
