@@ -1,5 +1,7 @@
 """A plugin of pytest: a browser, a run to watch, and pages that may not complain."""
 
+from typing import Any
+
 import pytest
 from view_page import CHROMIUM, FLAGS, SIZE, Watched, record
 
@@ -22,11 +24,14 @@ def run_folder(tmp_path_factory):
 
 @pytest.fixture
 def watch(browser):
-    """Opens links; at the end no page may have complained or asked another host for anything."""
+    """Opens links; at the end no page may have complained or asked another host for anything.
+
+    What is given by name is of Playwright's context: `viewport`, `color_scheme`, `has_touch`, `reduced_motion`.
+    """
     opened = []
 
-    def open_link(link: str) -> Watched:
-        context = browser.new_context(viewport=SIZE)
+    def open_link(link: str, **how: Any) -> Watched:
+        context = browser.new_context(**{"viewport": SIZE, **how})
         opened.append((context, Watched(context.new_page(), link)))
         return opened[-1][1]
 

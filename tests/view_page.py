@@ -22,6 +22,9 @@ from hedon.view.story import story
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 SIZE = {"width": 1280, "height": 720}
+SIZES = {1400: 860, 1024: 768, 390: 844}
+"""Widths of pages, of a desk, a tablet and a phone, and their heights."""
+GROUNDS = ("light", "dark")
 
 
 def record(folder: Path, steps: int) -> Path:
@@ -105,6 +108,11 @@ class Watched:
         self.until(f"hedon.frame && hedon.frame.step === {step}")
         drawn = self.get("hedon.pictures")
         self.until(f"hedon.pictures > {drawn} + 2")
+
+
+def sized(width: int, ground: str = "light") -> dict[str, Any]:
+    """A browser of one of the `SIZES`: the phone has a touch screen."""
+    return {"viewport": {"width": width, "height": SIZES[width]}, "color_scheme": ground, "has_touch": width == 390}
 
 
 def run_live(watched: Watched, steps: int) -> None:

@@ -5,7 +5,10 @@ import pytest
 from split_run import record_species
 from view_page import Watched, live_server, run_live, run_server, serving
 
+from hedon import Simulation, load_config
 from hedon.record.reader import open_run
+from hedon.view.live import live_world
+from hedon.view.server import Server
 
 pytest_plugins = ("view_fixture",)
 STEP = 256
@@ -22,7 +25,7 @@ def tables(watched: Watched) -> dict[str, dict[str, str]]:
         """(() => {
           const found = {};
           let title = "";
-          for (const each of document.querySelector("#agent").children) {
+          for (const each of document.querySelectorAll("#agent h2, #agent h3, #agent table")) {
             if (/^H/.test(each.tagName)) title = each.innerText;
             if (each.tagName === "TABLE")
               found[title] = Object.fromEntries([...each.rows].map((row) => [...row.cells].map((x) => x.innerText)));
@@ -85,3 +88,28 @@ def test_a_live_world_says_up_to_which_step_it_counts(watch):
         watched.get("hedon.seek(10)")  # a look back: the counts are those of the newest step
         watched.get("hedon.choose(hedon.frame.id[0])")
         watched.until("document.querySelector('#agent').textContent.includes(`up to step ${hedon.source.last}`)")
+
+
+def test_a_live_world_shows_the_reward_of_each_window(watch):
+    """What the native world gained of reward between the ends of two windows; it has a short window here."""
+    config = load_config("small", overrides=["world.rollout_steps=64", "learning.minibatch_size=64"])
+    page = {"run": False, "worlds": [live_world(config, "small")]}
+    with serving(Server({"page": lambda: page}, dict)) as server:
+        watched = watch(server.link)
+        run_live(watched, 5 * 64 + 10)
+        kernel = "" if watched.get("hedon.source.fused") else "portable"
+        simulation, before, known = Simulation(config, [1], backend=kernel), {}, {}
+        for _ in range(5):
+            simulation.run(64)
+            agents = simulation.worlds[0].agents()
+            now = dict(zip(agents["agent_id"].tolist(), agents["reward"].tolist(), strict=True))
+            for agent, reward in now.items():
+                known.setdefault(agent, []).append(reward - before.get(agent, 0.0))
+            before = now
+        assert len(before) > 20
+        for agent in before:
+            shown = watched.get(f"hedon.source.earned({agent}).map((each) => each.reward)")
+            assert shown == pytest.approx(known[agent], abs=1e-4)
+        founder = next(agent for agent in before if len(known[agent]) == 5)
+        watched.get(f"(hedon.seek(hedon.source.last), hedon.choose({founder}))")
+        watched.until("document.querySelector('#agent').textContent.includes('per window')")

@@ -1,45 +1,73 @@
-// The panel of the chosen agent: its life, its kin to click, its genome, and what its network sees and says.
-import { by, element, show, table } from "./element";
+// The panel of the chosen agent: what it sees and does, whether it learns, its genes, its life, and its kin to click.
+import { typeColor } from "./color";
+import { by, counted, element, show, styleColor, surface, table } from "./element";
+import { LearningChart } from "./learning";
 import { castRays } from "./rays";
 import { smell } from "./smells";
 import type { Source } from "./source";
-import type { Frame, Life } from "./types";
+import type { Frame, Gene, Life } from "./types";
 
 const SHOWN_CHILDREN = 12;
 const ROUNDED = 1e4; // rewards are sums of numbers of 7 digits
 
+/** A part of the panel that is written anew only where it says something else, so that what has the focus keeps it. */
+class Part {
+  readonly host = element("section");
+  private said = "";
+
+  fill(...parts: Node[]): void {
+    const said = parts.map((part) => (part instanceof Element ? part.outerHTML : (part.textContent ?? ""))).join("");
+    if (said === this.said) return;
+    this.said = said;
+    this.host.replaceChildren(...parts);
+  }
+}
+
 export class AgentPanel {
   private readonly host = by<HTMLDivElement>("agent");
-  private readonly sight = element("canvas", { class: "sight", title: "what each ray sees, from left to right" });
-  private readonly course = element("canvas", { class: "small", title: "energy since it was chosen" });
+  private readonly sight = element("canvas", { class: "sight" });
+  private readonly course = element("canvas", { class: "small" });
+  private readonly learning = new LearningChart();
+  private readonly folded = element("details", { class: "neutral" }, element("summary"), element("div"));
+  private readonly state = new Part();
+  private readonly seen = new Part();
+  private readonly answer = new Part();
+  private readonly genes = new Part();
+  private readonly life = new Part();
   private energies: [number, number][] = [];
   private last = "";
+  private shown = "";
 
-  constructor(private readonly choose: (id: number) => void) {}
+  constructor(private readonly choose: (id: number) => void) {
+    this.sight.setAttribute("role", "img");
+    this.course.setAttribute("role", "img");
+  }
 
   update(source: Source, frame: Frame | undefined, chosen: number): void {
     if (this.host.hidden) return;
-    const key = `${chosen} ${frame?.step} ${source.lives.size} ${source.agentProbe()?.id}`;
+    const key = `${chosen} ${frame?.step} ${source.lives.size} ${source.agentProbe()?.id} ${source.last} ${styleColor("--page")} ${this.host.clientWidth}`;
     if (key === this.last) return;
     this.last = key;
     if (chosen < 0) return this.invite();
     const life = source.lives.get(chosen);
     const at = frame ? frame.id.indexOf(chosen) : -1;
-    const parts: Node[] = [element("h2", { text: `Agent ${chosen}` })];
-    if (at < 0) parts.push(element("p", { text: life ? whenGone(life, frame) : "There is no such agent in these records." }));
-    if (life) parts.push(this.lifeTable(life, frame, at), ...this.counts(source, life), element("h3", { text: "genome" }), genome(source, life));
-    if (frame && at >= 0) {
-      this.note(frame.step, frame.energy[at]!);
-      parts.push(element("h3", { text: "energy while watched" }), this.course);
-      parts.push(element("h3", { text: "what its rays see, from left to right" }), this.sight);
-      if (source.layout.species[frame.species[at]!]!.smells.length > 0) parts.push(element("h3", { text: "what it smells" }), smells(source, frame, at));
-      parts.push(answer(source));
-    }
-    this.host.replaceChildren(...parts);
-    if (frame && at >= 0) {
-      drawSight(this.sight, source, frame, at);
-      this.drawCourse(source);
-    }
+    const present = frame !== undefined && at >= 0;
+    const heading = element("h2", { text: `Agent ${chosen}` });
+    const gone = present ? [] : [element("p", { text: life ? whenGone(life, frame) : "There is no such agent in these records." })];
+    this.state.fill(heading, ...gone, ...(life ? [lifeTable(source, life, frame, at, (id) => this.link(id))] : []));
+    this.seen.fill(...(present ? seenTitle(source, frame, at) : []));
+    this.answer.fill(...(present ? [...smellsOf(source, frame, at), ...answer(source)] : []));
+    if (life) {
+      const neutral = this.neutral(source, life);
+      this.genes.fill(element("h3", { text: "its genes" }), genome(source, life, (gene) => gene.role !== "neutral"));
+      this.life.fill(...this.counts(source, life));
+      this.arrange(present, source, neutral);
+      this.drawLearning(source, life);
+    } else this.arrange(present, source, false);
+    if (!present) return;
+    this.note(frame.step, frame.energy[at]!);
+    drawSight(this.sight, source, frame, at);
+    this.drawCourse(source);
   }
 
   forget(): void {
@@ -47,19 +75,43 @@ export class AgentPanel {
     this.last = "";
   }
 
-  private invite(): void {
+  /** What matters first comes first. Elements are moved only where other ones are there than before. */
+  private arrange(present: boolean, source: Source, neutral: boolean): void {
+    const known = source.earned(0) !== undefined;
+    const key = `${present} ${known} ${neutral}`;
+    if (key === this.shown && this.host.firstChild === this.state.host) return;
+    this.shown = key;
+    const learning = [element("h3", { text: "is it learning? reward in each window" }), ...(known ? [this.learning.canvas, this.learning.text] : [unknown()])];
+    const energy = [element("h3", { text: "energy while watched" }), this.course];
     this.host.replaceChildren(
-      element("p", { text: "Click an agent to see its life, its genome and what it sees. The chosen agent is ringed, and so are its near kin." }),
+      this.state.host,
+      ...(present ? [this.seen.host, this.sight, this.answer.host] : []),
+      ...learning,
+      this.genes.host,
+      ...(neutral ? [this.folded] : []),
+      ...(present ? energy : []),
+      this.life.host,
     );
   }
 
-  private lifeTable(life: Life, frame: Frame | undefined, at: number): HTMLElement {
-    const rows: [string, Node | string][] = [];
-    const born = `born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""}`;
-    if (frame && at >= 0) rows.push(["age", `${show(frame.step - life.birth)} steps (${born})`], ["energy", show(frame.energy[at])]);
-    else rows.push(["life", born]);
-    rows.push(["generation", show(life.generation)], ["parent", life.parent >= 0 ? this.link(life.parent) : "none, a founder"]);
-    return table(rows);
+  private invite(): void {
+    this.shown = "";
+    this.host.replaceChildren(
+      element("p", { text: "Click an agent, or press Next, to see what it sees and does, whether it learns, and its genes. The chosen agent is ringed, and so are its near kin." }),
+    );
+  }
+
+  /** Fills the folded list of neutral genes; false where there are none. */
+  private neutral(source: Source, life: Life): boolean {
+    const own = source.layout.species[life.species]!.genes.filter((g) => source.layout.genes[g]!.role === "neutral");
+    this.folded.firstElementChild!.textContent = `${counted(own.length, "neutral gene")}, without effect`;
+    this.folded.lastElementChild!.replaceChildren(genome(source, life, (gene) => gene.role === "neutral"));
+    return own.length > 0;
+  }
+
+  private drawLearning(source: Source, life: Life): void {
+    const windows = source.earned(life.id);
+    if (windows) this.learning.draw(windows, source.layout.window);
   }
 
   /** What is counted over a life: its course within the life is not known, so the title says up to when. */
@@ -79,6 +131,7 @@ export class AgentPanel {
 
   private link(id: number): HTMLElement {
     const button = element("button", { text: String(id), class: "link" });
+    button.setAttribute("aria-label", `Agent ${id}`);
     button.addEventListener("click", () => this.choose(id));
     return button;
   }
@@ -91,24 +144,39 @@ export class AgentPanel {
   }
 
   private drawCourse(source: Source): void {
-    const pen = sized(this.course);
+    const pen = surface(this.course);
     const [width, height] = [this.course.clientWidth, this.course.clientHeight];
     const [first, last] = [this.energies[0]![0], this.energies[this.energies.length - 1]![0]];
     const most = Math.max(1, ...this.energies.map(([, energy]) => energy));
-    pen.strokeStyle = "#e69f00";
+    pen.strokeStyle = styleColor("--high");
+    pen.lineWidth = 1.5;
     pen.beginPath();
     for (const [step, energy] of this.energies) {
-      pen.lineTo(((step - first) / Math.max(last - first, 1)) * width, height - (energy / most) * (height - 4) - 2);
+      pen.lineTo(((step - first) / Math.max(last - first, 1)) * width, height - (energy / most) * (height - 20) - 4);
     }
     pen.stroke();
-    pen.fillStyle = "#8a8f98";
-    pen.fillText(`up to ${show(most)} of ${show(source.layout.energy_capacity)}`, 3, 10);
+    pen.fillStyle = styleColor("--quiet");
+    const text = `at most ${show(most)} of ${show(source.layout.energy_capacity)}, steps ${show(first)} to ${show(Math.floor(last))}`;
+    pen.fillText(text, 3, 12);
+    this.course.setAttribute("aria-label", `Energy: ${text}`);
   }
 }
+
+const unknown = (): HTMLElement => element("p", { class: "quiet", text: "Records have the reward of whole lives. A live world shows it for each window." });
 
 function whenGone(life: Life, frame: Frame | undefined): string {
   if (frame && life.birth > frame.step) return "Not yet born at this step.";
   return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
+}
+
+function lifeTable(source: Source, life: Life, frame: Frame | undefined, at: number, link: (id: number) => HTMLElement): HTMLElement {
+  const rows: [string, Node | string][] = [];
+  const born = `born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""}`;
+  if (source.layout.species.length > 1) rows.push(["species", source.layout.species[life.species]!.name]);
+  if (frame && at >= 0) rows.push(["age", `${counted(Math.floor(frame.step) - life.birth, "step")} (${born})`], ["energy", `${show(frame.energy[at])} of ${show(source.layout.energy_capacity)}`]);
+  else rows.push(["life", born]);
+  rows.push(["generation", show(life.generation)], ["parent", life.parent >= 0 ? link(life.parent) : "none, a founder"]);
+  return table(rows);
 }
 
 /** Up to when reward, children and meals of a life are counted, whatever step is shown. */
@@ -117,17 +185,18 @@ function countedUntil(source: Source, life: Life): string {
   return source.live ? `up to step ${show(source.last)}` : "up to the last record of it";
 }
 
-/** Each gene as a bar from the middle, where it is 0; neutral ones are gray. */
-function genome(source: Source, life: Life): HTMLElement {
-  const limit = Math.max(0.1, ...life.genome.map(Math.abs));
-  const rows = source.layout.genes.map((gene, g): [string, Node] => {
-    const value = life.genome[g]!;
+/** Each gene that its species has, as a bar from the middle, where it is 0. */
+function genome(source: Source, life: Life, wanted: (gene: Gene) => boolean): HTMLElement {
+  const own = source.layout.species[life.species]!.genes.filter((g) => wanted(source.layout.genes[g]!));
+  const limit = Math.max(0.1, ...own.map((g) => Math.abs(life.genome[g]!)).filter(Number.isFinite));
+  const rows = own.map((g): [string, Node] => {
+    const [gene, value] = [source.layout.genes[g]!, life.genome[g]!];
     const fill = element("i");
     const share = (50 * Math.abs(value)) / limit;
     fill.style.width = `${share}%`;
     fill.style.left = `${value < 0 ? 50 - share : 50}%`;
     const bar = element("div", { title: `${gene.name} = ${value}`, class: `gene ${gene.role} ${value < 0 ? "low" : "high"}` }, fill);
-    return [gene.name, element("div", {}, bar, show(value, 3))];
+    return [gene.title, element("div", {}, bar, show(value, 3))];
   });
   const list = table(rows);
   list.classList.add("genome");
@@ -147,47 +216,55 @@ function rewardParts(source: Source, life: Life): [string, string][] {
 }
 
 /** What each nose smells of each type, at most 1. */
-function smells(source: Source, frame: Frame, at: number): HTMLElement {
+function smellsOf(source: Source, frame: Frame, at: number): HTMLElement[] {
   const { layout } = source;
-  const sides = smell(layout, frame, at);
   const { smells } = layout.species[frame.species[at]!]!;
+  if (smells.length === 0) return [];
+  const sides = smell(layout, frame, at);
   const text = (channel: number) => (sides.length === 1 ? show(sides[0]![channel]) : `left ${show(sides[1]![channel])}, right ${show(sides[0]![channel])}`);
-  return table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]));
+  return [element("h3", { text: "what it smells" }), table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]))];
 }
 
-function answer(source: Source): HTMLElement {
+/** What its network says: how strong each motor is, and how much reward it expects. */
+function answer(source: Source): HTMLElement[] {
   const probe = source.agentProbe();
   if (!probe) {
-    const why = source.live ? "…" : "Networks are not recorded. In a live world you see what they say.";
-    return element("p", { text: why, class: "quiet" });
+    const why = source.live ? "…" : "Networks are not recorded. In a live world you see its motors and what it expects.";
+    return [element("p", { text: why, class: "quiet" })];
   }
   const [left, right, value] = probe.output;
-  const share = (action: number) => `${(100 / (1 + Math.exp(-action))).toFixed(0)} %`;
-  return table([
-    ["left motor", share(left!)],
-    ["right motor", share(right!)],
-    ["value of now", show(value)],
-  ]);
+  const motor = (name: string, action: number): [string, Node] => {
+    const share = 100 / (1 + Math.exp(-action));
+    const meter = Object.assign(element("meter"), { max: 100, value: share });
+    meter.setAttribute("aria-label", name);
+    return [name, element("div", { class: "motor" }, meter, `${share.toFixed(0)} %`)];
+  };
+  return [element("h3", { text: "what its network says" }), table([motor("left motor", left!), motor("right motor", right!), ["value of now", `${show(value)} reward to come`]])];
+}
+
+/** What its rays see now, in words and colors. */
+function seenTitle(source: Source, frame: Frame, at: number): HTMLElement[] {
+  const { layout } = source;
+  const found = [...new Set(castRays(layout, frame, at, source.obstacles).map((ray) => ray.type))].filter((type) => type >= 0);
+  const names = found.map((type) => {
+    const dot = element("b", { text: "■" });
+    dot.style.color = typeColor(layout, type) || "var(--wall)";
+    return element("span", {}, dot, ` ${layout.types[type]}`);
+  });
+  return [element("h3", { text: "what it sees: left to right, taller is nearer" }), element("p", { class: "key" }, ...(names.length > 0 ? names : ["nothing"]))];
 }
 
 function drawSight(canvas: HTMLCanvasElement, source: Source, frame: Frame, at: number): void {
   const { layout } = source;
-  const pen = sized(canvas);
+  const pen = surface(canvas);
   const rays = castRays(layout, frame, at, source.obstacles).reverse();
   const [width, height] = [canvas.clientWidth / rays.length, canvas.clientHeight];
-  const first = layout.species.length;
   rays.forEach((ray, i) => {
     if (ray.type < 0) return;
     const tall = Math.max(3, (1 - ray.share) * height);
-    pen.fillStyle = layout.foods[ray.type - first]?.color ?? (ray.type < first ? "#0072b2" : "#8a8f98");
+    pen.fillStyle = typeColor(layout, ray.type) || styleColor("--wall");
     pen.fillRect(i * width + 0.5, height - tall, width - 1, tall);
   });
-}
-
-function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
-  const ratio = window.devicePixelRatio || 1;
-  [canvas.width, canvas.height] = [Math.max(canvas.clientWidth, 1) * ratio, Math.max(canvas.clientHeight, 1) * ratio];
-  const pen = canvas.getContext("2d")!;
-  pen.scale(ratio, ratio);
-  return pen;
+  const seen = rays.filter((ray) => ray.type >= 0).map((ray) => layout.types[ray.type]);
+  canvas.setAttribute("aria-label", seen.length > 0 ? `Its rays see, from left to right: ${seen.join(", ")}` : "Its rays see nothing");
 }

@@ -3,12 +3,18 @@ import { AgentPanel } from "./agent";
 import { Arena } from "./arena";
 import { blend } from "./blend";
 import { type Coloring, colorings } from "./color";
-import { by, element, option, show } from "./element";
+import { by, counted, element, option, show } from "./element";
+import { showHelp } from "./help";
+import { Legend } from "./legend";
+import { type Link, readLink, writeLink } from "./link";
 import { Live } from "./live";
+import { Notice } from "./notice";
 import { Plots } from "./plots";
+import { recall, remember, switchTheme } from "./preference";
 import { castRays, type Ray } from "./rays";
 import { Replay } from "./replay";
-import { command, Settings } from "./settings";
+import { Settings } from "./settings";
+import { Tabs } from "./tabs";
 import { events, Timeline } from "./timeline";
 import { Tools } from "./tools";
 import { Twin } from "./twin";
@@ -17,15 +23,10 @@ import type { Event, Frame, LiveWorld, Setting } from "./types";
 
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
 const PICTURE_MS = 13; // of work for a live world between two pictures
+const HURRY_MS = 120; // of it on the way to a step that a link asks for, and at the highest speeds
 const PANEL_MS = 200; // between two looks at the panels
 const MOST_THREADS = 16; // that the engine has seats for
-const HELP = [
-  "Click an agent to inspect it. Drag to move, turn the wheel to zoom, 0 shows the whole arena.",
-  "Space plays and pauses. ← and → step, with Shift ten at a time. Home and End go to the ends.",
-  "+ and − change the speed. F follows the chosen agent, R shows its rays, T its trail. Tab or N chooses the next agent.",
-  "A, P, S and W open the panels: agent, plots, settings, world. Esc chooses none.",
-];
-const PANELS = ["agent", "plots", "settings", "world-panel"];
+const NOTHING: Link = { changes: new Map() };
 
 export class App {
   readonly arena = new Arena(by<HTMLCanvasElement>("scene"));
@@ -38,19 +39,24 @@ export class App {
   now = 0;
   pictures = 0;
   private coloring!: Coloring;
+  private colors: Coloring[] = [];
   private plots: Plots | undefined;
   private tools: Tools | undefined;
+  private goal: { step: number; agent: number } | undefined; // where the link of a live world leads
   private skipped = 0; // steps between the last two pictures that were not drawn
   private marks: Event[] = [];
   private panelsDue = 0;
   private threads = 0; // of a live world, as the link asks for; 0 for as many as help
   private owed = 0; // part of a step at speeds below 1
+  private readonly legend = new Legend();
+  private readonly notice = new Notice();
   private readonly panel = new AgentPanel((id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
+  private readonly tabs = new Tabs(["agent", "plots", "settings", "world-panel"], (name) => this.opened(name));
   private worlds: LiveWorld[] = [];
 
   async open(): Promise<void> {
-    for (const speed of SPEEDS) by("speed").append(option(String(speed), `${speed < 1 ? `1/${1 / speed}` : speed} steps per picture`));
+    for (const speed of SPEEDS) by("speed").append(option(String(speed), `${speed < 1 ? `1/${1 / speed} step` : counted(speed, "step")} per picture`));
     const told = (await (await fetch("data/page.json")).json()) as { run: boolean; worlds: LiveWorld[] };
     this.worlds = told.worlds;
     const select = by<HTMLSelectElement>("world");
@@ -59,12 +65,11 @@ export class App {
       index.seeds.forEach((seed, i) => select.append(option(`run ${i}`, `run ${index.folder}, seed ${seed}`)));
     }
     this.worlds.forEach((world, i) => select.append(option(`live ${i}`, `live: ${world.name}`)));
-    const link = new URLSearchParams(location.hash.slice(1));
-    const threads = Number(link.get("threads"));
-    if (Number.isInteger(threads) && threads >= 1 && threads <= MOST_THREADS) this.threads = threads;
-    const wanted = this.worlds.findIndex((world) => world.source === link.get("live"));
+    const link = readLink(location.hash.slice(1));
+    if (link.threads && link.threads <= MOST_THREADS) this.threads = link.threads;
+    const wanted = this.worlds.findIndex((world) => world.source === link.live);
     if (wanted >= 0) select.value = `live ${wanted}`;
-    else if (link.has("world")) select.value = `run ${link.get("world")}`;
+    else if (link.run !== undefined && told.run) select.value = `run ${link.run}`;
     select.addEventListener("change", () => void this.show(select.value));
     this.bind();
     await this.show(select.value, link);
@@ -72,6 +77,7 @@ export class App {
   }
 
   choose(id: number): void {
+    if (id !== this.chosen) this.say(id >= 0 ? `Agent ${id} is chosen` : "No agent is chosen");
     this.chosen = id;
     this.arena.forgetTrail();
     this.panel.forget();
@@ -81,7 +87,38 @@ export class App {
     }
     this.panelsDue = 0;
     if (id >= 0) this.tab("agent");
+    else this.follow(false);
     this.keepLink();
+  }
+
+  /** Chooses the agent with the next id of those who live now. */
+  next(): void {
+    const ids = this.frame?.id;
+    if (ids && ids.length > 0) this.choose(ids.find((id) => id > this.chosen) ?? ids[0]!);
+  }
+
+  follow(on: boolean): void {
+    if (on && this.chosen < 0) this.next();
+    this.arena.follow = on;
+    this.panelsDue = 0;
+  }
+
+  /** Shows the whole arena. */
+  whole(): void {
+    this.arena.follow = false;
+    this.arena.fit(this.source);
+    this.viewed();
+  }
+
+  /** Keeps the view that somebody chose. */
+  viewed(): void {
+    remember("view", writeLink({ ...NOTHING, view: this.arena.view(this.source) }));
+    this.keepLink();
+  }
+
+  fullScreen(): void {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else void by("stage").requestFullscreen?.().catch(() => this.say("This browser has no full screen"));
   }
 
   /** A click at a place of the world: chooses who is there, or changes the world by hand. */
@@ -99,23 +136,31 @@ export class App {
     this.keepLink();
   }
 
-  /** One frame of the records, or one step of a live world, on or back. */
+  /** Frames of the records, or steps of a live world, on or back. */
   step(by: number): void {
     this.play(false);
-    if (this.source instanceof Live && by > 0 && this.now >= this.source.last) {
+    if (this.source instanceof Live && by > 0 && this.now >= this.source.last && !this.source.over) {
       for (const each of this.running()) each.advance(by, 4000);
       this.now = Infinity;
       return;
     }
-    const { before, after } = this.source.around(this.now);
-    if (by > 0) this.seek(after?.step ?? this.now + by);
-    else this.seek(before && before.step < this.now ? before.step : (this.source.around((before?.step ?? 1) - 1).before?.step ?? this.now - 1));
+    for (let i = 0; i < Math.abs(by); i++) {
+      const { before, after } = this.source.around(this.now);
+      if (by > 0) this.now = after?.step ?? this.now;
+      else this.now = before && before.step < this.now ? before.step : (this.source.around((before?.step ?? 1) - 1).before?.step ?? this.now);
+    }
+    this.seek(this.now);
   }
 
+  /** Plays or pauses; what has ended plays again from its beginning. */
   play(on: boolean): void {
+    if (on && this.source.ended && this.now >= this.source.last) this.now = this.source.around(0).before?.step ?? this.source.first;
+    if (this.playing && !on) this.say(`Paused at step ${show(Math.floor(this.now))}${this.population()}`);
     this.playing = on;
     by("play").textContent = on ? "Pause" : "Play";
-    if (!on) for (const each of this.running()) each.look();
+    if (on) return;
+    for (const each of this.running()) each.look();
+    this.keepLink();
   }
 
   faster(by_: number): void {
@@ -124,21 +169,39 @@ export class App {
   }
 
   tab(name: string): void {
-    for (const other of PANELS) {
-      by(other).hidden = other !== name;
-      by(`tab-${other}`).setAttribute("aria-selected", String(other === name));
-    }
+    this.tabs.open(name);
+  }
+
+  /** The rays of an agent of the moment that is shown. */
+  rays(i: number): Ray[] {
+    return this.frame ? castRays(this.source.layout, this.frame, i, this.source.obstacles) : [];
+  }
+
+  help(): void {
+    showHelp(this.source);
+  }
+
+  private opened(name: string): void {
+    by("plots").parentElement!.parentElement!.classList.toggle("plotting", name === "plots");
     this.panelsDue = 0;
   }
 
-  private async show(name: string, link = new URLSearchParams()): Promise<void> {
+  private async show(name: string, link: Link = NOTHING): Promise<void> {
     const [kind, index] = name.split(" ");
     const world = this.worlds[Number(index)];
+    this.goal = undefined;
     if (kind === "run") this.watch(await Replay.open(Number(index)));
-    else if (world) this.start(world, new Map(), Number(link.get("seed") ?? 1));
-    if (link.has("agent")) this.choose(Number(link.get("agent")));
-    if (link.has("step") && kind === "run") {
-      this.now = Number(link.get("step"));
+    else if (world) {
+      const known = new Set(world.settings.map(({ path }) => path));
+      this.start(world, new Map([...link.changes].filter(([path]) => known.has(path))), link.seed ?? 1);
+      if (link.step) this.goal = { step: link.step, agent: link.agent ?? -1 };
+    }
+    if (link.color) this.paint(link.color);
+    const view = link.view ?? readLink(recall("view") ?? "").view;
+    if (view) this.arena.look(this.source, view);
+    if (link.agent !== undefined && !this.goal) this.choose(link.agent);
+    if (link.step !== undefined && kind === "run") {
+      this.now = link.step;
       this.play(false);
     }
   }
@@ -157,29 +220,38 @@ export class App {
   }
 
   private start(world: LiveWorld, changes: Map<string, string>, seed: number): void {
-    this.watch(new Live(world, changes, seed, this.threads));
-    new Settings(world, seed, (other, next) => this.start(world, other, next), changes);
-    this.setSpeed(4);
+    const live = new Live(world, changes, seed, this.threads);
+    this.watch(live);
+    new Settings(live, (other, next) => this.start(world, other, next));
+    this.keepLink();
   }
 
   private watch(source: Source): void {
-    if (this.source instanceof Live) this.source.close();
+    const { source: former } = this;
+    if (former instanceof Live) former.close();
     this.twin.close();
+    const view = former ? this.arena.view(former) : undefined;
     [this.source, this.chosen, this.frame, this.now] = [source, -1, undefined, source.first];
     if (!source.live) by("settings").replaceChildren(element("p", { text: "Settings can be changed in a live world: choose one above." }));
-    const colors = colorings(source);
-    by("color").replaceChildren(...colors.map((each) => option(each.name, each.label)));
-    this.coloring = colors[0]!;
-    by("color").onchange = () => {
-      this.coloring = colors.find((each) => each.name === by<HTMLSelectElement>("color").value) ?? colors[0]!;
-    };
+    this.colors = colorings(source);
+    by("color").replaceChildren(...this.colors.map((each) => option(each.name, each.label)));
+    this.paint(this.coloring?.name ?? "");
     this.plots = new Plots(source, (step) => this.seek(step));
     const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
-    this.tools = new Tools(source instanceof Live ? source : undefined, beside, () => this.twin.close());
+    this.tools = new Tools(source, beside, () => this.twin.close());
     this.panel.forget();
     this.setSpeed(4);
-    this.arena.fit(source);
-    this.play(true);
+    this.arena.follow = false;
+    const same = former && JSON.stringify(former.layout.arena) === JSON.stringify(source.layout.arena);
+    if (view && same) this.arena.look(source, view);
+    else this.arena.fit(source);
+    this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+
+  private paint(name: string): void {
+    this.coloring = this.colors.find((each) => each.name === name) ?? this.colors[0]!;
+    by<HTMLSelectElement>("color").value = this.coloring.name;
+    this.panelsDue = 0;
   }
 
   private setSpeed(speed: number): void {
@@ -189,9 +261,9 @@ export class App {
 
   private picture(): void {
     this.move();
-    const { before, after } = this.source.around(this.now);
     const shown = this.frame?.step;
-    this.frame = before && (this.source.live ? before : blend(before, after, this.now));
+    const { before, after } = this.source.around(this.now);
+    this.frame = before && blend(before, after, this.source.live ? before.step : this.now);
     if (!this.playing) this.skipped = 0;
     else if (this.frame && shown !== undefined && this.frame.step > shown) this.skipped = this.frame.step - shown - 1;
     const legend = this.arena.draw(this.source, this.frame, this.coloring, this.chosen);
@@ -207,23 +279,44 @@ export class App {
 
   private move(): void {
     const { source } = this;
-    if (source instanceof Live) {
+    if (source instanceof Live && this.goal) return this.hurry(source, this.goal);
+    if (source instanceof Live && !(source.over && this.now < source.last)) {
       const running = this.running();
       const least = Math.min(...running.filter((each) => !each.over).map((each) => each.last), source.over ? Infinity : source.last);
       if (this.playing || this.now > source.last) this.now = Math.min(least, Math.max(...running.map((each) => each.last)));
       if (!this.playing) return;
+      if (running.every((each) => each.over)) return this.end();
       this.owed = Math.min(this.owed + this.speed, this.speed + 1);
       if (this.owed < 1) return;
       // Of two worlds the faster one waits for the other.
       for (const each of running) {
         const steps = least + Math.floor(this.owed) - each.last;
-        if (steps > 0) each.advance(steps, this.speed >= 256 ? 120 : PICTURE_MS);
+        if (steps > 0) each.advance(steps, this.speed >= 256 ? HURRY_MS : PICTURE_MS);
       }
       this.owed %= 1;
     } else if (this.playing) {
       const ready = this.frame !== undefined || source.around(this.now).before === undefined;
       if (ready && source.around(this.now).before) this.now = Math.min(this.now + this.speed, source.last);
+      if (source.ended && this.now >= source.last) this.end();
     }
+  }
+
+  /** Goes on to the step of a link, and chooses the agent of the link there. */
+  private hurry(source: Live, goal: { step: number; agent: number }): void {
+    this.now = source.last;
+    if (source.last < goal.step && !source.over && !source.error) return void source.advance(goal.step - source.last, HURRY_MS);
+    this.goal = undefined;
+    this.play(false);
+    this.choose(goal.agent);
+  }
+
+  private end(): void {
+    this.play(false);
+    this.say(`The end, at step ${show(this.source.last)}`);
+  }
+
+  private population(): string {
+    return this.frame ? `, ${counted(this.frame.id.length, "agent")}` : "";
   }
 
   private showPanels(legend: ReturnType<Arena["draw"]>): void {
@@ -232,79 +325,73 @@ export class App {
     this.timeline.draw(source, this.now, this.marks);
     this.plots?.update(this.frame, this.now);
     this.panel.update(source, this.frame, this.chosen);
-    by("status").textContent = source.status();
-    const population = this.frame ? `, ${show(this.frame.id.length)} agents` : "";
-    const skipped = this.skipped > 0 ? `, ${show(Math.round(this.skipped))} steps skipped` : "";
-    by("clock").textContent = `step ${show(Math.floor(this.now))} of ${show(source.last)}${population}${skipped}`;
-    this.tools?.update();
-    if (!this.playing) for (const each of this.running()) each.look();
+    by("status").textContent = this.goal ? `going to step ${show(this.goal.step)} …` : source.status();
+    const skipped = this.skipped > 0 ? `${counted(Math.round(this.skipped), "step")} skipped` : "";
+    by("clock").replaceChildren(
+      element("span", { text: `step ${show(Math.floor(Math.min(this.now, source.last)))} of ${show(source.last)}` }),
+      element("span", { text: [this.population().slice(2), skipped].filter(Boolean).join(", ") }),
+    );
+    this.tools?.update(this.now);
+    if (!this.playing && !this.goal) for (const each of this.running()) each.look();
     if (source instanceof Live) this.twin.caption(source, this.now);
-    by("notice").hidden = !(source instanceof Live && source.error);
-    if (source instanceof Live && source.error) by("notice").textContent = source.error;
-    if (legend) this.showLegend(legend);
+    by("look-follow").setAttribute("aria-pressed", String(this.arena.follow));
+    by("look-full").setAttribute("aria-pressed", String(document.fullscreenElement !== null));
+    this.showNotice();
+    if (legend) this.legend.update(source, this.arena, this.coloring, legend, this.chosen >= 0);
   }
 
-  private showLegend(legend: NonNullable<ReturnType<Arena["draw"]>>): void {
-    const bar = element("div", { class: "bar" });
-    if (this.coloring.scale === "ramp" || this.coloring.scale === "diverging") {
-      bar.append(show(legend.low), element("i"), show(legend.high));
-      bar.querySelector("i")!.style.background = `linear-gradient(90deg, ${legend.stops.join(", ")})`;
-    }
-    const foods = [...(this.coloring.key ?? []), ...this.source.layout.foods].map((each): HTMLElement => {
-      const dot = element("b", { text: "●" });
-      dot.style.color = each.color;
-      return element("span", {}, dot, ` ${each.name}`);
-    });
+  /** What is wrong or over, with a way on. */
+  private showNotice(): void {
     const { source } = this;
-    const digest = source.digest();
-    const made: HTMLElement[] = digest && (!source.live || this.now === source.last) ? [element("div", { text: `digest ${digest}${source instanceof Live && source.edited ? ", changed by hand" : ""}` })] : [];
-    if (made.length > 0) made[0]!.id = "digest";
-    const kernel = source instanceof Live ? [element("div", { text: `${source.fused ? "multiply-adds are fused, as with AVX2 and AVX-512" : "backend portable"}, ${source.threads > 1 ? `${source.threads} threads` : "1 thread"}` })] : [];
-    by("legend").replaceChildren(element("div", { text: this.coloring.label }), bar, element("div", {}, ...foods), ...kernel, ...made);
+    const again = (seed: number) => source instanceof Live && this.start(source.world, source.changes, seed);
+    const begin = { "Begin again": () => again((source as Live).seed) };
+    if (this.arena.scene.lost) this.notice.show("The browser took the graphics away. They come back by themselves, or with the page.", { "Load the page again": () => location.reload() });
+    else if (source instanceof Live && source.error) this.notice.show(source.error, begin);
+    else if (source instanceof Live && source.over && this.now >= source.last) {
+      const look = { "Look back": () => this.play(true) };
+      const other = { "Another seed": () => again((source as Live).seed + 1) };
+      this.notice.show(`The world died out at step ${show(source.last)}.`, { ...look, ...begin, ...other });
+    } else this.notice.show("");
   }
 
   private bind(): void {
-    by("play").onclick = () => this.play(!this.playing);
-    by("step-on").onclick = () => this.step(1);
-    by("step-back").onclick = () => this.step(-1);
+    const acts: Record<string, () => void> = {
+      play: () => this.play(!this.playing),
+      "step-on": () => this.step(1),
+      "step-back": () => this.step(-1),
+      "look-whole": () => this.whole(),
+      "look-next": () => this.next(),
+      "look-follow": () => this.follow(!this.arena.follow),
+      "look-full": () => this.fullScreen(),
+      theme: switchTheme,
+      "help-button": () => this.help(),
+    };
+    for (const [name, act] of Object.entries(acts)) by(name).onclick = act;
+    by("look-full").hidden = !document.fullscreenEnabled;
     by("speed").onchange = () => this.setSpeed(Number(by<HTMLSelectElement>("speed").value));
-    for (const name of PANELS) by(`tab-${name}`).onclick = () => this.tab(name);
+    by("color").onchange = () => {
+      this.paint(by<HTMLSelectElement>("color").value);
+      this.keepLink();
+    };
     by("show-rays").onchange = () => (this.arena.showRays = by<HTMLInputElement>("show-rays").checked);
     by("show-trail").onchange = () => (this.arena.showTrail = by<HTMLInputElement>("show-trail").checked);
-    by("theme").onclick = () => {
-      const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
-      document.documentElement.dataset.theme = dark ? "light" : "dark";
-    };
-    by("help-button").onclick = () => this.help();
   }
 
-  /** The rays of an agent of the moment that is shown. */
-  rays(i: number): Ray[] {
-    return this.frame ? castRays(this.source.layout, this.frame, i, this.source.obstacles) : [];
-  }
-
-  help(): void {
-    const box = by("help");
-    box.hidden = !box.hidden;
-    const lines: HTMLElement[] = HELP.map((text) => element("p", { text }));
-    const { source } = this;
-    if (source instanceof Live) {
-      const same = command(source.world, source.changes, source.seed, source.last);
-      const said = source.edited ? "It was changed by hand: no command makes the same world. It began as" : "The same world, with the same digest:";
-      lines.push(element("p", { text: said }), element("code", { text: same }));
-    }
-    box.replaceChildren(...lines);
+  /** Says something to those who listen to the page. */
+  private say(text: string): void {
+    by("said").textContent = text;
   }
 
   private keepLink(): void {
+    if (this.goal) return;
+    const { source } = this;
     const [kind, index] = by<HTMLSelectElement>("world").value.split(" ");
-    const link = new URLSearchParams();
-    if (kind === "run") link.set("world", index!);
-    else if (this.source instanceof Live) link.set("live", this.source.world.source);
-    if (this.source instanceof Live) link.set("seed", String(this.source.seed));
-    if (this.threads > 0) link.set("threads", String(this.threads));
-    if (Number.isFinite(this.now)) link.set("step", String(Math.floor(this.now)));
-    if (this.chosen >= 0) link.set("agent", String(this.chosen));
-    history.replaceState(null, "", `#${link}`);
+    const live = source instanceof Live ? { live: source.world.source, seed: source.seed, changes: source.changes } : NOTHING;
+    // A live world that goes on, or that was changed by hand, has no step to which the link would lead.
+    const step = this.playing || !Number.isFinite(this.now) || (source instanceof Live && source.edited) ? undefined : Math.floor(this.now);
+    const link: Link = { ...live, run: kind === "run" ? Number(index) : undefined, threads: this.threads || undefined, step, view: this.arena.view(source) };
+    if (this.chosen >= 0) link.agent = this.chosen;
+    if (this.coloring !== this.colors[0]) link.color = this.coloring.name;
+    history.replaceState(null, "", `#${writeLink(link)}`);
   }
 }

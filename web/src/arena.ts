@@ -1,11 +1,14 @@
 // Draws one moment of a world: walls, foods, agents, and what belongs to the chosen agent.
-import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesColor } from "./color";
+import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesColor, typeColor, UNKNOWN } from "./color";
 import { styleColor } from "./element";
 import { castRays } from "./rays";
 import { Scene } from "./scene";
 import { noses } from "./smells";
 import type { Source } from "./source";
-import type { Frame, Layout } from "./types";
+import type { Frame, Layout, Place } from "./types";
+
+/** Center x, center y, and the zoom as a multiple of that of the whole arena. */
+export type View = [number, number, number];
 
 const TRAIL = 240; // places of the chosen agent that are kept
 const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
@@ -20,6 +23,7 @@ export class Arena {
   private colors = new Uint32Array(256);
   private trail: [number, number, number][] = []; // step, x, y
   private fitted = false;
+  private moved = false; // whether somebody chose another view than the whole arena
 
   constructor(canvas: HTMLCanvasElement) {
     this.scene = new Scene(canvas);
@@ -28,18 +32,49 @@ export class Arena {
   /** Shows the whole arena. */
   fit(source: Source): void {
     const { width, height } = source.layout.arena;
-    const { canvas } = this.scene;
     [this.scene.centerX, this.scene.centerY] = [width / 2, height / 2];
-    this.scene.zoom = 0.96 * Math.min(canvas.width / width, canvas.height / height);
+    this.scene.zoom = this.whole(source);
     this.fitted = true;
+    this.moved = false;
+  }
+
+  /** Where somebody looks: the center, and the zoom as a multiple of that of the whole arena; nothing for that. */
+  view(source: Source): View | undefined {
+    return this.moved ? [this.scene.centerX, this.scene.centerY, this.scene.zoom / this.whole(source)] : undefined;
+  }
+
+  look(source: Source, [x, y, zoom]: View): void {
+    [this.scene.centerX, this.scene.centerY, this.scene.zoom] = [x, y, zoom * this.whole(source)];
+    this.fitted = this.moved = true;
+  }
+
+  /** Moves the view so that a place of the world that was under one pixel of the page is under another, after a zoom. */
+  drag(from: Place, to: Place, factor = 1): void {
+    const { scene } = this;
+    const [x, y] = scene.toWorld(...from);
+    scene.zoom = Math.min(Math.max(scene.zoom * factor, 0.02), 60);
+    const [nowX, nowY] = scene.toWorld(...to);
+    scene.centerX += x - nowX;
+    scene.centerY += y - nowY;
+    this.moved = true;
+  }
+
+  private whole(source: Source): number {
+    const { width, height } = source.layout.arena;
+    const { canvas } = this.scene;
+    return 0.96 * Math.min(canvas.width / width, canvas.height / height);
   }
 
   draw(source: Source, frame: Frame | undefined, coloring: Coloring, chosen: number): Painted["legend"] | undefined {
     const begun = performance.now();
-    if (this.scene.resize() || !this.fitted) this.fit(source);
+    const view = this.view(source);
+    if (this.scene.resize() || !this.fitted) {
+      if (view) this.look(source, view);
+      else this.fit(source);
+    }
     const [background, ink] = [parse(styleColor("--ground")), pack(parse(styleColor("--wall")))];
     this.scene.begin();
-    for (const corners of source.obstacles) this.scene.polygon(corners, pack(parse(styleColor("--obstacle"))));
+    for (const corners of source.obstacles) this.scene.polygon(corners, pack(parse(source.layout.obstacle_color)));
     for (const [ax, ay, bx, by] of source.layout.arena.walls) this.scene.line(ax, ay, bx, by, ink);
     const legend = frame ? this.drawFrame(source, frame, coloring, chosen) : undefined;
     this.scene.end([background[0] / 255, background[1] / 255, background[2] / 255]);
@@ -71,6 +106,7 @@ export class Arena {
     const at = frame.id.indexOf(chosen);
     if (at >= 0) this.prepareChosen(source, frame, at);
     const foods = foodColors(layout);
+    const unknown = pack(parse(styleColor("--quiet")));
     this.drawSmells(layout, frame, foods);
     for (let f = 0; f < frame.foodX.length; f++) {
       const kind = frame.foodKind[f]!;
@@ -79,8 +115,9 @@ export class Arena {
     for (let i = 0; i < frame.id.length; i++) {
       const species = frame.species[i]!;
       const { radius } = layout.species[species]!;
-      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, colors[i]!, frame.angle[i]!, mouths[species]!, 0, middles[species]!);
-      if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(species), 0, 2, 0.16);
+      const known = colors[i] !== UNKNOWN;
+      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouths[species]!, known ? 0 : 0.3, middles[species]!);
+      if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
     }
     if (at >= 0) this.markKin(source, frame, at);
     return legend;
@@ -95,7 +132,7 @@ export class Arena {
     const halo = (type: number, x: number, y: number, color: number) => {
       if (reach[type]! > 0) this.scene.disc(x, y, reach[type]!, (color & 0xffffff) | HALO);
     };
-    for (let i = 0; i < frame.id.length; i++) halo(frame.species[i]!, frame.x[i]!, frame.y[i]!, speciesColor(frame.species[i]!));
+    for (let i = 0; i < frame.id.length; i++) halo(frame.species[i]!, frame.x[i]!, frame.y[i]!, speciesColor(layout, frame.species[i]!));
     for (let f = 0; f < frame.foodX.length; f++) halo(layout.species.length + frame.foodKind[f]!, frame.foodX[f]!, frame.foodY[f]!, foods[frame.foodKind[f]!]!);
   }
 
@@ -120,11 +157,9 @@ export class Arena {
 
   private drawRays(source: Source, frame: Frame, at: number): void {
     const { layout } = source;
-    const first = layout.species.length;
-    const [nothing, thing] = [pack(parse(styleColor("--quiet")), 110), pack(parse(styleColor("--mark")))];
+    const [nothing, wall] = [pack(parse(styleColor("--quiet")), 110), styleColor("--wall")];
     for (const ray of castRays(layout, frame, at, source.obstacles)) {
-      const food = layout.foods[ray.type - first];
-      const color = ray.type < 0 ? nothing : food ? pack(parse(food.color)) : thing;
+      const color = ray.type < 0 ? nothing : pack(parse(typeColor(layout, ray.type) || wall));
       this.scene.line(ray.x0, ray.y0, ray.x1, ray.y1, color);
       if (ray.type >= 0) this.scene.disc(ray.x1, ray.y1, 1.4, color);
     }

@@ -1,13 +1,18 @@
 // What an agent's color means, for any world: names and values come from its layout and its lives.
+import { scaleOf } from "./scale";
 import type { Source } from "./source";
 import type { Frame, Layout, Life } from "./types";
 
 type Rgb = [number, number, number];
 
-// Dark to bright in even steps that the color-blind can follow (after Crameri's "batlow").
-const RAMP: Rgb[] = [[1, 25, 89], [16, 63, 96], [28, 90, 98], [60, 109, 86], [104, 123, 62], [157, 137, 43], [210, 147, 67], [248, 161, 123], [253, 183, 188], [250, 204, 250]];
-const DIVERGING: Rgb[] = [[0, 90, 160], [90, 160, 205], [205, 205, 205], [230, 150, 90], [190, 70, 0]];
-const DISTINCT: Rgb[] = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [230, 159, 0], [204, 121, 167], [86, 180, 233], [94, 79, 162], [150, 150, 60], [120, 60, 40], [60, 120, 120]];
+// Every color here stands out from the light ground and from the dark one by 3 : 1, so each means the same on both.
+// The ramp goes from blue to amber, which the color-blind tell apart.
+const RAMP: Rgb[] = [[61, 111, 216], [138, 85, 204], [192, 74, 152], [210, 73, 63], [196, 120, 0]];
+const DIVERGING: Rgb[] = [[31, 111, 224], [123, 133, 143], [200, 100, 0]];
+const DISTINCT: Rgb[] = [[0, 114, 178], [213, 94, 0], [0, 149, 108], [176, 125, 26], [181, 80, 143], [58, 134, 200], [122, 79, 163], [128, 128, 36], [163, 90, 42], [14, 143, 143]];
+
+/** The color of an agent of which the value is not known; it is drawn hollow. */
+export const UNKNOWN = 0;
 
 export interface Coloring {
   name: string;
@@ -15,8 +20,11 @@ export interface Coloring {
   /** Value of an agent, from its life and the frame; NaN for unknown. */
   value(life: Life | undefined, frame: Frame, i: number): number;
   scale: "ramp" | "diverging" | "distinct" | "food";
+  /** The ends of the scale, which do not depend on the moment that is shown; without it they are those of the frame. */
+  ends?: (source: Source, frame: Frame) => [number, number];
   /** The things that it tells apart, where they have names. */
   key?: { name: string; color: string }[];
+  /** Ends that count instead. */
   low?: number;
   high?: number;
 }
@@ -37,6 +45,12 @@ export function parse(hex: string): Rgb {
 
 export const css = ([r, g, b]: Rgb): string => `rgb(${r.toFixed(0)} ${g.toFixed(0)} ${b.toFixed(0)})`;
 
+/** The color of a value of a gene, from -limit to limit. */
+export const diverging = (value: number, limit: number): string => css(along(DIVERGING, (value / limit + 1) / 2));
+
+/** The color of a value from 0 to a limit. */
+export const ramp = (value: number, limit: number): string => css(along(RAMP, value / limit));
+
 /** Everything that agents of this world can be colored by. */
 export function colorings(source: Source): Coloring[] {
   const { layout, lives } = source;
@@ -46,26 +60,25 @@ export function colorings(source: Source): Coloring[] {
   };
   // Counts of a life have no course in the records, and a live world knows them at its newest step.
   const counted = source.live ? "up to the newest step" : "of the whole life";
-  const key = layout.species.map((each, i) => ({ name: each.name, color: css(distinctColor(i)) }));
+  const key = layout.species.map(({ name, color }) => ({ name, color }));
   const species: Coloring = { name: "species", label: "species", scale: "distinct", key, value: (_, frame, i) => frame.species[i]! };
   // Records count the meals of a life and not their order.
   const lastMeal: Coloring = { name: "last", label: "ate last", scale: "food", value: (life) => (life && life.lastMeal >= 0 ? life.lastMeal : NaN) };
+  const of = (name: string, label: string, scale: Coloring["scale"], value: Coloring["value"], measure: (life: Life) => number): Coloring => ({
+    name, label, scale, value, ends: scaleOf(name, scale === "diverging", measure),
+  });
+  const until = (life: Life) => (life.death >= 0 ? life.death : source.last);
   return [
-    { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! },
-    { name: "age", label: "age [steps]", scale: "ramp", low: 0, value: (life, frame) => (life ? frame.step - life.birth : NaN) },
-    { name: "generation", label: "generation", scale: "ramp", value: (life) => life?.generation ?? NaN },
-    { name: "children", label: `children ${counted}`, scale: "ramp", low: 0, value: (life) => life?.children ?? NaN },
-    { name: "reward", label: `reward ${counted}`, scale: "diverging", value: (life) => life?.reward ?? NaN },
-    { name: "family", label: "family (founder)", scale: "distinct", value: (life) => (life ? lives.founder(life.id) : NaN) },
+    { name: "energy", label: "energy", scale: "ramp", ends: scaleOf("energy"), value: (_, frame, i) => frame.energy[i]! },
+    of("age", "age [steps]", "ramp", (life, frame) => (life ? frame.step - life.birth : NaN), (life) => until(life) - life.birth),
+    of("generation", "generation", "ramp", (life) => life?.generation ?? NaN, (life) => life.generation),
+    of("children", `children ${counted}`, "ramp", (life) => life?.children ?? NaN, (life) => life.children),
+    of("reward", `reward ${counted}`, "diverging", (life) => life?.reward ?? NaN, (life) => life.reward),
+    { name: "family", label: "family (a color for each founder)", scale: "distinct", value: (life) => (life ? lives.founder(life.id) : NaN) },
     ...(layout.species.length > 1 ? [species] : []),
     { name: "eats", label: `most frequent meal ${counted}`, scale: "food", value: mostEaten },
     ...(source.live ? [lastMeal] : []),
-    ...layout.genes.map((gene, g): Coloring => ({
-      name: gene.name,
-      label: `gene ${gene.name}${gene.role === "neutral" ? " (neutral)" : ""}`,
-      scale: "diverging",
-      value: (life) => life?.genome[g] ?? NaN,
-    })),
+    ...layout.genes.map((gene, g): Coloring => of(gene.name, gene.title, "diverging", (life) => life?.genome[g] ?? NaN, (life) => life.genome[g]!)),
   ];
 }
 
@@ -77,26 +90,20 @@ export interface Painted {
 /** The color of each agent of a frame, and what the ends of the scale are. */
 export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uint32Array): Painted {
   const count = frame.id.length;
-  const values = new Float32Array(count);
-  let [low, high] = [Infinity, -Infinity];
-  for (let i = 0; i < count; i++) {
-    const value = (values[i] = coloring.value(source.lives.get(frame.id[i]!), frame, i));
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
-  if (coloring.low !== undefined) low = coloring.low;
-  if (coloring.high !== undefined) high = coloring.high;
-  if (coloring.scale === "diverging") [low, high] = [-Math.max(-low, high, 1e-6), Math.max(-low, high, 1e-6)];
+  const values = Float32Array.from(frame.id, (id, i) => coloring.value(source.lives.get(id), frame, i));
+  const known = values.filter((value) => !Number.isNaN(value));
+  const ends = coloring.ends?.(source, frame) ?? [known.reduce((a, b) => Math.min(a, b), Infinity), known.reduce((a, b) => Math.max(a, b), -Infinity)];
+  const [low, high] = [coloring.low ?? ends[0], coloring.high ?? ends[1]];
   const stops = coloring.scale === "diverging" ? DIVERGING : RAMP;
   const table = Uint32Array.from({ length: 256 }, (_, i) => pack(along(stops, i / 255)));
   const meals = source.layout.meals.map((meal) => pack(parse(mealColor(source.layout, meal))));
+  const named = coloring.key?.map((each) => pack(parse(each.color)));
   const scale = 255 / (high - low || 1);
-  const unknown = pack([140, 140, 140]);
   for (let i = 0; i < count; i++) {
     const value = values[i]!;
-    if (Number.isNaN(value)) out[i] = unknown;
-    else if (coloring.scale === "distinct") out[i] = pack(distinctColor(value));
-    else if (coloring.scale === "food") out[i] = meals[value] ?? unknown;
+    if (Number.isNaN(value)) out[i] = UNKNOWN;
+    else if (coloring.scale === "distinct") out[i] = named?.[value] ?? pack(distinctColor(value));
+    else if (coloring.scale === "food") out[i] = meals[value] ?? UNKNOWN;
     else out[i] = table[Math.min(Math.max(Math.round((value - low) * scale), 0), 255)]!;
   }
   return { colors: out, legend: { low, high, stops: stops.map(css) } };
@@ -107,13 +114,17 @@ const distinctColor = (value: number): Rgb => DISTINCT[(value * 7) % DISTINCT.le
 
 /** The color of a food, or that of the species that is eaten. */
 export function mealColor(layout: Layout, meal: string): string {
-  const food = layout.foods.find((each) => each.name === meal);
-  const [r, g, b] = DISTINCT[Math.max(layout.species.findIndex((each) => each.name === meal), 0) % DISTINCT.length]!;
-  return food?.color ?? `#${[r, g, b].map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+  return [...layout.foods, ...layout.species].find((each) => each.name === meal)?.color ?? "#888888";
 }
 
-/** The color of the rim of a species; the first one has none. */
-export const speciesColor = (index: number): number => pack(DISTINCT[index % DISTINCT.length]!);
+/** The color of what senses tell apart: a species, a food, an obstacle; "" for a wall. */
+export function typeColor(layout: Layout, type: number): string {
+  const things = [...layout.species, ...layout.foods];
+  return things[type]?.color ?? (type > things.length ? layout.obstacle_color : "");
+}
+
+/** The color of a species. */
+export const speciesColor = (layout: Layout, index: number): number => pack(parse(layout.species[index]!.color));
 
 export function foodColors(layout: Layout): number[] {
   return layout.foods.map((food) => pack(parse(food.color)));

@@ -44,3 +44,19 @@ export function show(value: number | undefined, digits = 2): string {
 export function styleColor(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
+
+/** How many of something there are: "1 agent", "2,000 agents". */
+export const counted = (count: number, what: string): string => `${show(count)} ${what}${count === 1 ? "" : "s"}`;
+
+/** A canvas of the size that it has on the page, empty, and measured in the page's pixels. */
+export function surface(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
+  const ratio = window.devicePixelRatio || 1;
+  const [width, height] = [Math.max(canvas.clientWidth, 1) * ratio, Math.max(canvas.clientHeight, 1) * ratio];
+  if (canvas.width !== Math.round(width)) canvas.width = Math.round(width);
+  if (canvas.height !== Math.round(height)) canvas.height = Math.round(height);
+  const pen = canvas.getContext("2d")!;
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, canvas.width, canvas.height);
+  pen.font = "12px system-ui, sans-serif";
+  return pen;
+}

@@ -1,11 +1,13 @@
 // A world that the engine runs in this page, as a source of moments.
+import { counted } from "./element";
 import { Lives } from "./lives";
 import type { Actions, Edit, Moment, Order, Report } from "./live.worker";
 import { columnOf, Series } from "./series";
 import type { Source } from "./source";
 import type { Frame, Life, LiveWorld, AgentProbe, Place } from "./types";
+import { type Earned, Windows } from "./windows";
 
-const SAMPLE_STEPS = 256; // between two points of the plots
+export const SAMPLE_STEPS = 256; // between two points of the plots
 const KEPT_FRAMES = 2000; // that can be looked back at
 
 /** The engine's text of a world with some settings changed, and another seed. */
@@ -24,6 +26,8 @@ export class Live implements Source {
   readonly live = true;
   readonly lives = new Lives();
   readonly series = new Series();
+  readonly windows = new Windows();
+  readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
   readonly first = 0;
   last = 0;
   chosen = -1;
@@ -38,6 +42,7 @@ export class Live implements Source {
   kept = -1; // step of the snapshot
   refused = ""; // why the last edit was not done
   onMoment: ((moment: Moment) => void) | undefined; // called with each moment as it comes
+  private due: { path: string; value: string; done: (refused: string) => void }[] = []; // changes that wait for the agents
   private ready = false;
   private busy = false;
   private learning = 0;
@@ -67,11 +72,19 @@ export class Live implements Source {
     this.worker.terminate();
   }
 
+  get ended(): boolean {
+    return this.over;
+  }
+
+  earned(id: number): Earned[] {
+    return this.windows.of(id, this.lives.get(id)?.birth ?? 0);
+  }
+
   status(): string {
-    if (this.error) return this.error;
+    if (this.error) return "stopped";
     if (!this.ready) return "loading the engine …";
     if (this.over) return `${this.world.name}, seed ${this.seed}: died out`;
-    const doing = this.learning > 0 ? `learning, ${this.learning} agents left` : `${this.stepsPerSecond.toFixed(0)} steps/s`;
+    const doing = this.learning > 0 ? `learning, ${counted(this.learning, "agent")} left` : `${this.stepsPerSecond.toFixed(0)} steps/s`;
     return `${this.world.name}, seed ${this.seed}, live: ${doing}`;
   }
 
@@ -103,6 +116,22 @@ export class Live implements Source {
     this.send({ type: "do", edit, chosen: this.chosen, digest: true });
   }
 
+  /** Lets the world go on with another value of a setting, as soon as no agent learns; says why it cannot, or "". */
+  change(path: string, value: string): Promise<string> {
+    return new Promise((done) => {
+      this.due.push({ path, value, done });
+      this.settle();
+    });
+  }
+
+  private settle(): void {
+    const [next] = this.due;
+    if (!next || !this.ready || this.busy || this.error) return;
+    if (this.learning > 0) return void this.advance(0, 50);
+    const now = new Map([...this.changes, ...this.acts.map((each) => [each.path, each.value] as const), [next.path, next.value]]);
+    this.act({ type: "change", text: textOf(this.world, now, this.seed) });
+  }
+
   /** Looks again without a step: for another chosen agent, or for the digest. */
   look(): void {
     if (this.known === "" || (this.chosen >= 0 && this.seen?.id !== this.chosen)) this.advance(0, 5);
@@ -127,7 +156,12 @@ export class Live implements Source {
       this.megabytes = report.bytes / 1e6;
       this.obstacles = report.obstacles;
       this.advance(0, 1);
-    } else this.add(report.moment);
+    } else {
+      this.add(report.moment);
+      const { refused } = report.moment;
+      if (report.moment.edit === "change") this.due.shift()?.done(refused);
+      this.settle();
+    }
   }
 
   private add(moment: Moment): void {
@@ -138,8 +172,10 @@ export class Live implements Source {
     this.seen = moment.agentProbe;
     this.edited = moment.edited;
     this.kept = moment.kept;
-    if (moment.refused) this.refused = moment.refused;
-    if (moment.back) this.rewind(frame.step, moment.counts);
+    if (moment.refused && moment.edit !== "change") this.refused = moment.refused;
+    if (moment.edit === "back" && !moment.refused) this.rewind(frame.step, moment.counts);
+    if (moment.edit === "change" && !moment.refused) this.acts.push({ step: frame.step, path: this.due[0]!.path, value: this.due[0]!.value });
+    for (const end of moment.ends) this.windows.add(end);
     for (const life of moment.dead) this.lives.put(life);
     for (const life of moment.lives) this.lives.put(life);
     if (this.frames[this.frames.length - 1]?.step === frame.step) this.frames.pop(); // it may have been changed by hand
@@ -154,6 +190,7 @@ export class Live implements Source {
   private rewind(step: number, counts: Record<string, number>): void {
     this.lives.rewind(step);
     this.series.rewind(step);
+    this.windows.rewind(step);
     this.frames.length = this.frames.findLastIndex((frame) => frame.step < step) + 1;
     this.sampled = { step, births: counts.births!, deaths: counts.deaths! };
   }

@@ -2,11 +2,13 @@
 import { compile, Engine, EngineError, type Post } from "./engine.js";
 import { LastMeals } from "./meals";
 import type { Frame, Layout, Life, AgentProbe, Place } from "./types";
+import type { WindowEnd } from "./windows";
 
 /** What a person does to a world by hand. A type is a species, or a food after all species. */
 export type Edit =
   | { type: "add"; kind: number; x: number; y: number }
   | { type: "remove"; x: number; y: number; slack: number }
+  | { type: "change"; text: string }
   | { type: "keep" }
   | { type: "back" };
 export type Order =
@@ -26,10 +28,11 @@ export interface Moment {
   done: number; // steps of this order
   trace: Float32Array; // x, y of the chosen agent after each step of this order, if it asked for them
   over: boolean;
+  ends: WindowEnd[]; // of the windows that ended since the last moment
+  edit?: Edit["type"]; // what was done by hand
   digest: string; // "" unless it was asked for and no window is being learned
   edited: boolean; // whether the world has been changed by hand
   kept: number; // step of the snapshot, -1 for none
-  back: boolean; // whether the world has just gone back to its snapshot
   refused: string; // why the edit was not done
 }
 export type Report = { type: "made"; fused: boolean; bytes: number; threads: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
@@ -41,6 +44,7 @@ const USUAL_THREADS = 4; // at most, so that a page leaves a large machine to ot
 let engine: Engine | undefined;
 let layout: Layout | undefined;
 let meals = new LastMeals();
+let ends: WindowEnd[] = [];
 let kept: { step: number; meals: LastMeals } | undefined;
 
 async function module(name: string): Promise<WebAssembly.Module | undefined> {
@@ -88,6 +92,7 @@ async function make(order: Order & { type: "make" }): Promise<Report> {
   layout = order.layout;
   meals = new LastMeals();
   kept = undefined;
+  ends = [];
   return { type: "made", fused: fresh.fuses, bytes: fresh.bytes, threads, obstacles: obstacles(fresh) };
 }
 
@@ -175,6 +180,26 @@ function slotOf(world: Engine, id: number): number {
   return living.subarray(0, world.number("head.living_count")).find((slot) => Number(ids[slot]) === id) ?? -1;
 }
 
+/** What each of the living has earned until now. */
+function windowEnd(world: Engine): WindowEnd {
+  const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
+  const [id, reward] = [world.view("life.agent_id")!, world.view("life.reward")!];
+  return {
+    step: world.number("head.step"),
+    id: Int32Array.from(living, (slot) => Number(id[slot])),
+    reward: Float32Array.from(living, (slot) => Number(reward[slot])),
+  };
+}
+
+/** Goes on with other settings. The engine may give agents other slots. */
+function change(world: Engine, text: string): void {
+  const ids = () => Array.from(world.view("life.agent_id")!, Number);
+  const before = ids();
+  world.change(text);
+  meals = meals.moved(before, ids());
+  kept = undefined;
+}
+
 /** Steps and learns until the steps are done or the time is over; returns the steps done, and where the chosen agent was. */
 function advance(world: Engine, order: Order & { type: "advance" }): { done: number; trace: Float32Array } {
   const { steps, milliseconds, chosen, actions } = order;
@@ -189,6 +214,7 @@ function advance(world: Engine, order: Order & { type: "advance" }): { done: num
       const stepped = world.run(1);
       if (stepped === 0) break;
       done += stepped;
+      if (world.mustLearn) ends.push(windowEnd(world));
       meals.note(world.view("eaten") as Int32Array, layout!.meals.length);
       if (order.trace && slot >= 0 && Number(world.view("life.agent_id")![slot]) === chosen) {
         for (const axis of ["x", "y"]) trace.push(Number(world.view(`physics.bodies.${axis}`)![slot]));
@@ -204,6 +230,7 @@ function act(world: Engine, edit: Edit): string {
   try {
     if (edit.type === "add") world.add(edit.kind, edit.x, edit.y);
     else if (edit.type === "remove") world.remove(edit.x, edit.y, edit.slack);
+    else if (edit.type === "change") change(world, edit.text);
     else if (edit.type === "keep") {
       world.keep();
       kept = { step: world.number("head.step"), meals: meals.copy() };
@@ -222,11 +249,11 @@ function act(world: Engine, edit: Edit): string {
 interface Told {
   done: number;
   trace: Float32Array;
+  edit?: Edit["type"];
   refused: string;
-  back: boolean;
 }
 
-function moment(world: Engine, { done, trace, refused, back }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
+function moment(world: Engine, { done, trace, refused, edit }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const waiting = world.number("head.death_log_count");
   const dead = lives(world, "death_log", Array.from({ length: waiting }, (_, i) => i));
@@ -235,6 +262,8 @@ function moment(world: Engine, { done, trace, refused, back }: Told, { chosen, d
   const at = here.id.indexOf(chosen);
   const counts = Object.fromEntries(["births", "deaths"].map((name) => [name, world.sum(`counters.${name}`)]));
   const learning = world.mustLearn ? world.learn(0) : 0;
+  const ended = ends;
+  ends = [];
   return {
     frame: here,
     lives: lives(world, "life", living),
@@ -244,11 +273,12 @@ function moment(world: Engine, { done, trace, refused, back }: Told, { chosen, d
     learning,
     done,
     trace,
+    ends: ended,
+    edit,
     over: living.length === 0,
     digest: learning || !digest ? "" : world.digest(),
     edited: world.edited,
     kept: kept?.step ?? -1,
-    back,
     refused,
   };
 }
@@ -257,12 +287,9 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
   try {
     if (data.type === "make") self.postMessage(await make(data));
     else if (engine) {
-      const told: Told = { done: 0, trace: new Float32Array(), refused: "", back: false };
+      const told: Told = { done: 0, trace: new Float32Array(), refused: "" };
       if (data.type === "advance") Object.assign(told, advance(engine, data));
-      else {
-        told.refused = act(engine, data.edit);
-        told.back = data.edit.type === "back" && told.refused === "";
-      }
+      else [told.edit, told.refused] = [data.edit.type, act(engine, data.edit)];
       self.postMessage({ type: "moment", moment: moment(engine, told, data) } satisfies Report);
     }
   } catch (error) {

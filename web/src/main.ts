@@ -1,19 +1,19 @@
 // Where the page begins.
 import "./style.css";
 import { App } from "./app";
-import { bindKeys, bindMouse } from "./control";
-import { by } from "./element";
+import { bindKeys } from "./control";
+import { bindGestures } from "./gesture";
+import { Notice } from "./notice";
+import { recallTheme } from "./preference";
 
-const app = new App();
-Object.assign(window, { hedon: app }); // for a curious person's console, and for tests
+recallTheme();
 
 async function begin(): Promise<void> {
+  const app = new App();
+  Object.assign(window, { hedon: app }); // for a curious person's console, and for tests
   await app.open();
   bindKeys(app);
-  bindMouse(app);
+  bindGestures(app);
 }
 
-begin().catch((error: unknown) => {
-  by("notice").hidden = false;
-  by("notice").textContent = error instanceof Error ? error.message : String(error);
-});
+begin().catch((error: unknown) => new Notice().show(error instanceof Error ? error.message : String(error), { "Load the page again": () => location.reload() }));

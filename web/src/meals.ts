@@ -2,13 +2,14 @@
 
 export class LastMeals {
   private counts = new Int32Array();
+  private first = (_slot: number) => -1; // what each ate last before the first look
   private last = new Int8Array(); // by slot, -1 for nothing yet
 
   /** Looks at the counts after a step: rows of slots, one column for each kind of meal. */
   note(eaten: Int32Array, kinds: number): void {
     if (this.counts.length !== eaten.length) {
       this.counts = eaten.slice();
-      this.last = new Int8Array(eaten.length / kinds).fill(-1);
+      this.last = Int8Array.from({ length: eaten.length / kinds }, (_, slot) => this.first(slot));
       return;
     }
     for (let i = 0; i < eaten.length; i++) {
@@ -21,6 +22,14 @@ export class LastMeals {
 
   of(slot: number): number {
     return this.last[slot] ?? -1;
+  }
+
+  /** The same where agents have other slots: the ids of the agents by slot, before and after. */
+  moved(before: number[], after: number[]): LastMeals {
+    const made = new LastMeals();
+    const last = new Map(before.map((id, slot) => [id, this.of(slot)]));
+    made.first = (slot) => last.get(after[slot]!) ?? -1;
+    return made;
   }
 
   copy(): LastMeals {

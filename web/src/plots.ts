@@ -1,115 +1,133 @@
 // The plots beside the world, in step with the time line; the page draws nothing that the layout does not name.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import { by, element, option, show, styleColor } from "./element";
+import { drift, type Band } from "./drift";
+import { by, element, show, styleColor } from "./element";
+import { SAMPLE_STEPS } from "./live";
+import { LivingPlots } from "./living";
 import { columnOf } from "./series";
 import type { Source } from "./source";
-import type { Frame } from "./types";
+import type { Frame, Species } from "./types";
 
-const HEIGHT = 130;
-const LINES = ["#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#999933"];
-const GENES = { reward: "mean weights", learning: "mean genes of learning", rule: "mean genes of rules" }; // by role
-const RANGE = 1.96; // standard deviations of the neutral genes' means that the band shows on each side
+const HEIGHT = 140;
+const TALL = 190; // of a plot of a weight
+
+interface Line {
+  name: string; // column
+  label: string;
+  color: string;
+}
 
 interface Plot {
   chart: uPlot;
+  height: number;
   data: () => uPlot.AlignedData;
+  empty: HTMLElement; // what is said while there is nothing to see
+  judge?: (at: number) => void;
 }
 
 export class Plots {
   private plots: Plot[] = [];
-  private points = 0;
-  private readonly scatter = element("canvas", { class: "small" });
-  private readonly ages = element("canvas", { class: "small" });
-  private readonly axes = [element("select"), element("select")] as const;
+  private points = -1;
+  private theme = "";
   private now = 0;
+  private readonly living: LivingPlots;
+  private readonly host = by<HTMLDivElement>("plots");
 
   constructor(
     private readonly source: Source,
-    seek: (step: number) => void,
+    private readonly seek: (step: number) => void,
   ) {
-    const { layout, series } = source;
-    const host = by<HTMLDivElement>("plots");
-    host.replaceChildren();
-    const add = (title: string, names: string[], labels: string[], colors: string[], neutral: string[] = []) =>
-      this.add(host, title, names, labels, colors, neutral, seek);
-    const several = layout.species.length > 1;
-    const each = (name: string) => layout.species.map((species) => columnOf(layout, species, name));
-    const kinds = layout.species.map((species) => species.name);
-    add("agents alive", each("alive"), kinds, LINES);
-    add("mean energy", each("energy_mean"), kinds, several ? LINES : [LINES[3]!]);
-    for (const species of layout.species) {
-      const genes = (role: string) => species.genes.map((g) => layout.genes[g]!).filter((gene) => gene.role === role);
-      const means = (role: string) => genes(role).map((gene) => columnOf(layout, species, `${gene.name}_mean`));
-      for (const [role, title] of Object.entries(GENES)) {
-        if (genes(role).length === 0) continue;
-        const whose = `${title}${several ? ` of ${species.name}` : ""}, and the band of the neutral genes`;
-        add(whose, means(role), genes(role).map((gene) => gene.name), LINES, means("neutral"));
-      }
-    }
-    add("food present", layout.foods.map((food) => `food_${food.name}`), layout.foods.map((food) => food.name), layout.foods.map((food) => food.color));
-    if (series.get(`eaten_${layout.foods[0]?.name}`).length > 0) {
-      add("food eaten", layout.foods.map((food) => `eaten_${food.name}`), layout.foods.map((food) => food.name), layout.foods.map((food) => food.color));
-    }
-    host.append(element("h3", { text: "ages of the living" }), this.ages);
-    layout.genes.forEach((gene, g) => this.axes.forEach((axis) => axis.append(option(String(g), gene.name))));
-    this.axes[1].value = String(Math.min(1, layout.genes.length - 1));
-    const pair = element("h3", { text: "genes of the living: " });
-    pair.append(this.axes[0], " and ", this.axes[1]);
-    host.append(pair, this.scatter);
+    const { layout } = source;
+    this.host.replaceChildren(element("h2", { text: "Plots", class: "unseen" }));
+    this.theme = styleColor("--quiet");
+    for (const species of layout.species) this.addWeights(species);
+    const each = (name: string): Line[] => layout.species.map((species) => ({ name: columnOf(layout, species, name), label: species.name, color: species.color }));
+    const foods = (what: string): Line[] => layout.foods.map((food) => ({ name: `${what}_${food.name}`, label: food.name, color: food.color }));
+    this.add("agents alive", "agents", each("alive"));
+    this.add("mean energy", "energy", each("energy_mean"));
+    this.add("food present", "pieces", foods("food"));
+    if (!source.live) this.add("food eaten since the row before", "pieces", foods("eaten"));
+    this.living = new LivingPlots(source);
+    this.host.append(...this.living.parts);
   }
 
   update(frame: Frame | undefined, now: number): void {
     this.now = now;
-    if (by("plots").hidden) return;
-    const grown = this.source.series.step.length !== this.points;
-    this.points = this.source.series.step.length;
-    const width = Math.max(by("plots").clientWidth - 16, 100);
-    for (const { chart, data } of this.plots) {
-      if (chart.width !== width) chart.setSize({ width, height: HEIGHT });
+    if (this.host.hidden) return;
+    const { step } = this.source.series;
+    const theme = styleColor("--quiet");
+    const grown = step.length !== this.points || theme !== this.theme;
+    [this.points, this.theme] = [step.length, theme];
+    const width = Math.max(this.host.clientWidth - 28, 100);
+    const at = step.findLastIndex((each) => each <= now);
+    for (const { chart, height, data, empty, judge } of this.plots) {
+      if (chart.width !== width) chart.setSize({ width, height });
       if (grown) chart.setData(data());
       else chart.redraw(false);
+      empty.hidden = step.length > 1;
+      empty.textContent = this.source.live ? `Fills from step ${show(2 * SAMPLE_STEPS)} on: a point each ${SAMPLE_STEPS} steps.` : "Fills with the second row of the table population.";
+      judge?.(at);
     }
-    if (frame) this.drawLiving(frame);
+    if (frame) this.living.draw(frame);
   }
 
-  private add(host: HTMLElement, title: string, names: string[], labels: string[], colors: string[], neutral: string[], seek: (step: number) => void): void {
+  /** A plot for each weight of the reward, with the band of drift and what it says. */
+  private addWeights(species: Species): void {
+    const { layout, series } = this.source;
+    const owner = layout.species.length > 1 ? `${species.name}: ` : "";
+    species.genes.forEach((g, i) => {
+      const gene = layout.genes[g]!;
+      if (gene.role === "neutral") return;
+      const name = columnOf(layout, species, `${gene.name}_mean`);
+      const said = element("span", { class: "verdict" });
+      const unit = gene.unit ? `${gene.unit}, mean of the living` : "mean of the living";
+      const plot = this.add(`${owner}${gene.title}`, unit, [{ name, label: gene.title, color: gene.color }], () => drift(this.source, species, i), said);
+      plot.judge = (at) => {
+        const band = drift(this.source, species, i);
+        const value = series.get(name)[at];
+        said.textContent = typeof band === "string" ? band : judged(value, band, at);
+        said.dataset.outside = String(typeof band !== "string" && outside(value, band, at));
+      };
+    });
+  }
+
+  private add(title: string, unit: string, lines: Line[], band?: () => Band | string, verdict?: HTMLElement): Plot {
     const { series } = this.source;
-    const withBand = neutral.length > 1;
+    const banded = band !== undefined && typeof band() !== "string";
     const data = () => {
-      const columns = names.map((name) => fitted(series.get(name), series.step.length));
-      const limits = withBand ? spread(neutral.map((name) => series.get(name)), series.step.length) : [];
-      return [series.step, ...columns, ...limits] as uPlot.AlignedData;
+      const columns = lines.map(({ name }) => fitted(series.get(name), series.step.length));
+      const limits = banded ? (band() as Band) : undefined;
+      return [series.step, ...columns, ...(limits ? [limits.high, limits.low] : [])] as uPlot.AlignedData;
     };
-    const lines: uPlot.Series[] = names.map((_, i) => ({ label: labels[i], stroke: colors[i % colors.length], width: 1.5, points: { show: false } }));
-    if (withBand) for (const label of ["neutral, high", "neutral, low"]) lines.push({ label, stroke: "#8884", points: { show: false } });
-    const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: 1 }, ticks: { show: false }, size: 44 };
+    const drawn: uPlot.Series[] = lines.map(({ label, color }) => ({ label, stroke: color, width: 2, points: { show: false } }));
+    if (banded) for (const label of ["drift, high", "drift, low"]) drawn.push({ label, stroke: "#8889", dash: [4, 4], points: { show: false } });
+    const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: 1 }, ticks: { show: false }, size: 52, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
+    const height = band ? TALL : HEIGHT;
     const options: uPlot.Options = {
       width: 300,
-      height: HEIGHT,
+      height,
       legend: { show: false },
       cursor: { sync: { key: "time" }, y: false },
       scales: { x: { time: false } },
-      series: [{ label: "step" }, ...lines],
-      bands: withBand ? [{ series: [names.length + 1, names.length + 2], fill: "#8882" }] : [],
-      axes: [{ ...axis, size: 26 }, axis],
+      series: [{ label: "step" }, ...drawn],
+      bands: banded ? [{ series: [lines.length + 1, lines.length + 2], fill: "#8883" }] : [],
+      axes: [{ ...axis, size: 30, label: "step", labelSize: 16 }, axis],
       hooks: { draw: [(chart) => this.markNow(chart)] },
     };
-    const heading = element("p", { text: title, class: "plot-title" });
-    if (names.length > 1) {
-      labels.forEach((label, i) => {
-        const dot = element("b", { text: "●" });
-        dot.style.color = colors[i % colors.length]!;
-        heading.append(element("span", {}, dot, ` ${label}`));
-      });
-    }
-    host.append(heading);
-    const chart = new uPlot(options, data(), host);
+    const heading = element("h3", { class: "plot-title" }, `${title} [${unit}]`);
+    if (lines.length > 1) heading.append(...key(lines).flatMap((each) => [" ", each]));
+    const empty = element("p", { class: "empty" });
+    const frame = element("div", { class: "plot" }, empty);
+    this.host.append(heading, ...(verdict ? [verdict] : []), frame);
+    const chart = new uPlot(options, data(), frame);
     chart.over.addEventListener("click", () => {
       const step = chart.posToVal(chart.cursor.left ?? -1, "x");
-      if (Number.isFinite(step)) seek(step);
+      if (Number.isFinite(step)) this.seek(step);
     });
-    this.plots.push({ chart, data });
+    const plot: Plot = { chart, height, data, empty };
+    this.plots.push(plot);
+    return plot;
   }
 
   private markNow(chart: uPlot): void {
@@ -117,60 +135,24 @@ export class Plots {
     chart.ctx.fillStyle = styleColor("--mark");
     chart.ctx.fillRect(x - 1, chart.bbox.top, 2, chart.bbox.height);
   }
-
-  private drawLiving(frame: Frame): void {
-    const lives = Array.from(frame.id, (id) => this.source.lives.get(id)).filter((life) => life !== undefined);
-    const ages = lives.map((life) => frame.step - life.birth);
-    const oldest = Math.max(1, ...ages);
-    const bins = new Array<number>(20).fill(0);
-    for (const age of ages) bins[Math.min(19, Math.floor((age / oldest) * 20))]!++;
-    const pen = surface(this.ages);
-    const most = Math.max(1, ...bins);
-    const [width, height] = [this.ages.clientWidth, this.ages.clientHeight - 14];
-    pen.fillStyle = LINES[0]!;
-    bins.forEach((count, i) => pen.fillRect((i * width) / 20 + 1, height - (count / most) * height, width / 20 - 2, (count / most) * height));
-    pen.fillStyle = styleColor("--quiet");
-    pen.fillText(`0 to ${show(oldest)} steps; ${lives.length} agents`, 2, height + 11);
-    const [a, b] = this.axes.map((axis) => Number(axis.value)) as [number, number];
-    this.drawScatter(lives.map((life) => [life.genome[a]!, life.genome[b]!]));
-  }
-
-  private drawScatter(points: [number, number][]): void {
-    const pen = surface(this.scatter);
-    const [width, height] = [this.scatter.clientWidth, this.scatter.clientHeight];
-    const limit = Math.max(1e-3, ...points.flatMap(([x, y]) => [Math.abs(x), Math.abs(y)])) * 1.08;
-    pen.fillStyle = "#8884";
-    pen.fillRect(width / 2, 0, 1, height);
-    pen.fillRect(0, height / 2, width, 1);
-    pen.fillStyle = LINES[1]! + "aa";
-    for (const [x, y] of points) pen.fillRect(((x / limit + 1) * width) / 2 - 1.5, ((1 - y / limit) * height) / 2 - 1.5, 3, 3);
-    pen.fillStyle = styleColor("--quiet");
-    pen.fillText(`± ${show(limit)}`, 2, 10);
-  }
 }
 
-/** A canvas of the size that it has on the page, empty. */
-function surface(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
-  const ratio = window.devicePixelRatio || 1;
-  [canvas.width, canvas.height] = [canvas.clientWidth * ratio, canvas.clientHeight * ratio];
-  const pen = canvas.getContext("2d")!;
-  pen.scale(ratio, ratio);
-  return pen;
+const outside = (value: number | undefined, { low, high }: Band, at: number): boolean => value !== undefined && at >= 0 && low[at] != null && (value < low[at]! || value > high[at]!);
+
+function judged(value: number | undefined, band: Band, at: number): string {
+  if (value === undefined || at < 0 || Number.isNaN(value) || band.low[at] == null) return "";
+  const range = `${show(band.low[at]!, 3)} to ${show(band.high[at]!, 3)}`;
+  return `${show(value, 3)}: ${outside(value, band, at) ? "outside" : "within"} drift (${range})`;
+}
+
+function key(lines: Line[]): HTMLElement[] {
+  return lines.map(({ label, color }) => {
+    const dot = element("b", { text: "●" });
+    dot.style.color = color;
+    return element("span", {}, dot, ` ${label}`);
+  });
 }
 
 function fitted(column: number[], length: number): (number | null)[] {
   return Array.from({ length }, (_, i) => (Number.isFinite(column[i]) ? column[i]! : null));
-}
-
-/** Limits between which the means of neutral genes lie: what drift alone does. */
-function spread(columns: number[][], length: number): [(number | null)[], (number | null)[]] {
-  const [high, low]: [(number | null)[], (number | null)[]] = [[], []];
-  for (let i = 0; i < length; i++) {
-    const values = columns.map((column) => column[i]!).filter(Number.isFinite);
-    const variance = values.reduce((sum, value) => sum + value * value, 0) / Math.max(values.length, 1);
-    const limit = values.length > 1 ? RANGE * Math.sqrt(variance) : null;
-    high.push(limit);
-    low.push(limit === null ? null : -limit);
-  }
-  return [high, low];
 }

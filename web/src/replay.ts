@@ -1,4 +1,5 @@
 // A run's records as a source of moments: loads only the parts of the frames that are shown, and follows a run.
+import { show } from "./element";
 import { Film, numbers, type Columns } from "./film";
 import { Lives } from "./lives";
 import type { Answer, Request } from "./records.worker";
@@ -85,13 +86,23 @@ export class Replay implements Source {
     return this.index.obstacles?.[this.world] ?? [];
   }
 
+  get ended(): boolean {
+    return this.index.status !== "running";
+  }
+
+  earned(): undefined {
+    return undefined; // records have the reward of whole lives
+  }
+
   status(): string {
     if (this.trouble) return this.trouble;
     const damaged = this.index.files.frames.filter((part) => part.damaged).map((part) => part.file);
     if (damaged.length > 0) return `damaged, and left out: ${damaged.join(", ")}`;
     const seed = `seed ${this.index.seeds[this.world]}`;
     const none = this.index.files.frames.length === 0 ? "; no positions: run with --frames 64 to see agents move" : "";
-    return `${this.index.name}, ${seed}, ${this.index.status}${none}`;
+    const end = this.index.extinct[this.world];
+    const over = typeof end === "number" ? `, died out at step ${show(end)}` : "";
+    return `${this.index.name}, ${seed}, ${this.index.status}${over}${none}`;
   }
 
   digest(): string {

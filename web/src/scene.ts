@@ -82,21 +82,33 @@ export class Scene {
   private readonly discs = new Batch(DISC_WORDS);
   private readonly lines = new Batch(LINE_WORDS);
   private readonly triangles = new Batch(LINE_WORDS);
-  private readonly discProgram: WebGLProgram;
-  private readonly lineProgram: WebGLProgram;
-  private readonly discArray: WebGLVertexArrayObject;
-  private readonly lineArray: WebGLVertexArrayObject;
-  private readonly discBuffer: WebGLBuffer;
-  private readonly lineBuffer: WebGLBuffer;
+  private discProgram!: WebGLProgram;
+  private lineProgram!: WebGLProgram;
+  private discArray!: WebGLVertexArrayObject;
+  private lineArray!: WebGLVertexArrayObject;
+  private discBuffer!: WebGLBuffer;
+  private lineBuffer!: WebGLBuffer;
+  lost = false; // whether the browser took what draws away, as it may at any time
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("this browser has no WebGL2");
     this.gl = gl;
+    this.build();
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault(); // else it is never given back
+      this.lost = true;
+    });
+    canvas.addEventListener("webglcontextrestored", () => this.build());
+  }
+
+  private build(): void {
+    const { gl } = this;
     this.discProgram = link(gl, DISC_VERTEX, DISC_FRAGMENT);
     this.lineProgram = link(gl, LINE_VERTEX, LINE_FRAGMENT);
     [this.discArray, this.discBuffer] = this.discLayout();
     [this.lineArray, this.lineBuffer] = this.lineLayout();
+    this.lost = false;
   }
 
   begin(): void {
@@ -131,6 +143,7 @@ export class Scene {
   /** Draws everything since `begin`, on a background of this color (each part from 0 to 1). */
   end(background: [number, number, number]): void {
     const { gl, canvas } = this;
+    if (this.lost) return;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);

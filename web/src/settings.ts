@@ -1,5 +1,6 @@
 // The settings of a live world: each with its meaning, unit and range, refused in the same words as by the command.
-import { by, element, option } from "./element";
+import { by, element, option, show } from "./element";
+import type { Live } from "./live";
 import type { LiveWorld, Setting } from "./types";
 
 /** What is wrong with a value, as `hedon run --set` says it; "" if nothing is. */
@@ -16,7 +17,7 @@ export function refusal(setting: Setting, text: string): string {
   return inside ? "" : wrong;
 }
 
-/** The command that runs the same world, and gives the same digest. */
+/** The command that runs the same world, and gives the same digest; changes on the way are not in it. */
 export function command(world: LiveWorld, changes: Map<string, string>, seed: number, steps: number): string {
   const words = ["hedon run", world.source];
   if (world.fidelity !== "corrected") words.push(`--fidelity ${world.fidelity}`);
@@ -56,45 +57,51 @@ function changedLines(toml: string, changes: Map<string, string>, written: (path
   return toml.split("\n").map(line).join("\n");
 }
 
+const PAUSE_MS = 400; // after the last change of a slider, before the world takes it
+
 export class Settings {
-  readonly changes = new Map<string, string>();
+  private readonly changes = new Map<string, string>();
   private readonly host = by<HTMLDivElement>("settings");
   private readonly problem = element("p", { class: "problem" });
+  private readonly restart = element("button", { text: "Start again with these", class: "main" });
   private readonly wrong = new Map<string, string>();
-  private readonly seed = Object.assign(element("input"), { type: "number", min: "0", step: "1", value: "1" });
+  private readonly due = new Map<string, ReturnType<typeof setTimeout>>();
+  private readonly seed = Object.assign(element("input"), { type: "number", min: "0", step: "1" });
 
   constructor(
-    world: LiveWorld,
-    seed: number,
+    private readonly live: Live,
     start: (changes: Map<string, string>, seed: number) => void,
-    changes = new Map<string, string>(),
   ) {
-    this.seed.value = String(seed);
+    const { world } = live;
+    this.seed.value = String(live.seed);
     this.problem.setAttribute("role", "alert");
-    const begin = element("button", { text: "Start again with these", class: "main" });
-    begin.id = "restart";
-    begin.addEventListener("click", () => {
-      if (this.wrong.size === 0) start(new Map(this.changes), Math.trunc(Number(this.seed.value)) || 0);
-    });
+    this.restart.id = "restart";
+    this.restart.onclick = () => start(new Map(this.changes), Math.max(0, Math.floor(Number(this.seed.value)) || 0));
     const search = Object.assign(element("input"), { type: "search", placeholder: "find a setting" });
     search.setAttribute("aria-label", "Find a setting");
-    const list = element("div", { class: "list" });
-    const seedRow = element("label", { class: "setting" }, element("span", { text: "seed" }), this.seed);
-    this.host.replaceChildren(element("p", { text: world.description, class: "quiet" }), seedRow, begin, this.problem, search, list);
-    for (const [name, settings] of grouped(world.settings)) list.append(this.section(name, settings, changes));
-    search.addEventListener("input", () => filter(list, search.value));
-  }
-
-  private section(name: string, settings: Setting[], changes: Map<string, string>): HTMLElement {
-    const box = element("details", {}, element("summary", { text: name }));
-    box.open = settings.some((setting) => changes.has(setting.path));
-    for (const setting of settings) box.append(this.row(setting, changes.get(setting.path)));
-    return box;
+    const list = element("div");
+    for (const [name, settings] of grouped(world.settings)) {
+      const box = element("details", {}, element("summary", { text: name }));
+      box.open = settings.some(({ path }) => live.changes.has(path));
+      for (const setting of settings) box.append(this.row(setting, live.changes.get(setting.path)));
+      list.append(box);
+    }
+    search.oninput = () => filter(list, search.value);
+    this.host.replaceChildren(
+      element("h2", { text: "Settings", class: "unseen" }),
+      element("p", { text: `${world.name}: ${world.description}` }),
+      element("label", { class: "setting" }, element("span", { text: "seed" }), this.seed),
+      this.restart,
+      this.problem,
+      element("p", { text: "A change acts at once where a world that lives can take it. The others wait for a new start.", class: "quiet" }),
+      search,
+      list,
+    );
   }
 
   private row(setting: Setting, changed: string | undefined): HTMLElement {
     const own = String(setting.value);
-    const input = setting.choices.length > 0 ? element("select") : element("input");
+    const input = setting.choices.length > 0 ? element("select") : Object.assign(element("input"), { inputMode: "decimal" as const });
     for (const choice of setting.choices) input.append(option(choice, choice));
     input.value = changed ?? own;
     input.dataset.path = setting.path;
@@ -104,6 +111,7 @@ export class Settings {
     const take = (text: string) => {
       input.value = text;
       this.take(setting, text, own, row);
+      this.act(setting, text, row);
     };
     input.addEventListener("input", () => {
       if (slider) slider.value = String(toSlider(setting, Number(input.value)));
@@ -115,7 +123,7 @@ export class Settings {
       slider.addEventListener("input", () => take(fromSlider(setting, Number(slider.value))));
       row.append(slider);
     }
-    row.append(element("small", { text: `${setting.meaning}; ${setting.allowed}` }));
+    row.append(element("small", { text: `${setting.meaning}; ${setting.allowed}` }), element("small", { class: "when" }));
     if (changed !== undefined) this.take(setting, changed, own, row);
     return row;
   }
@@ -129,7 +137,24 @@ export class Settings {
     row.classList.toggle("changed", text !== own);
     row.classList.toggle("wrong", wrong !== "");
     this.problem.textContent = [...this.wrong.values()].join("\n");
-    by<HTMLButtonElement>("restart").disabled = this.wrong.size > 0;
+    this.restart.disabled = this.wrong.size > 0;
+  }
+
+  /** Lets the world go on with the value, a moment after the last change of it, or says that it waits for a new start. */
+  private act(setting: Setting, text: string, row: HTMLElement): void {
+    const when = row.querySelector(".when")!;
+    clearTimeout(this.due.get(setting.path));
+    when.textContent = "";
+    if (refusal(setting, text)) return;
+    if (!setting.at_once) {
+      when.textContent = "matters from the beginning: start again";
+      return;
+    }
+    const done = async () => {
+      const refused = await this.live.change(setting.path, text);
+      when.textContent = refused ? `${refused}: start again` : `acts since step ${show(this.live.last)}`;
+    };
+    this.due.set(setting.path, setTimeout(() => void done(), PAUSE_MS));
   }
 }
 

@@ -2,6 +2,7 @@
 import type { Lives } from "./lives";
 import type { Series } from "./series";
 import type { Frame, Layout, AgentProbe, Place } from "./types";
+import type { Earned } from "./windows";
 
 /** Where moments come from: records, or a world that runs. */
 export interface Source {
@@ -10,11 +11,14 @@ export interface Source {
   readonly obstacles: Place[][]; // their corners
   readonly first: number;
   readonly last: number;
+  readonly ended: boolean; // whether no moment comes after the last one
   readonly lives: Lives;
   readonly series: Series;
   /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
   agentProbe(): AgentProbe | undefined;
+  /** What an agent earned in each window of its life; undefined where nobody knows. */
+  earned(id: number): Earned[] | undefined;
   status(): string;
   /** The world's digest, or "" where it is not known. */
   digest(): string;

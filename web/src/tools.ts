@@ -1,7 +1,7 @@
 // What can be done with a live world beside changing its settings: by hand, to a snapshot and back, into files.
 import { csvOf, save } from "./csv";
 import { by, element, option, show } from "./element";
-import type { Live } from "./live";
+import { Live } from "./live";
 import { configFile, refusal } from "./settings";
 import type { Source } from "./source";
 import type { Setting } from "./types";
@@ -12,14 +12,20 @@ export class Tools {
   private readonly back = element("button");
   private readonly refused = element("p", { class: "problem" });
   private readonly kept = element("p", { class: "quiet" });
+  private readonly digest = element("p");
+  private readonly live: Live | undefined;
 
   constructor(
-    private readonly live: Live | undefined,
+    private readonly source: Source,
     beside: (setting: Setting, value: string) => void,
     alone: () => void,
   ) {
+    this.digest.id = "digest";
+    const heading = element("h2", { text: "World", class: "unseen" });
+    const live = source instanceof Live ? source : undefined;
+    this.live = live;
     if (!live) {
-      this.host.replaceChildren(element("p", { text: "What was recorded cannot be changed: choose a live world above." }));
+      this.host.replaceChildren(heading, element("p", { text: "What was recorded cannot be changed: choose a live world above." }), element("h3", { text: "digest" }), this.digest);
       return;
     }
     this.refused.setAttribute("role", "alert");
@@ -28,6 +34,7 @@ export class Tools {
     this.back.addEventListener("click", () => live.act({ type: "back" }));
     const keep = this.button("keep", "Keep it as it is now", () => live.act({ type: "keep" }));
     this.host.replaceChildren(
+      heading,
       element("h3", { text: "by hand" }),
       element("label", {}, "A click in the arena ", this.edit),
       this.refused,
@@ -39,13 +46,15 @@ export class Tools {
       element("div", { class: "row" }, ...this.files(live)),
       element("h3", { text: "side by side" }),
       ...this.pair(live, beside, alone),
+      element("h3", { text: "digest" }),
+      this.digest,
     );
     this.edit.append(option("choose", "chooses an agent"));
     live.layout.types.slice(0, live.layout.species.length + live.layout.foods.length).forEach((name, type) => {
       this.edit.append(option(String(type), `adds ${type < live.layout.species.length ? "" : "food "}${name}`));
     });
     this.edit.append(option("remove", "removes what is there"));
-    this.update();
+    this.update(live.last);
   }
 
   /** Does by hand what was chosen; false if a click chooses an agent. */
@@ -56,7 +65,11 @@ export class Tools {
     return true;
   }
 
-  update(): void {
+  update(now: number): void {
+    const digest = this.source.digest();
+    const known = digest !== "" && (!this.source.live || now >= this.source.last);
+    const said = `digest ${digest}${this.live?.edited ? ", changed by hand" : ""}`;
+    this.digest.textContent = known ? said : "Pause at the newest step to see the digest of the state.";
     if (!this.live) return;
     this.refused.textContent = this.live.refused;
     this.back.disabled = this.live.kept < 0;

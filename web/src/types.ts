@@ -4,10 +4,14 @@ export interface Gene {
   name: string;
   role: "reward" | "learning" | "rule" | "neutral";
   input: string;
+  title: string; // in plain words
+  unit: string; // "" where there is none
+  color: string;
 }
 
 export interface Species {
   name: string;
+  color: string;
   capacity: number;
   radius: number;
   mouth_degrees: number;
@@ -17,6 +21,8 @@ export interface Species {
   noses: { count: number; degrees: number; decay: number };
   smells: number[]; // types, by channel
   genes: number[]; // of the layout's genes, in the order of the genome
+  starts: number[]; // of each of them, the mean of the founders
+  drifts: boolean[]; // whether the neutral markers mutate like it, so that they show its drift
   reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // what meals tell of it, and the rest
 }
 
@@ -27,6 +33,7 @@ export interface Layout {
   genes: Gene[];
   meals: string[];
   obstacle_corners: number;
+  obstacle_color: string;
   arena: { width: number; height: number; walls: [number, number, number, number][] };
   window: number;
   energy_capacity: number;
@@ -84,6 +91,7 @@ export interface Setting {
   value: number | string | boolean;
   choices: string[];
   whole: boolean;
+  at_once: boolean; // whether a world that has begun can go on with another value
   ge: number | null;
   gt: number | null;
   le: number | null;

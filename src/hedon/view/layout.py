@@ -7,31 +7,41 @@ description lists.
 from typing import Any
 
 from hedon.config.arena import walls
+from hedon.config.color import OBSTACLE_COLOR, meal_colors, species_color, weight_colors
 from hedon.config.config import Config
 from hedon.config.layout import Gene, SpeciesLayout, diet, gene_columns, layouts, types
 from hedon.config.species import SpeciesConfig
+from hedon.config.title import weight_title
 
 
 def describe(config: Config) -> dict[str, Any]:
     """The layout of a world.
 
     Returns:
-        `species`: of each its name, capacity, radius [u], mouth_degrees (on each side of its middle),
-            mouth_center_degrees, rays (count,
-        spread_degrees on each side of the heading, length [u]), sees (indices into `types`, by channel), noses (count,
-        degrees between the heading and each of two, decay [1/u] of smell with distance), smells (indices into `types`,
-        by channel), genes (indices into `genes`, in genome order) and reward (see `_reward`);
+        `species`: of each its name, color, capacity, radius [u], mouth_degrees (on each side of its middle),
+        mouth_center_degrees, rays (count, spread_degrees on each side of the heading, length [u]), sees (indices into
+        `types`, by channel), noses (count, degrees between the heading and each of two, decay [1/u] of smell with
+        distance), smells (indices into `types`, by channel), genes (indices into `genes`, in genome order), starts
+        (mean of the founders, by gene), drifts (whether its neutral markers mutate like the gene, so that they show its
+        drift) and reward (see `_reward`);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
-        `genes`: of all species, each once: name, role (as `Gene.role`) and input (what it rewards, "" for none);
+        `genes`: of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none), title in
+        plain words, unit and color;
         `meals`: what an agent may eat, in the order in which the engine counts it;
-        `obstacle_corners`: of each obstacle; 0 where there are none;
+        `obstacle_corners`: of each obstacle, 0 where there are none; `obstacle_color`;
         `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;
         `energy_capacity`: most energy of an agent.
     """
     made = layouts(config)
+    colors = meal_colors(config)
     foods = [
-        {"name": name, "radius": config.world.food_radius, "energy": food.gives.get("energy", 0.0), "color": food.color}
+        {
+            "name": name,
+            "radius": config.world.food_radius,
+            "energy": food.gives.get("energy", 0.0),
+            "color": colors[name],
+        }
         for name, food in config.food.items()
     ]
     hunting = any(name in config.species for each in config.species.values() for name in diet(config, each))
@@ -42,6 +52,7 @@ def describe(config: Config) -> dict[str, Any]:
         "genes": _genes(config, made),
         "meals": [*config.food, *(config.species if hunting else ())],
         "obstacle_corners": config.obstacle.corners if config.obstacle.count else 0,
+        "obstacle_color": OBSTACLE_COLOR,
         "arena": {
             "width": config.arena.width,
             "height": config.arena.height,
@@ -54,8 +65,10 @@ def describe(config: Config) -> dict[str, Any]:
 
 def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
     every, columns = types(config), gene_columns(config)
+    neutral = next((gene.mutation for gene in layout.genes if gene.role == "neutral"), None)
     return {
         "name": name,
+        "color": species_color(list(config.species).index(name)),
         "capacity": species.population.capacity,
         "radius": species.body.radius,
         "mouth_degrees": species.sensor.mouth_spread,
@@ -73,6 +86,8 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
         },
         "smells": [every.index(smelled) for smelled in layout.smells],
         "genes": [columns.index(gene) for gene in layout.gene_names],
+        "starts": [gene.law.initial_mean for gene in layout.genes],
+        "drifts": [gene.mutation == neutral for gene in layout.genes],
         "reward": _reward(species, layout, columns),
     }
 
@@ -95,11 +110,18 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, .
 
 def _genes(config: Config, made: dict[str, SpeciesLayout]) -> list[dict[str, str]]:
     known: dict[str, Gene] = {gene.name: gene for layout in made.values() for gene in layout.genes}
+    linear = {name: layout for name, layout in made.items() if config.species[name].reward.family == "linear"}
+    eaten = {each.gene for layout in linear.values() for each in layout.terms if (each.input, each.coef) == ("food", 1)}
+    columns = gene_columns(config)
+    colors = weight_colors(columns, meal_colors(config, list(config.species)))
     return [
         {
             "name": name,
             "role": known[name].role,
             "input": "" if known[name].role == "neutral" else name.removeprefix("w_"),
+            "title": name.replace("_", " marker ") if known[name].role == "neutral" else weight_title(name),
+            "unit": "reward per meal" if name in eaten else "",
+            "color": colors[name],
         }
-        for name in gene_columns(config)
+        for name in columns
     ]

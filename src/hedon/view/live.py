@@ -8,10 +8,14 @@ from hedon.config.config import Config
 from hedon.config.dump import dump_toml, flatten
 from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
+from hedon.config.fixed import fixed_path
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
 from hedon.config.settings import PROVENANCE
 from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
+
+BEGINNING = (".initial", ".initial_count", ".initial_mean", ".initial_sd", ".at_zero", ".count")
+"""Ends of the paths of settings that matter when a world begins, or that decide what is recorded."""
 
 
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
@@ -70,7 +74,8 @@ def _settings(config: Config) -> Iterator[dict[str, Any]]:
 
 
 def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict[str, Any]:
-    """One setting: its path here and those in the engine, its value, and what `docs/config.md` says of it."""
+    """One setting: its path here and those in the engine, its value, what `docs/config.md` says of it, and whether a
+    world that has begun can go on with another value."""
     limits = setting.doc.range
     return {
         "path": path,
@@ -78,6 +83,7 @@ def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict
         "value": value,
         "choices": list(setting.choices),
         "whole": setting.type is int,
+        "at_once": not fixed_path(path) and not path.endswith(BEGINNING),
         **{name: getattr(limits, name) for name in ("ge", "gt", "le", "lt")},
         "unit": setting.doc.unit,
         "meaning": setting.doc.meaning,

@@ -1,0 +1,34 @@
+// The help: keys, how to make the same world elsewhere, and what rounding has to do with it.
+import { KEYS } from "./control";
+import { by, counted, element, show, table } from "./element";
+import { Live } from "./live";
+import { command } from "./settings";
+import type { Source } from "./source";
+
+const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
+
+export function showHelp(source: Source): void {
+  const box = by<HTMLDialogElement>("help");
+  const close = element("button", { text: "Close" });
+  close.onclick = () => box.close();
+  const heading = element("h2", { text: "Help" });
+  heading.id = "help-title";
+  const keys = table(KEYS.map(([key, what]): [string, string] => [key, what]));
+  box.replaceChildren(heading, element("p", { text: TOUCH }), element("h3", { text: "Keys" }), keys, ...thisWorld(source), close);
+  box.showModal();
+}
+
+function thisWorld(source: Source): HTMLElement[] {
+  const lines: HTMLElement[] = [element("h3", { text: "This world" })];
+  if (source instanceof Live) {
+    const same = command(source.world, source.changes, source.seed, source.last);
+    const later = source.acts.map(({ step, path, value }) => element("p", { text: `At step ${show(step)}: ${path} = ${value}` }));
+    const said = source.edited ? "It was changed by hand: no command makes the same world. It began as" : "This command makes the same world, with the same digest:";
+    const rounding = source.fused
+      ? "The engine here fuses multiply-adds, as processors with AVX2 and AVX-512 do: digests are those of the command there."
+      : "This browser does not fuse multiply-adds: put HEDON_BACKEND=portable before the command to get the digest of this page.";
+    lines.push(element("p", { text: said }), element("code", { text: same }), ...later, element("p", { text: `${rounding} It runs in ${counted(source.threads, "thread")}, which changes no result.` }));
+  }
+  if (source.digest()) lines.push(element("p", { text: `Digest of the state: ${source.digest()}` }));
+  return lines;
+}

@@ -1,0 +1,24 @@
+// What the page remembers of a person: the theme and the view. `hedon view` has a port of its own each time, and only
+// cookies are the same on all of them.
+
+const DAYS = 365;
+
+export function remember(name: string, value: string): void {
+  document.cookie = `hedon-${name}=${encodeURIComponent(value)}; path=/; max-age=${DAYS * 86400}; samesite=strict`;
+}
+
+export function recall(name: string): string | undefined {
+  const found = document.cookie.split("; ").find((each) => each.startsWith(`hedon-${name}=`));
+  return found && decodeURIComponent(found.slice(found.indexOf("=") + 1));
+}
+
+/** Shows the page as it was left: dark, light, or as the system says. */
+export function recallTheme(): void {
+  const theme = recall("theme");
+  if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
+}
+
+export function switchTheme(): void {
+  const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
+  remember("theme", (document.documentElement.dataset.theme = dark ? "light" : "dark"));
+}

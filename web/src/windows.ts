@@ -1,0 +1,42 @@
+// What each agent got of reward in each window, between two times of learning: whether it learns shows there.
+
+/** The living at the end of a window, with the reward of their lives until then. */
+export interface WindowEnd {
+  step: number;
+  id: Int32Array;
+  reward: Float32Array;
+}
+
+/** One window of a life: its part from a step to another, and the reward in it. */
+export interface Earned {
+  from: number;
+  to: number;
+  reward: number;
+}
+
+export class Windows {
+  private readonly ends = new Map<number, [number, number][]>(); // by agent: step, and the reward until then
+
+  add({ step, id, reward }: WindowEnd): void {
+    id.forEach((agent, i) => {
+      const known = this.ends.get(agent);
+      if (known) known.push([step, reward[i]!]);
+      else this.ends.set(agent, [[step, reward[i]!]]);
+    });
+  }
+
+  /** The windows of a life that have ended, in order. */
+  of(agent: number, birth: number): Earned[] {
+    let [from, before] = [birth, 0];
+    return (this.ends.get(agent) ?? []).map(([to, until]) => {
+      const earned = { from, to, reward: until - before };
+      [from, before] = [to, until];
+      return earned;
+    });
+  }
+
+  /** Forgets what happened after a step. */
+  rewind(step: number): void {
+    for (const [agent, known] of this.ends) this.ends.set(agent, known.filter(([each]) => each <= step));
+  }
+}
