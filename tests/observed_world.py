@@ -4,6 +4,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
+from observed_touch import touch_bits
 from reference.state import COUNTED, HARMED, HUNTED, Agent, Deed, Newborn, Stock, Vacancy, World
 
 from hedon.config.arena import walls
@@ -51,7 +52,7 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
     rows, living = world.agents(), world.living
     known = {each.name for each in fields(Agent)} & set(rows) - {"genome", "store"}
     columns = {name: rows[name].tolist() for name in known}
-    for name in ("digestion", "ready_until"):
+    for name in ("digestion", "ready_until", "births"):
         if len(world.view(name)):
             columns[name] = world.view(name)[living].tolist()
     if len(world.view("resident_slot")):
@@ -59,13 +60,16 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
     agents = []
     memory = world.view("memory").reshape(len(world.view("alive")), -1)[living]
     kept = [species.reward.memory for species in world.config.species.values()]
+    last = world.view("last").reshape(len(world.view("alive")), -1)[living]
     genomes = rows["genome"].astype(float)
     stores = [list(species.store) for species in world.config.species.values()]
     for i in range(len(living)):
         held = {name: float(rows[name][i]) for name in stores[columns["species"][i]]}
         agent = Agent(**{name: column[i] for name, column in columns.items()}, genome=genomes[i], store=held)
         agent.genome = agent.genome[: len(made[agent.species].genes)]
+        agent.births = agent.births if "births" in columns else None
         agent.memory = memory[i, : kept[agent.species]].tolist()
+        agent.last = last[i, : len(made[agent.species].last)].tolist()
         agents.append(agent)
     return agents
 
@@ -154,6 +158,9 @@ def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: d
     actions = rollout_rows(simulation, before, slots, "action", 2).astype(float)
     deeds = []
     places = np.stack([view(f"physics.bodies.{name}")[slots] for name in ("x", "y", "angle")], axis=1).tolist()
+    names = ("velocity_x", "velocity_y", "angular_velocity")
+    motions = np.stack([view(f"physics.bodies.{name}")[slots] for name in names], axis=1).tolist()
+    felt = touch_bits(simulation.worlds[0], slots)
     now = view("life.agent_id")[slots].tolist()
     deaths = simulation.engine.head(0)["death_log_count"]
     eaten = view("death_log.agent_id")[:deaths][view("death_log_cause")[:deaths] == CAUSES.index("eaten")]
@@ -161,8 +168,8 @@ def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: d
         if now[i] != agent.agent_id:  # it died, and a newborn lies there
             place = [agent.x, agent.y, agent.angle]
         gone = now[i] != agent.agent_id and agent.agent_id in eaten
-        met = (mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i])
+        met = (mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i], tuple(motions[i]), felt[i])
         left, right = actions[i]
         x, y, angle = place
-        deeds.append(Deed((left, right), x, y, angle, *met, gone))
+        deeds.append(Deed((left, right), x, y, angle, *met, now[i] != agent.agent_id, gone))
     return deeds

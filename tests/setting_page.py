@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-NUMBERS = ("gives", "needs")
+NUMBERS = ("gives", "needs", "observes")
 """Settings that are tables of numbers."""
 PAGE = Path(__file__).parents[1] / "docs" / "config.md"
 
@@ -29,7 +29,7 @@ def page_rows(kinds: dict[str, str]) -> dict[str, Row]:
             section = re.sub(r"^## (`\[(.*)\]`|At the top)$", r"\2", line)
             for pattern in sorted(kinds, key=len, reverse=True):
                 section = section.replace(pattern, kinds[pattern])
-        elif section is not None and line.startswith("| `"):
+        elif section not in (None, "## Channels") and line.startswith("| `"):
             cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
             name, default, *rest = cells
             path = f"{section}.{name.strip('`')}".lstrip(".")

@@ -12,7 +12,7 @@
 namespace hedon {
 
 inline constexpr int MAX_TYPES = MAX_SPECIES + MAX_FOOD_KINDS + 2;  ///< each species, each food kind, wall, obstacle
-inline constexpr int MAX_REWARD_TERMS = 32;  ///< more than foods, species, action and sights together
+inline constexpr int MAX_REWARD_TERMS = MAX_GENES + 1;              ///< each but drive reduction has a gene
 inline constexpr int LEARNING_GENES = std::size(EnumNames<GenomeLearning>::text);
 inline constexpr int FAMILY_GENES = std::size(EnumNames<GenomeFamily>::text);
 inline constexpr int MAX_CHANNELS = 48;  ///< more than a rule's record or an observation has
@@ -47,32 +47,6 @@ struct LearningGene {
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_GENES - 1)};
 };
 
-/// What a reward is paid for, per step:
-/// food             foods of kind `index` eaten; past the kinds, agents of a species
-/// action           norm of the two forces, divided by what `RewardActionNorm` names
-/// see_mean         mean over the rays of the reading of sight channel `index`
-/// see_max          the largest of them
-/// smell            mean over the noses of what they smell of channel `index`
-/// drive_reduction  by how much stores came closer to their set points, in shares of what each is measured by
-HEDON_ENUM(RewardInput, food, action, see_mean, see_max, smell, drive_reduction)
-
-constexpr bool is_sight(RewardInput input) { return input == RewardInput::see_mean || input == RewardInput::see_max; }
-/// Whether an input needs what the agent observes.
-constexpr bool is_sensed(RewardInput input) { return is_sight(input) || input == RewardInput::smell; }
-
-/// One term of the reward: coef · weight · input.
-struct RewardTerm {
-  RewardInput input;
-  int32_t index;        ///< of the food kind, or of the channel of sight or smell
-  int32_t gene;         ///< index of the gene that weighs it
-  int32_t second_gene;  ///< of the other gene, for the families that have two; otherwise as `gene`
-  float coef;
-
-  HEDON_FIELDS(RewardTerm, input, index, gene, second_gene, coef)
-  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_TYPES - 1), Limit::from(0, MAX_GENES - 1),
-                                     Limit::from(0, MAX_GENES - 1), Limit::from(-1e3, 1e3)};
-};
-
 /// A number that can be known of an agent in a step: see `hedon.config.channel`.
 struct Channel {
   ChannelSource source;
@@ -95,6 +69,24 @@ struct NeighborQuery {
   static constexpr Limit LIMITS[] = {Limit::from(0, (1 << MAX_SPECIES) - 1), Limit::over(0, 1e4)};
 };
 
+/// Whether a source needs what the agent observes.
+constexpr bool is_sensed(ChannelSource source) {
+  return source == ChannelSource::see_mean || source == ChannelSource::see_max || source == ChannelSource::nearness ||
+         source == ChannelSource::smell || source == ChannelSource::smell_mean;
+}
+
+/// One term of the reward: coef · weight · channel.
+struct RewardTerm {
+  Channel channel;
+  int32_t gene;         ///< index of the gene that weighs it; -1 for a weight of 1
+  int32_t second_gene;  ///< of the other gene, for the families that have two; otherwise as `gene`
+  float coef;
+
+  HEDON_FIELDS(RewardTerm, channel, gene, second_gene, coef)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(-1, MAX_GENES - 1), Limit::from(-1, MAX_GENES - 1),
+                                     Limit::from(-1e3, 1e3)};
+};
+
 /// What follows from the names in a species' settings, and from lengths and forces in other units. Types are numbered:
 /// the species, the food kinds, walls, then obstacles.
 struct SpeciesLayout {
@@ -115,11 +107,15 @@ struct SpeciesLayout {
   FixedList<int32_t, MAX_STORES> set_points;  ///< gene of the set point of each store; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
   FixedList<Channel, MAX_CHANNELS> observed;  ///< what it observes beside rays and touch, in order
+  FixedList<Channel, MAX_CHANNELS> last;      ///< what of a step is kept for the next observation, in order
   FixedList<Channel, MAX_CHANNELS> recorded;  ///< what a rule gets beside inputs, genes and memory, in order
+  Channel gate;                               ///< what the family of the reward compares with its threshold, unscaled
+  int32_t season_period;                      ///< steps of a year; 0: none
   FixedList<NeighborQuery, MAX_QUERIES> neighbors;
 
   HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
-               needs, rules, genes, learning, family, set_points, terms, observed, recorded, neighbors)
+               needs, rules, genes, learning, family, set_points, terms, observed, last, recorded, gate, season_period,
+               neighbors)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
@@ -140,8 +136,20 @@ struct SpeciesLayout {
                                      Limit(),
                                      Limit(),
                                      Limit(),
+                                     Limit(),
+                                     Limit(),
+                                     Limit::from(0, 1e9),
                                      Limit()};
 
+  /// Calls visit(channel) for each channel that it uses for anything.
+  template <class Visit>
+  HEDON_FN void for_each_channel(Visit&& visit) const {
+    for (int32_t i = 0; i < terms.count; ++i) visit(terms[i].channel);
+    for (int32_t i = 0; i < observed.count; ++i) visit(observed[i]);
+    for (int32_t i = 0; i < last.count; ++i) visit(last[i]);
+    for (int32_t i = 0; i < recorded.count && has_rule(); ++i) visit(recorded[i]);
+    visit(gate);
+  }
   /// The gene that multiplies a setting of the family of the reward; -1 for none.
   HEDON_FN int32_t gene_of(GenomeFamily setting) const { return family[static_cast<int32_t>(setting)]; }
   /// Whether a rule of the caller decides this.

@@ -278,16 +278,14 @@ struct BirthConfig {
       Limit::from(1, 1000), Limit(), Limit::from(0, 10), Limit(), Limit::from(0, 1000000), Limit::from(0, 10000)};
 };
 
-HEDON_ENUM(RewardFamily, linear, sinh, scaled, fed, hungry, by_age)
-HEDON_ENUM(RewardActionNorm, max_force, none)
+HEDON_ENUM(RewardFamily, linear, sinh, scaled, above, below, between)
 struct RewardConfig {
   RewardFamily family;
-  float threshold;  ///< [energy or step]
-  float threshold_width;  ///< [energy or step]
-  RewardActionNorm action_norm;
+  float threshold;  ///< [that of the gate]
+  float threshold_width;  ///< [that of the gate]
   int32_t memory;
-  HEDON_FIELDS(RewardConfig, family, threshold, threshold_width, action_norm, memory)
-  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 1000000), Limit::over(0, 1000000), Limit(), Limit::from(0,
+  HEDON_FIELDS(RewardConfig, family, threshold, threshold_width, memory)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(-1000000, 1000000), Limit::over(0, 1000000), Limit::from(0,
       16)};
 };
 
@@ -347,7 +345,16 @@ struct Settings {
 HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
-HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, smell, age, moved, nearness,
-      force, position, step, alive, neighbor)
+HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, store_change, meals, damage,
+      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, effort, force, force_norm, moved, position,
+      age, births, waits, drive_reduction, season, step, alive, neighbor, one, last)
+HEDON_ENUM(ChannelOf, one, two, stores, kinds, meals, sees, smells, noses, touches, season, queries, harm, mates, drive,
+      last)
+inline constexpr ChannelOf CHANNEL_OF[] = {ChannelOf::two, ChannelOf::one, ChannelOf::two, ChannelOf::one,
+      ChannelOf::stores, ChannelOf::stores, ChannelOf::stores, ChannelOf::meals, ChannelOf::harm, ChannelOf::sees,
+      ChannelOf::sees, ChannelOf::one, ChannelOf::noses, ChannelOf::smells, ChannelOf::touches, ChannelOf::one,
+      ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one,
+      ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one, ChannelOf::one, ChannelOf::queries,
+      ChannelOf::one, ChannelOf::last};
 
 }  // namespace hedon

@@ -119,34 +119,73 @@ void check_gene(Complaint& complaint, const std::string& path, const SpeciesLayo
   complaint.need(gene < layout.genes.count, path, gene, "the index of a gene");
 }
 
-void check_terms(Complaint& complaint, const std::string& path, const Config& config, const SpeciesLayout& layout) {
-  for (int32_t i = 0; i < layout.terms.count; ++i) {
-    const RewardTerm& term = layout.terms[i];
-    check_gene(complaint, path + ".gene", layout, term.gene);
-    check_gene(complaint, path + ".second_gene", layout, term.second_gene);
-    int32_t inputs = 1;
-    if (term.input == RewardInput::food) inputs = meals_of(config);
-    if (term.input == RewardInput::smell) inputs = layout.smells.count;
-    if (is_sight(term.input)) inputs = layout.sees.count;
-    complaint.need(term.index < inputs, path + ".index", term.index, "the index of a meal or of a channel");
+/// How many numbers a source of channels has for a species.
+int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
+  const SpeciesLayout& layout = config.layout[s];
+  const SpeciesConfig& species = config.species[s];
+  switch (CHANNEL_OF[static_cast<int>(source)]) {
+    case ChannelOf::one:
+      return 1;
+    case ChannelOf::two:
+    case ChannelOf::season:
+      return 2;
+    case ChannelOf::stores:
+      return 1 + species.store.count;
+    case ChannelOf::kinds:
+      return config.species.count + config.food.count;
+    case ChannelOf::meals:
+      return meals_of(config);
+    case ChannelOf::sees:
+      return layout.sees.count;
+    case ChannelOf::smells:
+      return layout.smells.count;
+    case ChannelOf::noses:
+      return layout.smells.count * species.sensor.noses;
+    case ChannelOf::touches:
+      return layout.touches.count;
+    case ChannelOf::harm:
+      return config.obstacle.count > 0 ? 1 : 0;
+    case ChannelOf::mates:
+      return species.birth.mating == BirthMating::pairs ? 1 : 0;
+    case ChannelOf::drive:
+      return layout.set_points.count > 0 ? 1 : 0;
+    case ChannelOf::queries:
+      return layout.has_rule() ? layout.neighbors.count * QUERY_NUMBERS : 0;
+    case ChannelOf::last:
+      return layout.last.count;
   }
+  return 0;
 }
 
-/// Channels are numbers that there are.
-void check_channels(Complaint& complaint, const std::string& path, const FixedList<Channel, MAX_CHANNELS>& list,
-                    int32_t stores, int32_t scents, int32_t near) {
-  for (int32_t i = 0; i < list.count; ++i) {
-    int32_t numbers = 2;
-    if (list[i].source == ChannelSource::store || list[i].source == ChannelSource::store_before) numbers = stores;
-    if (list[i].source == ChannelSource::smell) numbers = scents;
-    if (list[i].source == ChannelSource::neighbor) numbers = near;
-    complaint.need(list[i].index < numbers, item(path, i) + ".index", list[i].index, "a number of its source");
+/// A channel is a number that there is.
+void check_channel(Complaint& complaint, const std::string& path, const Channel& channel, const Config& config,
+                   int32_t s) {
+  complaint.need(channel.index < numbers_of(channel.source, config, s), path + ".index", channel.index,
+                 "a number of its source");
+}
+
+void check_channels(Complaint& complaint, const std::string& path, const Config& config, int32_t s) {
+  const SpeciesLayout& layout = config.layout[s];
+  const auto check = [&](const char* name, const FixedList<Channel, MAX_CHANNELS>& list) {
+    for (int32_t i = 0; i < list.count; ++i) check_channel(complaint, item(path + name, i), list[i], config, s);
+  };
+  check("observed", layout.observed);
+  check("last", layout.last);
+  check("recorded", layout.recorded);
+  check_channel(complaint, path + "gate", layout.gate, config, s);
+  for (int32_t i = 0; i < layout.last.count; ++i)
+    complaint.need(layout.last[i].source != ChannelSource::last, item(path + "last", i) + ".source", i,
+                   "of the step itself");
+  for (int32_t i = 0; i < layout.terms.count; ++i) {
+    const std::string place = item(path + "terms", i);
+    check_channel(complaint, place + ".channel", layout.terms[i].channel, config, s);
+    check_gene(complaint, place + ".gene", layout, layout.terms[i].gene);
+    check_gene(complaint, place + ".second_gene", layout, layout.terms[i].second_gene);
   }
 }
 
 void check_layout(Complaint& complaint, const std::string& path, const Config& config, int32_t s) {
   const SpeciesLayout& own = config.layout[s];
-  const SensorConfig& sensor = config.species[s].sensor;
   const int32_t types = config.species.count + config.food.count + (config.obstacle.count > 0 ? 2 : 1);
   check_types(complaint, path + "sees", own.sees, types);
   check_types(complaint, path + "touches", own.touches, types);
@@ -154,10 +193,7 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   const int32_t stores = 1 + config.species[s].store.count;
   complaint.need(own.observed.count <= MAX_DENSE + MAX_EXTRA_DENSE, path + "observed", own.observed.count,
                  "at most " + std::to_string(MAX_DENSE + MAX_EXTRA_DENSE));
-  check_channels(complaint, path + "observed", own.observed, stores, own.smells.count * sensor.noses, 0);
-  check_channels(complaint, path + "recorded", own.recorded, stores, own.smells.count * sensor.noses,
-                 own.has_rule() ? own.neighbors.count * QUERY_NUMBERS : 0);
-  check_terms(complaint, path + "terms", config, own);
+  check_channels(complaint, path, config, s);
   for (int32_t i = 0; i < own.learning.count; ++i)
     check_gene(complaint, path + "learning.gene", own, own.learning[i].gene);
   const auto count = [&](const char* list, int32_t items, int32_t wanted, const char* rule) {

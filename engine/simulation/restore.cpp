@@ -137,6 +137,8 @@ bool check_life(Inspector& in) {
          in.within<int32_t>("life.children", 0, MOST) && in.within<int32_t>("eaten", 0, MOST) &&
          in.within<int64_t>("life.death_step", -1, -1) && in.within<double>("life.energy", 0, LARGEST) &&
          (in.world_.shape->stores == 1 || in.within<double>("store", 0, LARGEST)) &&
+         (in.world_.shape->last == 0 || in.within<float>("last", -LARGEST, LARGEST)) &&
+         (!in.world_.shape->counts_births || in.within<int32_t>("births", 0, MOST)) &&
          (!in.world_.shape->learning ||
           (in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&

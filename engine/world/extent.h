@@ -45,6 +45,9 @@ enum class Extent : uint8_t {
   mating_slots,      ///< slots, if some species has two parents
   mating_death_log,  ///< the same, if some species has two parents
   store_slots,       ///< slots, if some species has a store beside energy
+  last_slots,        ///< slots, if some species observes what was of the step before
+  birth_slots,       ///< slots, if some species senses, or is paid for, the children that it had
+  last,              ///< most numbers of a step that are kept for the next observation
   stores,            ///< most stores of a species
   more_stores,       ///< the same without energy
   scents,            ///< what an agent smells: channels times noses
@@ -76,7 +79,8 @@ HEDON_FN bool is_by_slot(Extent rows) {
          rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots ||
          rows == Extent::ruled_slots || rows == Extent::packed_slots || rows == Extent::wide_slots ||
          rows == Extent::obstacle_slots || rows == Extent::store_slots || rows == Extent::instinct_slots ||
-         rows == Extent::mating_slots || rows == Extent::hunted_slots;
+         rows == Extent::mating_slots || rows == Extent::hunted_slots || rows == Extent::last_slots ||
+         rows == Extent::birth_slots;
 }
 
 struct ArrayShape {
@@ -153,6 +157,12 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.mating ? shape.death_log_rows : 0;
     case Extent::store_slots:
       return shape.stores > 1 ? shape.capacity : 0;
+    case Extent::last_slots:
+      return shape.last > 0 ? shape.capacity : 0;
+    case Extent::birth_slots:
+      return shape.counts_births ? shape.capacity : 0;
+    case Extent::last:
+      return shape.last;
     case Extent::stores:
       return shape.stores;
     case Extent::more_stores:

@@ -5,8 +5,8 @@
 
 #include "base/device.h"
 #include "base/random.h"
-#include "evolution/reward.h"
 #include "world/chance.h"
+#include "world/channel.h"
 #include "world/population.h"
 #include "world/rule.h"
 #include "world/store.h"
@@ -56,11 +56,9 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
 
 /// One agent's reward for this step, into its rollout, unless a rule pays its species.
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
-  const Species& species = world.species(slot);
-  const int64_t row = world.kept(slot, t);
   if (world.ruled(slot, RuleUse::reward)) return;
-  const float r = reward(species.config->reward, *species.layout, world.genome(slot), reward_inputs(world, slot, t));
-  world.state.reward[slot * int64_t{world.shape->rollout} + row] = r;
+  const float r = own_reward(world, slot);
+  world.state.reward[slot * int64_t{world.shape->rollout} + world.kept(slot, t)] = r;
   world.state.life[slot].reward += r;
 }
 
@@ -181,6 +179,8 @@ HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
 HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
+  for (int32_t i = 0; i < world.head().living_count && world.shape->counts_births; ++i)
+    state.births[state.living[i]] = 0;
   const uint32_t step = static_cast<uint32_t>(world.head().step);
   int32_t parents = 0;
   for (int32_t i = 0; i < world.head().living_count; ++i) {

@@ -51,6 +51,8 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   if (world.shape->hunting) state.digestion[slot] = world.scratch.eaten[slot] = 0;
   if (state.species.count > 0) state.species[slot] = species;
   for (int64_t m = 0; m < world.shape->memory; ++m) state.memory[int64_t{slot} * world.shape->memory + m] = 0.0;
+  for (int64_t i = 0; i < world.shape->last; ++i) state.last[int64_t{slot} * world.shape->last + i] = 0.0f;
+  if (world.shape->counts_births) state.births[slot] = 0;
   for (int64_t a = 0; a < ACTIONS && state.external_action.count > 0; ++a)
     state.external_action[int64_t{slot} * ACTIONS + a] = 0.0f;
   if (world.shape->mating) state.ready_until[slot] = state.mate_id[slot] = -1;
@@ -103,6 +105,7 @@ HEDON_FN void give_child_shares(World& world, int32_t parent, int32_t parents, d
     if (i == ENERGY) world.counters(parent).energy_shared += part;
   }
   world.state.life[parent].children += 1;
+  if (world.shape->counts_births) world.state.births[parent] += 1;
 }
 
 /// A child of `parent`, and of `mate` unless that is -1, at `position`: part of their stores, a genome with mutation,

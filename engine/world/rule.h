@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "base/device.h"
-#include "evolution/reward.h"
 #include "world/chance.h"
 #include "world/channel.h"
 #include "world/neighborhood.h"
@@ -14,43 +13,11 @@
 
 namespace hedon {
 
-/// Euclidean norm of the two forces that the agent in `slot` applied in this step.
-HEDON_FN float applied_force(const World& world, int32_t slot) {
-  const float left = world.scratch.force_left[slot], right = world.scratch.force_right[slot];
-  return sqrtf(left * left + right * right);
-}
-
-/// What the agent in `slot` is paid by, as `RewardInputs` has it; `t` is the step within the window.
-HEDON_FN RewardInputs reward_inputs(const World& world, int32_t slot, int64_t t) {
-  const Species& species = world.species(slot);
-  const PackedObservation& seen = world.observation(slot, world.kept(slot, t));
-  const Life& life = world.state.life[slot];
-  RewardInputs inputs{.eaten = world.meal(slot),
-                      .force = applied_force(world, slot),
-                      .max_force = species.max_force,
-                      .ray = seen.ray,
-                      .ray_type = seen.ray_type,
-                      .rays = species.config->sensor.ray_count,
-                      .smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents],
-                      .noses = species.config->sensor.noses,
-                      .before = world.held_before(slot),
-                      .now = {},
-                      .measure = {},
-                      .age = static_cast<double>(world.head().step + 1 - life.birth_step)};
-  for (int32_t i = 0; i < species.stores(); ++i) {
-    const StoreConfig& store = store_of(*species.config, i);
-    inputs.now[i] = world.held(slot, i);
-    inputs.measure[i] = store.motor_threshold > 0.0f ? store.motor_threshold : store.capacity;
-  }
-  return inputs;
-}
-
 /// What the config itself would give in place of a rule.
-HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use, const RewardInputs& inputs) {
+HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use) {
   switch (use) {
     case RuleUse::reward:
-      return static_cast<double>(
-          reward(world.species(slot).config->reward, *world.species(slot).layout, world.genome(slot), inputs));
+      return static_cast<double>(own_reward(world, slot));
     case RuleUse::hazard:
       return death_chance(world, slot);
     case RuleUse::birth:
@@ -65,12 +32,12 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   const Species& species = world.shape->of[s];
   const SpeciesConfig& config = *species.config;
   const SpeciesLayout& layout = *species.layout;
-  const RewardInputs inputs = reward_inputs(world, slot, world.window_step());
+  const PackedObservation& seen = seen_by(world, slot);
   for (int32_t i = 0; i < layout.terms.count; ++i)
-    *record++ = static_cast<double>(reward_input(config.reward, layout, layout.terms[i], world.genome(slot), inputs));
+    *record++ = static_cast<double>(read_channel(world, slot, seen, layout.terms[i].channel));
   for (int32_t g = 0; g < layout.genes.count; ++g) *record++ = static_cast<double>(world.genome(slot)[g]);
-  for (int32_t i = 0; i < layout.recorded.count; ++i) *record++ = channel_value(world, slot, layout.recorded[i]);
-  *record++ = own_answer(world, slot, use, inputs);
+  for (int32_t i = 0; i < layout.recorded.count; ++i) *record++ = channel_value(world, slot, seen, layout.recorded[i]);
+  *record++ = own_answer(world, slot, use);
   const double* memory = &world.state.memory[int64_t{slot} * world.shape->memory];
   for (int32_t m = 0; m < config.reward.memory; ++m) *record++ = memory[m];
 }

@@ -59,6 +59,8 @@ struct WorldShape {
   int32_t memory;          ///< most numbers that a rule keeps for each agent
   int32_t record;          ///< of the longest record that a rule gets
   int32_t near;            ///< most numbers that answer the queries of a rule about one agent
+  int32_t last;            ///< most numbers of a step that are kept for the next observation
+  bool counts_births;      ///< some species senses, or is paid for, the children that it had
   int32_t scents;          ///< of the longest row of smells: channels times noses
   bool packed;             ///< some species acts with weights in pairs
   bool instinct;           ///< some species passes on the networks that it was born with
@@ -138,6 +140,8 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
     grow(shape.stores, species.stores());
     for (int32_t i = 0; i < layout.needs.count; ++i) shape.gated |= layout.needs[i] > 0.0f;
     grow(shape.scents, layout.smells.count * own.sensor.noses);
+    grow(shape.last, layout.last.count);
+    layout.for_each_channel([&](const Channel& each) { shape.counts_births |= each.source == ChannelSource::births; });
     grow(shape.genes, layout.genes.count);
     grow(shape.params, species.network.size());
     grow(shape.pairs, species.network.pairs());

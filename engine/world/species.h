@@ -95,7 +95,8 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   species.observes = species.has_network;
   species.observes |= layout.has_rule();
   species.record = layout.terms.count + layout.genes.count + layout.recorded.count + 1 + config.reward.memory;
-  for (int32_t i = 0; i < layout.terms.count; ++i) species.observes |= is_sensed(layout.terms[i].input);
+  for (int32_t i = 0; i < layout.terms.count; ++i) species.observes |= is_sensed(layout.terms[i].channel.source);
+  species.observes |= is_sensed(layout.gate.source);
   species.network = {{config.sensor.ray_count, layout.sees.count, layout.touches.count * config.sensor.touch_sectors,
                       layout.observed.count, NARROW_LINES}};
   double sine, cosine;

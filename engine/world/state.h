@@ -154,6 +154,8 @@ struct WorldState {
 
   Array<float> external_action;  // (slots, 2) what the caller told agents to do, before the sigmoid
   Array<double> memory;          // what the rule of its species keeps for each agent
+  Array<float> last;             // (slots, last) what of the last step is observed in the next, before it is scaled
+  Array<int32_t> births;         // children that an agent had in the last step
 
   // Networks and learners, by slot.
   Array<float> params;
@@ -196,6 +198,7 @@ struct WorldState {
                (mate_id, mating_slots, one, saved), (store, store_slots, more_stores, saved),
                (obstacle, obstacles, obstacle_corners, derived), (obstacle_counters, harmed, one, saved),
                (external_action, external_slots, actions, saved), (memory, ruled_slots, memory, saved),
+               (last, last_slots, last, saved), (births, birth_slots, one, saved),
                (params, network_slots, params, saved), (initial_params, instinct_slots, params, saved),
                (folded_bias, network_slots, hidden, derived), (packed_weights, packed_slots, pairs, derived),
                (first_moment, learner_slots, params, saved), (second_moment, learner_slots, params, saved),

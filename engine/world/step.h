@@ -88,6 +88,7 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
   if (world.fault().status != Status::ok) return;
   const auto reward_and_fates = [&](int32_t slot) {
     compute_reward(world, slot, t);
+    keep_last(world, slot);
     draw_births_and_deaths(world, slot);
   };
   if (!world.shape->hunting) {

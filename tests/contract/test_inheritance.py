@@ -156,8 +156,8 @@ def test_mating_is_the_same_over_threads_and_restored():
 
 @pytest.mark.parametrize("gene", [-0.5, 0.0, 0.7])
 def test_the_threshold_may_be_a_gene(gene):
-    """`hungry`: w σ((θ − E)/δ) with θ and δ multiplied by ten to the power of their genes."""
-    settings = ("reward.family=hungry", "reward.threshold=30", "reward.threshold_width=8", "reward.meal_coef=0")
+    """`below`: w σ((θ − E)/δ) with θ and δ multiplied by ten to the power of their genes."""
+    settings = ("reward.family=below", "reward.threshold=30", "reward.threshold_width=8", "reward.meal_coef=0")
     genes = ("genome.family.threshold.initial_sd=0", f"genome.family.threshold.initial_mean={gene}")
     width = ("genome.family.threshold_width.initial_sd=0", "genome.family.threshold_width.initial_mean=0.3")
     weight = ("genome.action.initial_mean=2", "genome.action.initial_sd=0", "reward.action_norm=none")
@@ -180,7 +180,7 @@ def test_the_threshold_may_be_a_gene(gene):
         (["birth.network=learned", "learning.policy=random"], "there is no network to inherit"),
         (["birth.mating=pairs", "population.capacity=1", "population.initial_count=1"], "nobody mates alone"),
         (["genome.family.threshold.initial_sd=0.1"], 'reward.family = "linear" has no threshold'),
-        (["genome.family.treshold.initial_sd=0.1", "reward.family=fed"], "did you mean threshold"),
+        (["genome.family.treshold.initial_sd=0.1", "reward.family=above"], "did you mean threshold"),
     ],
 )
 def test_contradictions_are_refused_by_name(settings, message):

@@ -43,7 +43,7 @@ def test_scaled_weights_are_multiplied_by_a_power_of_ten():
     assert scale == pytest.approx(0.5 * 10**1.2, rel=1e-5)
 
 
-@pytest.mark.parametrize(("family", "sign"), [("fed", 1), ("hungry", -1)])
+@pytest.mark.parametrize(("family", "sign"), [("above", 1), ("below", -1)])
 def test_weights_that_depend_on_energy(family, sign):
     cheap = ("energy.basic_cost=0", "energy.action_cost=0")
     found = weight(2.0, f"reward.family={family}", "reward.threshold=30", "reward.threshold_width=8", *cheap)
@@ -54,7 +54,8 @@ def test_weights_that_change_with_age():
     young, old, turn, width = 1.0, -3.0, 12.0, 4.0
     found = weight(
         young,
-        "reward.family=by_age",
+        "reward.family=between",
+        "reward.gate=age",
         f"genome.second.initial_mean={old}",
         f"reward.threshold={turn}",
         f"reward.threshold_width={width}",
@@ -100,8 +101,9 @@ def test_what_a_birth_takes_is_no_drive_reduction():
 
 
 def test_second_genes_stand_beside_their_weights():
-    for family, ending in (("scaled", "_scale"), ("by_age", "_old")):
-        names = layouts(load_config("baseline", overrides=[f"reward.family={family}"]))["agent"].gene_names
+    by_age = "reward.gate=age"
+    for family, ending, more in (("scaled", "_scale", []), ("between", "_old", [by_age]), ("between", "_above", [])):
+        names = layouts(load_config("baseline", overrides=[f"reward.family={family}", *more]))["agent"].gene_names
         assert names[:4] == ("w_normal", f"w_normal{ending}", "w_action", f"w_action{ending}")
 
 
@@ -170,7 +172,9 @@ def test_wrong_names_are_refused(setting, message):
 
 def test_two_genes_cannot_have_one_name():
     with pytest.raises(ConfigError, match="two genes would have the name w_normal_old"):
-        load_config("baseline", overrides=["reward.family=by_age", "food.normal_old.gives.energy=1"])
+        load_config(
+            "baseline", overrides=["reward.family=between", "reward.gate=age", "food.normal_old.gives.energy=1"]
+        )
 
 
 def test_genes_cannot_set_the_learning_of_who_does_not_learn():

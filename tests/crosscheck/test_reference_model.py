@@ -138,7 +138,7 @@ JUDGED_ELSEWHERE = {
 """Settings that no case of the model judges, and why."""
 
 
-NAMED = ("food", "store", "neighbor", "see", "smell", "schedule", "mutation", "family", "learning", "extra")
+NAMED = ("food", "store", "neighbor", "see", "smell", "pay", "schedule", "mutation", "family", "learning", "extra")
 """Sections whose parts users name."""
 
 
@@ -149,6 +149,8 @@ def general(path: str) -> str:
         parts = parts[2:]
     if parts[0] == "food" and parts[2] in ("gives", "needs"):
         parts = parts[:3]
+    if parts[:2] == ["sensor", "observes"]:
+        parts = parts[:2]
     for i, part in enumerate(parts[:-1]):
         if part in NAMED and i + 2 < len(parts):
             parts[i + 1] = "<kind>"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from reference.channel import kept_names
 from reference.draw import normals, uniform
 from reference.heredity import mutated, recombined
 from reference.place import overlaps
@@ -23,6 +24,8 @@ def is_free(rules: Rules, world: World, x: float, y: float, radius: float) -> bo
 
 def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Turn], None]) -> None:
     """Those whose draw made them parents have their turn in random order. `has_given` is told who gave energy."""
+    for agent in world.agents:
+        agent.births = 0
     here = {agent.agent_id for agent in world.agents}
     turn_of = {turn.agent.agent_id: turn for turn in turns if turn.agent.agent_id in here}
     parents = [turn for turn in turn_of.values() if turn.breeds]
@@ -89,6 +92,7 @@ def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, f
             store[name] += part * parent.store[name]
             parent.store[name] *= 1 - part
         parent.children += 1
+        parent.births = (parent.births or 0) + 1
         parent.ready_until = -1
     vacancy = world.vacancies[species.number].pop()
     child = Agent(
@@ -105,6 +109,7 @@ def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, f
         birth_step=world.step + 1,
         eaten=[0] * len(first.eaten),
         memory=memory_of(species),
+        last=[0.0] * len(kept_names(species)),
         birth_energy=energy,
         resident_slot=vacancy.resident_slot,
     )

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from reference.birth import breed, is_free, open_window
 from reference.chance import factor_at
+from reference.channel import channel, kept_names
 from reference.draw import fine_uniform, normals, uniform
 from reference.heredity import first_genome
 from reference.meal import eat, hunt
@@ -71,6 +72,7 @@ class Model:
             {name: store.initial for name, store in species.store.items()},
             eaten=[0] * meals,
             memory=memory_of(species),
+            last=[0.0] * len(kept_names(species)),
             birth_energy=species.energy.initial,
             resident_slot=self.rules.resident_slots_only,
         )
@@ -88,6 +90,8 @@ class Model:
         for turn in turns:
             rewards[turn.agent.agent_id] = self.book.reward(world, turn)
             turn.agent.reward += rewards[turn.agent.agent_id]
+            names = kept_names(rules.of(turn.agent))
+            turn.agent.last = [channel(rules, world, turn, name) for name in names]
         for turn in turns:
             self.draw_fate(world, turn)
         outcome = Outcome(world, turns, rewards, [], [])

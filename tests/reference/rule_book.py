@@ -33,7 +33,7 @@ class RuleBook:
 
     def reward(self, world: World, turn: Turn) -> float:
         """What an agent is paid; its rule may change its memory."""
-        plain, function = reward(self.rules, turn, world.step), self.found[turn.agent.species]["reward"]
+        plain, function = reward(self.rules, world, turn), self.found[turn.agent.species]["reward"]
         if function is None:
             return plain
         record = self.record(world, turn, linear=plain)
@@ -55,7 +55,9 @@ class RuleBook:
     def record(self, world: World, turn: Turn, **answer: float) -> SimpleNamespace:
         """What a rule is told: the table of docs/guide/rule.md."""
         agent, start, species = turn.agent, turn.start, self.rules.of(turn.agent)
-        told = inputs(self.rules, turn) | dict(zip(species.genes, map(float, agent.genome), strict=True)) | answer
+        told = (
+            inputs(self.rules, world, turn) | dict(zip(species.genes, map(float, agent.genome), strict=True)) | answer
+        )
         told |= {"age": world.step + 1 - agent.birth_step, "step": world.step, "x": agent.x, "y": agent.y}
         told |= agent.held | {f"{name}_before": held for name, held in start.held.items()}
         told["moved"] = math.hypot(agent.x - start.x, agent.y - start.y)

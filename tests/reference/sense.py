@@ -3,8 +3,9 @@
 import math
 
 import numpy as np
-from reference.setting import Rules, Species
-from reference.state import Agent, World
+from reference.channel import channel, is_of_step, kept_names
+from reference.setting import Rules
+from reference.state import Agent, Turn, World
 
 
 def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
@@ -33,13 +34,21 @@ def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
     return smelled
 
 
-def body_sense(species: Species, agent: Agent, motion: tuple[float, float, float], smelled: np.ndarray) -> list[float]:
-    """The observation after rays and touch; `motion` is the velocity along x and y, and the angular velocity."""
-    vx, vy, spin = motion
+def body_sense(rules: Rules, world: World, turn: Turn) -> list[float]:
+    """The observation after rays and touch. In `turn` an agent has done nothing yet."""
+    agent, species = turn.agent, rules.of(turn.agent)
+    vx, vy, spin = turn.deed.motion
+    sensor = species.sensor
     held = {name: (agent.held[name], store.scale) for name, store in species.stores.items() if store.observed}
-    if species.sensor.scaling == "raw":
+    if sensor.scaling == "raw":
         own = [vx, vy, agent.angle, spin, *(amount for amount, _ in held.values())]
     else:
-        heading = [math.sin(agent.angle), math.cos(agent.angle)]
-        own = [vx / 1.5, vy / 1.5, *heading, spin / 0.2, *(amount / scale for amount, scale in held.values())]
-    return [*own, *smelled.ravel()]
+        speed, heading = sensor.velocity_scale, [math.sin(agent.angle), math.cos(agent.angle)]
+        own = [vx / speed, vy / speed, *heading, spin / sensor.angular_velocity_scale]
+        own += [amount / scale for amount, scale in held.values()]
+    last = dict(zip(kept_names(species), agent.last, strict=True))
+    more = [
+        (last[name] if is_of_step(name) else channel(rules, world, turn, name)) / scale
+        for name, scale in sensor.observes.items()
+    ]
+    return [*own, *turn.smelled.ravel(), *more]

@@ -72,6 +72,7 @@ class Species:
             "action": genome.action,
             **{f"see_{each}": see.gene for each, see in reward.see.items()},
             **{f"smell_{each}": smell.gene for each, smell in reward.smell.items()},
+            **{each: pay.gene for each, pay in reward.pay.items()},
         }
         if gene.startswith("neutral_"):
             return genome.neutral

@@ -34,6 +34,8 @@ class Agent:
     generation: int = 0
     birth_step: int = 0
     children: int = 0
+    births: int | None = 0
+    """Children that it had in the last step; None where the engine does not count them."""
     eaten: list[int] = field(default_factory=list)
     """Foods of each kind, then agents of each species."""
     digestion: int = 0
@@ -41,6 +43,8 @@ class Agent:
     ready_until: int = -1
     """Last step in which it waits for a second parent."""
     memory: list[float] = field(default_factory=list)
+    last: list[float] = field(default_factory=list)
+    """What of the last step it observes in the next one."""
     birth_energy: float = 0.0
     energy_gained: float = 0.0
     energy_spent: float = 0.0
@@ -125,7 +129,10 @@ class Deed:
     prey        ids of the agents that its mouth touched and that it may eat
     obstacles   those that it touched, by their numbers
     seen        (rays, types that it sees) what it acted on
-    gone        it was eaten, and where it ended is not known: of several in a mouth it was the nearest
+    motion      its velocity along x and y, and its angular velocity; where it ended, as the place
+    felt        bit channel · sectors + sector of what it touched
+    replaced    it died, and a newborn lies in its slot: where it ended is not known
+    gone        it was eaten, and replaced: of several in a mouth it was the nearest
     """
 
     action: tuple[float, float]
@@ -136,6 +143,9 @@ class Deed:
     prey: list[int]
     obstacles: list[int]
     seen: np.ndarray
+    motion: tuple[float, float, float]
+    felt: int
+    replaced: bool = False
     gone: bool = False
 
 

@@ -3,6 +3,7 @@
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER
 from reference_case.obstacle import OBSTACLES
+from reference_case.reward import REWARDS
 from reference_case.ruled import RULED
 from two_stores import STORES
 
@@ -246,32 +247,6 @@ HEREDITY = {
     ),
 }
 
-FAMILIES = {
-    "families": Case(
-        "families of rewards: sinh, scaled, hungry and fed, two with genes of their thresholds",
-        (
-            *("population.capacity=12", "population.initial_count=10", "reward.action_coef=0.5"),
-            *each(
-                "curved", 'reward.family="sinh"', "reward.see.normal.coef=0.1", "reward.see.normal.gene.initial_sd=1"
-            ),
-            *each("power", 'reward.family="scaled"', "genome.second.initial_sd=0.5", "genome.second.initial_mean=0.2"),
-            *each("hungry", 'reward.family="hungry"', "reward.threshold=2", "reward.threshold_width=1"),
-            *each("hungry", "genome.family.threshold.initial_sd=0.3", "genome.family.threshold_width.initial_mean=0.2"),
-            *each("fed", 'reward.family="fed"', "reward.threshold=3", "genome.family.threshold_width.initial_sd=0.4"),
-            *each("fed", "reward.threshold_width=0.5", "genome.family.threshold.initial_mean=-0.2"),
-        ),
-        {"births": 12, "eaten": 10},
-    ),
-    "by age": Case(
-        "weights that change with age; gains by meals count double",
-        (
-            *('reward.family="by_age"', "reward.threshold=20", "reward.threshold_width=5", "reward.meal_coef=2"),
-            *("genome.second.initial_sd=1", "genome.action.initial_sd=1", "reward.action_coef=0.4"),
-        ),
-        {"births": 20, "eaten": 10},
-    ),
-}
-
 POLICIES = {
     "policies": Case(
         "agents that act at random, not at all, as they are told, or by networks that never learn",
@@ -346,7 +321,7 @@ COMBINED = {
             ),
             *each("hunter", 'diet.eats=[["grazer", 0.7], ["hunter", 0.3], ["fruit", 0.5]]', "body.radius=13"),
             *each("hunter", "diet.digestion_steps=3", 'sensor.smells=["grazer", "fruit"]', "sensor.noses=2"),
-            *each("hunter", "reward.smell.grazer.coef=0.4", 'reward.family="hungry"', "reward.threshold=3"),
+            *each("hunter", "reward.smell.grazer.coef=0.4", 'reward.family="below"', "reward.threshold=3"),
             *each("hunter", "population.capacity=14", "population.initial_count=9", 'energy.at_zero="death"'),
             *each("drifter", 'learning.policy="random"', 'body.collides=["grazer", "hunter"]', "diet.eats=[]"),
             *each("drifter", "population.capacity=8", "population.initial_count=5", 'genome.mutation_law="normal"'),
@@ -373,4 +348,4 @@ COMBINED = {
     ),
 }
 
-CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | FAMILIES | RULED | POLICIES | FOOD | COMBINED
+CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | REWARDS | RULED | POLICIES | FOOD | COMBINED

@@ -105,6 +105,41 @@ class SensorConfig:
         OURS,
         derived=True,
     )
+    velocity_scale: float = setting(
+        1.5,
+        'what the observed velocity is divided by with scaling = "unit"',
+        "u/s",
+        OURS + ": little above what full thrust reaches",
+        ge=1e-3,
+        le=1e6,
+        derived=True,
+    )
+    angular_velocity_scale: float = setting(
+        0.2,
+        'what the observed angular velocity is divided by with scaling = "unit"',
+        "rad/s",
+        OURS + ": little above what a full turn reaches",
+        ge=1e-3,
+        le=1e6,
+        derived=True,
+    )
+    observes: dict[str, float] = setting(
+        {},
+        "channels that it observes beside all that is said above, each with what it is divided by (guide/reward.md)",
+        "",
+        OURS,
+        each=(1e-6, 1e6),
+        derived=True,
+    )
+    season_period: int = setting(
+        0,
+        "steps of the year whose time season_sine and season_cosine tell; 0: of the first schedule with a period",
+        "step",
+        OURS,
+        ge=0,
+        le=10**9,
+        derived=True,
+    )
     ray_inside: Literal["hit", "behind"] = setting(
         "hit",
         "what a ray reads that starts inside another body or beyond a wall: that object at distance 0, or what "

@@ -1,36 +1,103 @@
 """Channels: what can be known of an agent in a step, one number each.
 
-What an agent observes beside rays and touch, and what a rule of the caller gets, are lists of channels. The engine gets
-them as data and reads all of them in one function, `channel_value` in `engine/world/channel.h`.
+What an agent observes beside rays and touch, what it is paid for, what opens the gate of its reward, and what a rule of
+the caller gets, are lists of channels. The engine gets them as data and reads all of them in one function,
+`channel_value` in `engine/world/channel.h`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hedon.config.neighbor import NUMBERS
+from hedon.config.settings import Settings
 from hedon.config.species import SpeciesConfig
 from hedon.config.store import ENERGY
+from hedon.config.type import chosen, diet, smelled
 
-SOURCES = {
-    "velocity": "velocity along x, along y [u/s]",
-    "angle": "heading, 0 along y, not wrapped [rad]",
-    "heading": "sine and cosine of the heading at the start of the step",
-    "angular_velocity": "angular velocity [rad/s]",
-    "store": "what it holds of a store",
-    "store_before": "the same, before the meals and costs of the step",
-    "smell": "what a nose smells of a source, in [0, 1]",
-    "age": "steps lived, the present one included",
-    "moved": "distance moved in the step [u]",
-    "nearness": "mean reading of its rays, 0 for those that met nothing",
-    "force": "force of the left, of the right motor [mass·u/s²]",
-    "position": "place along x, along y [u]",
-    "step": "the step of the world",
-    "alive": "living agents of its species",
-    "neighbor": "what a query of its rules found, by query",
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where the engine reads channels.
+
+    Attributes:
+        name: Of its channels; `{}` stands for what there are several of.
+        meaning: The same as a phrase.
+        unit: Of its numbers.
+        of: What there are several of: names, or a word of `SEVERAL`.
+        of_step: Whether it is known only when a step is done: who observes it gets that of the step before.
+    """
+
+    name: str
+    meaning: str
+    unit: str = "1"
+    of: str | tuple[str, ...] = ("",)
+    of_step: bool = False
+
+    @property
+    def several(self) -> str:
+        """What there are several of, as the engine calls it: a word, or "one" or "two" of them."""
+        return self.of if isinstance(self.of, str) else ("one", "two")[len(self.of) - 1]
+
+
+SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
+    "stores": (("<store>",), "of each store, energy too"),
+    "kinds": (("<kind>",), "of each species and each kind of food"),
+    "meals": (("<meal>",), "of each kind of food and each species that it eats"),
+    "sees": (("<type>",), "of each type that it sees"),
+    "smells": (("<type>",), "of each type that it smells"),
+    "noses": (("<type>_<nose>",), "of each type that it smells, and each nose from 0 on"),
+    "touches": (("<type>",), "of each type that it collides with"),
+    "season": (("sine", "cosine"), "where a schedule has a period, or with sensor.season_period"),
+    "queries": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query, for rules alone"),
+    "harm": (("",), "where there are obstacles"),
+    "mates": (("",), 'with birth.mating = "pairs"'),
+    "drive": (("",), "with reward.drive_reduction_coef"),
 }
-"""Where the engine reads a channel, with its meaning. What a source has several of, `Channel.index` counts."""
-VELOCITY_SCALE, ANGULAR_VELOCITY_SCALE = 1.5, 0.2
-"""Divisors of observed velocities [u/s] and angular velocities [rad/s] where each part is scaled to about 1."""
+"""Words for what sources have several of, or only sometimes: how it shows in names, and where it is."""
+SOURCES = {
+    "velocity": Source("velocity_{}", "velocity along {}", "u/s", ("x", "y")),
+    "angle": Source("heading", "heading, 0 along y, not wrapped", "rad"),
+    "heading": Source("heading_{}", "{} of the heading at the start of the step", of=("sine", "cosine")),
+    "angular_velocity": Source("angular_velocity", "angular velocity", "rad/s"),
+    "store": Source("{}", "{} that it holds", "amount", "stores"),
+    "store_before": Source("{}_before", "{} before the meals and costs of the step", "amount", "stores", True),
+    "store_change": Source("{}_change", "change of {} by the meals and costs of the step", "amount", "stores", True),
+    "meals": Source("eaten_{}", "pieces or agents of {} eaten in the step", of="meals", of_step=True),
+    "damage": Source("damage", "energy that obstacles took in the step", "energy", "harm", True),
+    "see_mean": Source("see_{}", "mean over the rays of what they read of {}, in [0, 1]", of="sees"),
+    "see_max": Source("see_{}_max", "the largest that a ray reads of {}, in [0, 1]", of="sees"),
+    "nearness": Source("nearness", "mean reading of the rays, 0 for those that met nothing"),
+    "smell": Source("smell_{}", "smell of {}, with the number of the nose, in [0, 1]", of="noses"),
+    "smell_mean": Source("smell_{}", "mean over the noses of the smell of {}, in [0, 1]", of="smells"),
+    "contacts": Source("contacts_{}", "touch sectors that feel {}", of="touches"),
+    "touched": Source("touched", "touch sectors that feel anything"),
+    "effort": Source("effort", "norm of the forces of both motors, as a share of its largest", of_step=True),
+    "force": Source("force_{}", "force of the {} motor", "mass·u/s²", ("left", "right"), True),
+    "force_norm": Source("force", "norm of the forces of both motors", "mass·u/s²", of_step=True),
+    "moved": Source("moved", "distance moved in the step", "u", of_step=True),
+    "position": Source("{}", "place of its center along {}", "u", ("x", "y")),
+    "age": Source("age", "steps lived, the present one included", "step"),
+    "births": Source("births", "children that it had at the end of the step before"),
+    "waits": Source("waits", "1 while it waits for a second parent", of="mates"),
+    "drive_reduction": Source(
+        "drive_reduction", "how much closer to their set points the step brought its stores", of="drive", of_step=True
+    ),
+    "season": Source("season_{}", "{} of the time of the year", of="season"),
+    "step": Source("step", "steps that the world had done before the present one", "step"),
+    "alive": Source("alive", "living agents of its species"),
+    "neighbor": Source("{}", "{} as a query of rules found it", of="queries", of_step=True),
+    "one": Source("one", "1 in every step"),
+}
+"""Where the engine reads channels, by its names of the sources."""
+QUERY = "neighbor"
+"""The source of what queries found, which is known to rules alone: they are answered when rewards have been paid."""
+LAST = "last"
+"""The source of what was known of the step before: the engine keeps it for the next observation."""
+RECORDED = (
+    *(("age", 0), ("store_before", 0), ("store", 0), ("moved", 0), ("nearness", 0), ("force", 0), ("force", 1)),
+    *(("position", 0), ("position", 1), ("step", 0), ("alive", 0)),
+)
+"""What a rule gets of every agent beside its reward's inputs, its genes, its memory and its other stores, by source."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +106,12 @@ class Channel:
 
     Attributes:
         name: Its column.
-        source: One of `SOURCES`.
+        source: One of `SOURCES`, or `LAST`.
         index: Which number of the source.
         scale: The number is divided by this.
         place: The path of the scale in the species, "" where no setting says it.
+        meaning: What it is, as a phrase.
+        unit: Of the number, before it is divided.
     """
 
     name: str
@@ -50,42 +119,129 @@ class Channel:
     index: int = 0
     scale: float = 1.0
     place: str = ""
+    meaning: str = ""
+    unit: str = "1"
+
+    @property
+    def of_step(self) -> bool:
+        """Whether it is known only when a step is done."""
+        return self.source != LAST and SOURCES[self.source].of_step
 
 
-def observed_channels(species: SpeciesConfig, smells: Sequence[str]) -> tuple[Channel, ...]:
-    """What a species observes beside rays and touch, in order: model page, section 5.
+Channels = dict[tuple[str, int], Channel]
+"""All channels of a species, each by its source and which number of it that is, in the order of `SOURCES`."""
+
+
+def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
+    """Every channel of a species. Two can have one name, where kinds or stores are called so.
 
     Args:
-        species: with its stores.
-        smells: names of what it smells.
+        config: with what the species shares with others.
+        species: one of the config's.
     """
-    sensor = species.sensor
-    raw = sensor.scaling == "raw"
-    scale, spin = (1.0, 1.0) if raw else (VELOCITY_SCALE, ANGULAR_VELOCITY_SCALE)
-    heading = [Channel("heading", "angle")]
-    if not raw:
-        heading = [Channel("heading_sine", "heading", 0), Channel("heading_cosine", "heading", 1)]
-    return (
-        Channel("velocity_x", "velocity", 0, scale),
-        Channel("velocity_y", "velocity", 1, scale),
-        *heading,
-        Channel("angular_velocity", "angular_velocity", 0, spin),
-        *(
-            Channel(name, "store", i)
-            if raw
-            else Channel(name, "store", i, store.scale, f"{'' if name == ENERGY else 'store.'}{name}.scale")
-            for i, (name, store) in enumerate(species.stores.items())
-            if store.observed
+    eaten, smells = diet(config, species), smelled(config, species.sensor.smells)
+    names: dict[str, Sequence[str | None]] = {
+        "stores": tuple(species.stores),
+        "kinds": (*config.species, *config.food),
+        "meals": [name if name in eaten else None for name in (*config.food, *config.species)],
+        "sees": chosen(config, species.sensor.sees),
+        "smells": smells,
+        "noses": [f"{name}_{nose}" for name in smells for nose in range(species.sensor.noses)],
+        "touches": chosen(config, species.body.collides),
+        "season": ("sine", "cosine") if season_place(config, species) else (),
+        "queries": [f"{name}_{number}" for name in species.neighbor for number in NUMBERS],
+        "harm": ("",) * (config.obstacle.count > 0),
+        "mates": ("",) * (species.birth.mating == "pairs"),
+        "drive": ("",) * (species.reward.drive_reduction_coef != 0),
+    }
+    return {
+        (key, i): Channel(source.name.format(each), key, i, meaning=source.meaning.format(each), unit=source.unit)
+        for key, source in SOURCES.items()
+        for i, each in enumerate(names[source.of] if isinstance(source.of, str) else source.of)
+        if each is not None
+    }
+
+
+def season_place(config: Settings, species: SpeciesConfig) -> str:
+    """Where the length of a year stands: in the species, or else in the config with the first schedule that repeats.
+
+    Returns:
+        A path in the config if it begins with "food." or "obstacle.", else one in the species; "" for no year.
+
+    Args:
+        config: with what the species shares with others.
+        species: one of the config's.
+    """
+    if species.sensor.season_period:
+        return "sensor.season_period"
+    owners = [(f"food.{kind}", food.schedule) for kind, food in config.food.items()]
+    owners += [("hazard", species.hazard.schedule), ("obstacle", config.obstacle.schedule)]
+    return next(
+        (
+            f"{path}.schedule.{name}.period"
+            for path, schedules in owners
+            for name, schedule in schedules.items()
+            if schedule.period
         ),
-        *(
-            Channel(f"smell_{name}_{nose}", "smell", i * sensor.noses + nose)
-            for i, name in enumerate(smells)
-            for nose in range(sensor.noses)
-        ),
+        "",
     )
 
 
-def recorded_channels(species: SpeciesConfig) -> tuple[Channel, ...]:
+def called(known: Channels, name: str) -> list[Channel]:
+    """The channels of a name: one, unless it is not known, or kinds or stores make two of them.
+
+    Args:
+        known: all channels of a species.
+        name: as a user gives it.
+    """
+    return [channel for channel in known.values() if channel.name == name and channel.source != QUERY]
+
+
+def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
+    """What a species observes beside rays and touch without `sensor.observes`, in order: model page, section 5.
+
+    Args:
+        species: with its stores.
+        known: all its channels.
+    """
+    sensor, raw = species.sensor, species.sensor.scaling == "raw"
+
+    def scaled(source: str, index: int, scale: float, place: str) -> Channel:
+        channel = known[source, index]
+        return channel if raw else replace(channel, scale=scale, place=place)
+
+    return (
+        *(scaled("velocity", axis, sensor.velocity_scale, "sensor.velocity_scale") for axis in (0, 1)),
+        *([known["angle", 0]] if raw else [known["heading", 0], known["heading", 1]]),
+        scaled("angular_velocity", 0, sensor.angular_velocity_scale, "sensor.angular_velocity_scale"),
+        *(
+            scaled("store", i, store.scale, f"{'' if name == ENERGY else 'store.'}{name}.scale")
+            for i, (name, store) in enumerate(species.stores.items())
+            if store.observed
+        ),
+        *(channel for channel in known.values() if channel.source == "smell"),
+    )
+
+
+def observed_channels(species: SpeciesConfig, known: Channels) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
+    """What a species observes beside rays and touch, in order, and what of a step is kept for it until the next.
+
+    Args:
+        species: with its stores.
+        known: all its channels.
+    """
+    added: list[Channel] = []
+    last: list[Channel] = []
+    for name, scale in species.sensor.observes.items():
+        (channel,) = called(known, name)
+        if channel.of_step:
+            last.append(channel)
+            channel = replace(channel, source=LAST, index=len(last) - 1)
+        added.append(replace(channel, scale=scale, place=f"sensor.observes.{name}"))
+    return (*plain_channels(species, known), *added), tuple(last)
+
+
+def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
     """What a rule gets of every agent beside its reward's inputs, its genes and its memory, in order.
 
     Where there are other stores than energy, each is there as it was at the start of the step and as it is; then what
@@ -93,27 +249,7 @@ def recorded_channels(species: SpeciesConfig) -> tuple[Channel, ...]:
 
     Args:
         species: with its stores and its queries.
+        known: all its channels.
     """
-    return (
-        Channel("age", "age"),
-        Channel("energy_before", "store_before"),
-        Channel("energy", "store"),
-        Channel("moved", "moved"),
-        Channel("nearness", "nearness"),
-        Channel("force_left", "force", 0),
-        Channel("force_right", "force", 1),
-        Channel("x", "position", 0),
-        Channel("y", "position", 1),
-        Channel("step", "step"),
-        Channel("alive", "alive"),
-        *(
-            channel
-            for i, name in enumerate(species.store, 1)
-            for channel in (Channel(f"{name}_before", "store_before", i), Channel(name, "store", i))
-        ),
-        *(
-            Channel(f"{name}_{number}", "neighbor", i * len(NUMBERS) + n)
-            for i, name in enumerate(species.neighbor)
-            for n, number in enumerate(NUMBERS)
-        ),
-    )
+    stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
+    return (*(known[each] for each in RECORDED), *stores, *(each for each in known.values() if each.source == QUERY))

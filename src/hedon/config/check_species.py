@@ -4,26 +4,19 @@ import math
 import re
 from collections.abc import Sequence
 
+from hedon.config.channel import called, known_channels, plain_channels
+from hedon.config.evolution import GATED
 from hedon.config.field import leaves, value_at
-from hedon.config.layout import (
-    SOLID,
-    Gene,
-    chosen,
-    diet,
-    layout_of,
-    rule_columns,
-    smelled,
-    store_columns,
-)
+from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
 from hedon.config.problem import Check, nearest, single
 from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_QUERIES, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
 from hedon.config.store import ENERGY
+from hedon.config.type import SOLID, chosen, diet, smelled
+from hedon.text import brief
 
-THRESHOLDS = ("fed", "hungry", "by_age")
-"""Families of rewards that have a threshold."""
 RESERVED_STORES = (
     *("energy", "age", "reward", "children", "generation", "distance", "eaten", "genome", "cause", "species", "step"),
     *("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity", "heading", "heading_sine", "heading_cosine"),
@@ -51,6 +44,7 @@ def check_species(check: Check) -> None:
         _for_rules(check, config, species, path)
         before = len(check.problems)
         _sight(check, config, species, path)
+        _channels(check, config, species, path)
         if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
             _genes(check, config, species, path)
             _rules(check, config, name, path)
@@ -136,6 +130,10 @@ def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -
     smells = len(smelled(config, species.sensor.smells))
     rule = f"must name at most {most} with sensor.noses = {noses} and {observed} stores that it observes"
     check.need(smells <= most, f"{path}sensor.smells", rule)
+    if smells <= most:
+        most = MAX_OBSERVED - observed - smells * noses
+        rule = f"must have at most {most} channels beside {observed} stores and {smells * noses} smells"
+        check.need(len(species.sensor.observes) <= most, f"{path}sensor.observes", rule)
 
 
 def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) -> None:
@@ -168,7 +166,8 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
         check.match(f"({RULE_PATTERN})?", place, "must be FILE.py:NAME, a Python file and a function in it")
         columns = rule_columns(config, name, use) if rule else ()
         for column in {each for each in columns if columns.count(each) > 1}:
-            check.need(False, place, f"two things that it reads are called {column}: rename a food or a query")
+            rule = f"two things that it reads are called {column}: rename a food, a query or a term of reward.pay"
+            check.need(False, place, rule)
     check.need(
         not reward.memory or bool(reward.rule), f"{path}reward.memory", "is kept by a rule: give reward.rule too"
     )
@@ -188,10 +187,35 @@ def _sight(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
             check.add(f"{path}reward.smell.{name}", rule, nearest(name, smells))
 
 
+def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
+    """Whoever names a channel names one that there is."""
+    known, reward = known_channels(config, species), species.reward
+    names = list(dict.fromkeys(channel.name for channel in known.values()))
+
+    def need(name: str, place: str) -> None:
+        count = len(called(known, name))
+        if count == 0:
+            year = "; sensor.season_period gives a year where no schedule does" if name.startswith("season_") else ""
+            rule = f"there is no channel {brief(name)!r} here{year}; there are " + ", ".join(names)
+            check.add(place, rule, nearest(name, names))
+        elif count > 1:
+            check.add(place, f"{count} channels are called {name}: rename a food, a species or a store")
+
+    need(reward.gate, f"{path}reward.gate")
+    for name, pay in reward.pay.items():
+        if not re.fullmatch(NAME, name):
+            check.add(f"{path}reward.pay.{name}", NAME_RULE)
+        need(pay.channel or name, f"{path}reward.pay.{name}" + (".channel" if pay.channel else ""))
+    observed = [channel.name for channel in plain_channels(species, known)]
+    for name in species.sensor.observes:
+        need(name, f"{path}sensor.observes.{name}")
+        check.need(name not in observed, f"{path}sensor.observes.{name}", "it observes this already")
+
+
 def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
     genome, learning, family = species.genome, species.learning, species.reward.family
-    if genome.family and family not in THRESHOLDS:
-        rule = f'reward.family = "{family}" has no threshold: ' + ", ".join(THRESHOLDS) + " have one"
+    if genome.family and family not in GATED:
+        rule = f'reward.family = "{family}" has no threshold: ' + ", ".join(GATED) + " have one"
         check.add(f"{path}genome.family", rule)
     if genome.learning and learning.policy != "ppo":
         rule = f'learning.policy = "{learning.policy}": there is no learning that genes could set'
@@ -206,7 +230,9 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
     if len(names) > MAX_GENES:
         check.add(f"{path}genome", f"there must be at most {MAX_GENES} genes, not {len(names)}")
     for gene in {each for each in names if names.count(each) > 1}:
-        check.add(f"{path}genome", f"two genes would have the name {gene}: rename a food or a species")
+        check.add(
+            f"{path}genome", f"two genes would have the name {gene}: rename a food, a species or what reward.pay has"
+        )
     for gene in genome.mutation.keys() - set(names):
         rule = "there is no such gene: there are " + ", ".join(names)
         check.add(f"{path}genome.mutation.{gene}", rule, nearest(gene, names))

@@ -5,13 +5,14 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from hedon.config.arena import outer_count, walls
-from hedon.config.channel import Channel
+from hedon.config.channel import Channel, season_place
 from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
-from hedon.config.layout import Gene, diet, layout_of, set_point_of, types
+from hedon.config.layout import Gene, layout_of, set_point_of
 from hedon.config.life import distance_sd
 from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
+from hedon.config.type import diet, types
 
 if TYPE_CHECKING:
     import numpy as np
@@ -144,16 +145,18 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         "set_points": [gene.get(set_point_of(state), -1) for state in layout.stores],
         "terms": [
             {
-                "input": term.input,
-                "index": term.index,
-                "gene": gene[term.gene],
-                "second_gene": gene[term.second_gene],
+                "channel": _channel(path, term.channel),
+                "gene": gene.get(term.gene, -1),
+                "second_gene": gene.get(term.second_gene, -1),
                 "coef": _Path(path + term.place),
             }
             for term in layout.terms
         ],
         "observed": [_channel(path, each) for each in layout.observed],
+        "last": [_channel(path, each) for each in layout.last],
         "recorded": [_channel(path, each) for each in layout.recorded],
+        "gate": _channel(path, layout.gate),
+        "season_period": _season(config, path, species),
         "neighbors": [
             {
                 "species": sum(1 << i for i, each in enumerate(config.species) if {each, EVERYTHING} & {*query.of}),
@@ -162,6 +165,11 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
             for asked, query in species.neighbor.items()
         ],
     }
+
+
+def _season(config: Config, path: str, species: SpeciesConfig) -> Any:
+    place = season_place(config, species)
+    return _Path(place if place.startswith(("food.", "obstacle.")) else path + place) if place else 0
 
 
 def _channel(path: str, channel: Channel) -> dict[str, Any]:

@@ -17,6 +17,8 @@ FAMILY_GENES = {
     "threshold_width": "power of ten by which the width of that threshold differs",
 }
 """What of the family of a reward a gene may set, with what the gene is."""
+GATED = ("above", "below", "between")
+"""Families of rewards that have a gate, with a threshold."""
 OF_ALL_GENES = {
     "law": "mutation_law",
     "scale": "mutation_scale",
@@ -113,22 +115,39 @@ class SmellConfig:
 
 
 @dataclass(frozen=True, slots=True)
-class RewardConfig:
-    """Reward: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·sensed + drive reduction.
+class PayConfig:
+    """A term of the reward for any channel, by the name of the term: coef·weight·channel. Its gene is `w_NAME`."""
 
-    How a weight follows from its genes is the family. With x = (energy or age - threshold) / threshold_width and
-    σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `fed` w·σ(x) and `hungry`
-    w·σ(-x) of energy; `by_age` w + (w' - w)·σ(x) of age with a second gene w'.
+    channel: str = setting(
+        "",
+        "what is paid for: the name of a channel (guide/reward.md). Empty for the one that is called as the term",
+        "",
+        OURS,
+    )
+    coef: float = setting(1.0, "factor of the term", "", OURS, ge=-1e3, le=1e3)
+    gene: GeneConfig = section(GeneConfig)
+
+
+@dataclass(frozen=True, slots=True)
+class RewardConfig:
+    """Reward: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·channel + drive reduction.
+
+    How a weight follows from its genes is the family. With x = (gate - threshold) / threshold_width and
+    σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `above` w·σ(x) and
+    `below` w·σ(-x); `between` w + (w' - w)·σ(x) with a second gene w'. The gate is a channel.
     """
 
-    family: Literal["linear", "sinh", "scaled", "fed", "hungry", "by_age"] = setting(
+    family: Literal["linear", "sinh", "scaled", "above", "below", "between"] = setting(
         "linear", "how a weight follows from its genes", "", PAPER + "; the others are ours", shapes=True
     )
+    gate: str = setting(
+        "energy", "the channel of which above, below and between read the threshold (guide/reward.md)", "", OURS
+    )
     threshold: float = setting(
-        50.0, "energy, or age in steps, around which weights change", "energy or step", OURS, ge=0, le=1e6
+        50.0, "value of the gate around which weights change", "that of the gate", OURS, ge=-1e6, le=1e6
     )
     threshold_width: float = setting(
-        10.0, "how wide the change around the threshold is", "energy or step", OURS, gt=0, le=1e6
+        10.0, "how wide the change around the threshold is", "that of the gate", OURS, gt=0, le=1e6
     )
     meal_coef: float = setting(
         1.0,
@@ -152,7 +171,11 @@ class RewardConfig:
     )
     action_coef: float = setting(0.01, "factor of the action term", "", EITHER, ge=-1e3, le=1e3, derived=True)
     action_norm: Literal["max_force", "none"] = setting(
-        "max_force", "what |force| is divided by: its largest value, or nothing", "", CODE + '; the paper prints "none"'
+        "max_force",
+        "what |force| is divided by: its largest value, or nothing",
+        "",
+        CODE + '; the paper prints "none"',
+        derived=True,
     )
     rule: str = setting(
         "",
@@ -166,3 +189,4 @@ class RewardConfig:
     )
     see: dict[str, SeeConfig] = section(derived=True)
     smell: dict[str, SmellConfig] = section(derived=True)
+    pay: dict[str, PayConfig] = section(derived=True)

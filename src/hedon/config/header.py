@@ -11,7 +11,7 @@ from dataclasses import is_dataclass
 from typing import Any, get_args
 
 from hedon.config import room
-from hedon.config.channel import SOURCES
+from hedon.config.channel import LAST, SEVERAL, SOURCES
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
 from hedon.config.field import Setting, engine_sections, engine_settings
 from hedon.config.settings import Settings
@@ -56,7 +56,12 @@ def _structs() -> Iterator[str]:
     yield f"HEDON_ENUM(GenomeLearning, {', '.join(LEARNING_GENES)})"
     yield f"HEDON_ENUM(GenomeFamily, {', '.join(FAMILY_GENES)})"
     yield f"HEDON_ENUM(RuleUse, {', '.join(RULE_USES)})"
-    yield _wrapped(f"HEDON_ENUM(ChannelSource, {', '.join(SOURCES)})") + "\n"
+    several = {name: source.several for name, source in SOURCES.items()} | {LAST: LAST}
+    words = ("one", "two", *SEVERAL, LAST)
+    each = ", ".join(f"ChannelOf::{word}" for word in several.values())
+    yield _wrapped(f"HEDON_ENUM(ChannelSource, {', '.join(several)})")
+    yield _wrapped(f"HEDON_ENUM(ChannelOf, {', '.join(words)})")
+    yield _wrapped(f"inline constexpr ChannelOf CHANNEL_OF[] = {{{each}}};") + "\n"
 
 
 def _add(section: type, made: dict[str, list[str]]) -> str:

@@ -3,28 +3,33 @@
 The engine gets these layouts as data, the records carry them, and columns, labels and figures are named by them.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hedon.config.channel import Channel, observed_channels, recorded_channels
-from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, OF_ALL_GENES, GeneConfig, MutationConfig
+from hedon.config.channel import Channel, called, known_channels, observed_channels, recorded_channels
+from hedon.config.evolution import (
+    FAMILY_GENES,
+    LEARNING_GENES,
+    OF_ALL_GENES,
+    GeneConfig,
+    MutationConfig,
+    RewardConfig,
+)
 from hedon.config.field import value_at
 from hedon.config.problem import nearest
 from hedon.config.settings import Settings
-from hedon.config.species import EVERYTHING, SpeciesConfig
+from hedon.config.species import SpeciesConfig
 from hedon.config.store import ENERGY
+from hedon.config.type import chosen, diet, smelled
 from hedon.error import ArgumentError
 from hedon.text import brief
 
-WALL = "wall"
-"""What senses call a wall."""
-OBSTACLE = "obstacle"
-"""What senses call an obstacle, in worlds that have some."""
-SOLID = (WALL, OBSTACLE)
-"""What every species sees and collides with, where it is."""
-SCALE, OLD = "_scale", "_old"
-SECOND_GENES = {"scaled": (SCALE, "power of ten of the reward weight"), "by_age": (OLD, "reward weight when old")}
-"""Families of rewards whose weights have a second gene: the end of its name, and what it is."""
+SCALE, ABOVE, OLD = "_scale", "_above", "_old"
+SECOND_GENES = {
+    SCALE: "power of ten of the reward weight",
+    ABOVE: "reward weight above the threshold",
+    OLD: "reward weight when old",
+}
+"""How the names of the second genes of weights end, and what these genes are."""
 SET_POINT = "set_point"
 EXTRA = "extra_"
 """What the columns of genes for rules begin with."""
@@ -57,28 +62,23 @@ class Gene:
 
 @dataclass(frozen=True, slots=True)
 class RewardTerm:
-    """One term of a reward: coef · gene · input.
+    """One term of a reward: coef · weight · channel.
 
     Attributes:
-        input: The engine's name of the input.
-        index: Which food kind, for inputs that there are several of.
-        gene: Name of the gene that weighs it.
+        name: What is paid: `normal`, `action`, `see_predator`, or `drive_reduction`.
+        channel: What it is paid by.
+        gene: Name of the gene that weighs it; "" for none.
         second_gene: Name of the weight's other gene, where the family of the reward has one.
         coef: Factor of the term.
         place: The path of the factor in the species.
     """
 
-    input: str
-    index: int
+    name: str
+    channel: Channel
     gene: str
     second_gene: str
     coef: float
     place: str
-
-    @property
-    def name(self) -> str:
-        """What is paid: `normal`, `action`, `see_predator`, or `drive_reduction`."""
-        return "drive_reduction" if self.input == "drive_reduction" else self.gene.removeprefix("w_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,9 @@ class SpeciesLayout:
         sees: What its rays tell apart, in the order of their channels.
         stores: Names of its stores, in the engine's order: energy first.
         observed: What it observes beside rays and touch, in order.
+        last: What of a step is kept for the next observation, in order.
         recorded: What a rule gets beside the reward's inputs, genes and memory, in order.
+        gate: What the family of its reward compares with a threshold, where it has one.
         smells: What it smells, in the order of the channels of smell.
         touches: What it collides with and feels, in the order of the channels of touch.
     """
@@ -103,17 +105,14 @@ class SpeciesLayout:
     smells: tuple[str, ...]
     stores: tuple[str, ...]
     observed: tuple[Channel, ...]
+    last: tuple[Channel, ...]
     recorded: tuple[Channel, ...]
+    gate: Channel
 
     @property
     def gene_names(self) -> tuple[str, ...]:
         """Names of all genes, in order."""
         return tuple(gene.name for gene in self.genes)
-
-
-def types(config: Settings) -> tuple[str, ...]:
-    """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
-    return (*config.species, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
 
 
 def layouts(config: Settings) -> dict[str, SpeciesLayout]:
@@ -188,61 +187,6 @@ def choose_species(name: str | None, config: Settings) -> str:
     return known[0] if name is None else name
 
 
-def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
-    """What a species eats: factors by name.
-
-    Args:
-        config: with the foods.
-        species: one of the config's.
-    """
-    return {
-        each: factor
-        for name, factor in species.diet.eats
-        for each in (config.food if name == EVERYTHING else [name])
-        if factor != 0.0
-    }
-
-
-def hunted(config: Settings) -> str:
-    """The first species that another one eats.
-
-    Raises:
-        StopIteration: no species is eaten by another.
-    """
-    return next(name for name in config.species if hunters(config, name))
-
-
-def hunters(config: Settings, name: str) -> tuple[str, ...]:
-    """The other species that eat a species, in order.
-
-    Args:
-        config: with the species.
-        name: of the species that is eaten.
-    """
-    return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
-
-
-def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for, in order; walls and obstacles are always among them.
-
-    Args:
-        config: with the types.
-        names: of types, or `EVERYTHING`.
-    """
-    every = types(config)
-    return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
-
-
-def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The sources of smell that a list of names stands for, in order: species and kinds of food.
-
-    Args:
-        config: with the types.
-        names: of sources, or `EVERYTHING`.
-    """
-    return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)
-
-
 def set_point_of(store: str) -> str:
     """The gene of the set point of a store."""
     return SET_POINT if store == ENERGY else f"{SET_POINT}_{store}"
@@ -253,6 +197,7 @@ class _Layout:
 
     def __init__(self, config: Settings, species: SpeciesConfig) -> None:
         self.config, self.species = config, species
+        self.known = known_channels(config, species)
         self.genes: list[Gene] = []
         self.terms: list[RewardTerm] = []
 
@@ -265,18 +210,25 @@ class _Layout:
         limited = replace(mutation, limit=min(mutation.limit, most))
         self.genes.append(Gene(name, role, meaning, law, place, limited, most))
 
-    def add_term(self, kind: str, index: int, of: str, meaning: str, law: str, coef: str) -> None:
-        """Adds a term, the gene that weighs its input, and the weight's second gene if it has one.
+    def add_term(self, name: str, channel: Channel, meaning: str, law: str, coef: str) -> None:
+        """Adds a term, the gene that weighs its channel, and the weight's second gene if it has one.
 
         `law` is the place of the gene's law, `coef` that of the term's factor.
         """
-        weight = second = f"w_{of}"
+        weight = second = f"w_{name}"
         self.add_gene(weight, "reward", f"reward weight for {meaning}", law)
-        if self.species.reward.family in SECOND_GENES:
-            ending, what = SECOND_GENES[self.species.reward.family]
+        ending = second_ending(self.species.reward)
+        if ending:
             second = weight + ending
-            self.add_gene(second, "reward", f"{what} for {meaning}", "genome.second")
-        self.terms.append(RewardTerm(kind, index, weight, second, value_at(self.species, coef), coef))
+            self.add_gene(second, "reward", f"{SECOND_GENES[ending]} for {meaning}", "genome.second")
+        self.terms.append(RewardTerm(name, channel, weight, second, value_at(self.species, coef), coef))
+
+
+def second_ending(reward: RewardConfig) -> str:
+    """How the names of the second genes of weights end; "" where weights have one gene."""
+    if reward.family == "between":
+        return OLD if reward.gate == "age" else ABOVE
+    return SCALE if reward.family == "scaled" else ""
 
 
 def _most(family: str, role: str, name: str) -> float:
@@ -294,30 +246,31 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
         species: one of the config's.
     """
     made, genome, reward = _Layout(config, species), species.genome, species.reward
-    eaten, sees = diet(config, species), chosen(config, species.sensor.sees)
-    for index, kind in enumerate(config.food):
-        if kind in eaten:
-            made.add_term("food", index, kind, f"a food of kind {kind}", f"food.{kind}.gene", "reward.meal_coef")
-    for index, name in enumerate(config.species, len(config.food)):
+    eaten, known = diet(config, species), made.known
+    sees, smells = chosen(config, species.sensor.sees), smelled(config, species.sensor.smells)
+    for meal, name in enumerate((*config.food, *config.species)):
         if name in eaten:
-            made.add_term("food", index, name, f"eating a {name}", "genome.prey", "reward.meal_coef")
-    made.add_term("action", 0, "action", "motor action", "genome.action", "reward.action_coef")
+            food = name in config.food
+            what, law = (f"a food of kind {name}", f"food.{name}.gene") if food else (f"eating a {name}", "genome.prey")
+            made.add_term(name, known["meals", meal], what, law, "reward.meal_coef")
+    effort = "effort" if reward.action_norm == "max_force" else "force_norm"
+    made.add_term("action", known[effort, 0], "motor action", "genome.action", "reward.action_coef")
     for name, see in reward.see.items():
-        read, place = sees.index(see.reads or name), f"reward.see.{name}"
-        made.add_term(f"see_{see.over_rays}", read, f"see_{name}", f"seeing {name}", f"{place}.gene", f"{place}.coef")
-    smells = smelled(config, species.sensor.smells)
+        seen, place = known[f"see_{see.over_rays}", sees.index(see.reads or name)], f"reward.see.{name}"
+        made.add_term(f"see_{name}", seen, f"seeing {name}", f"{place}.gene", f"{place}.coef")
     for name in reward.smell:
-        place = f"reward.smell.{name}"
-        made.add_term(
-            "smell", smells.index(name), f"smell_{name}", f"smelling {name}", f"{place}.gene", f"{place}.coef"
-        )
+        smell, place = known["smell_mean", smells.index(name)], f"reward.smell.{name}"
+        made.add_term(f"smell_{name}", smell, f"smelling {name}", f"{place}.gene", f"{place}.coef")
+    for name, pay in reward.pay.items():
+        (paid,), place = called(known, pay.channel or name), f"reward.pay.{name}"
+        made.add_term(name, paid, paid.meaning, f"{place}.gene", f"{place}.coef")
     if reward.drive_reduction_coef:
         for name, store in species.stores.items():
             measure = "motor_threshold" if store.motor_threshold else "capacity"
             place = f"{name if name == ENERGY else f'store.{name}'}.set_point"
             made.add_gene(set_point_of(name), "reward", f"{name} that it seeks, as a share of its {measure}", place)
-        coef = "reward.drive_reduction_coef"
-        made.terms.append(RewardTerm("drive_reduction", 0, SET_POINT, SET_POINT, reward.drive_reduction_coef, coef))
+        coef, paid = "reward.drive_reduction_coef", known["drive_reduction", 0]
+        made.terms.append(RewardTerm(paid.name, paid, "", "", reward.drive_reduction_coef, coef))
     for name in genome.family:
         made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
     for name in genome.learning:
@@ -327,14 +280,17 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     for i in range(genome.neutral_count):
         meaning = "neutral marker: inherited and mutated, no effect"
         made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
-    touches = chosen(config, species.body.collides)
+    observed, last = observed_channels(species, known)
+    paid = {(term.name, term.channel) for term in made.terms}
     return SpeciesLayout(
         genes=tuple(made.genes),
         terms=tuple(made.terms),
         sees=sees,
-        touches=touches,
+        touches=chosen(config, species.body.collides),
         smells=smells,
         stores=tuple(species.stores),
-        observed=observed_channels(species, smells),
-        recorded=recorded_channels(species),
+        observed=observed,
+        last=last,
+        recorded=tuple(each for each in recorded_channels(species, known) if (each.name, each) not in paid),
+        gate=called(known, reward.gate)[0],
     )

@@ -55,8 +55,11 @@ VALUES = {
     "learning.policy": {"still": "idle", "frozen": "fixed"},
     "world.mutation_noise": {"frozen": "tabulated"},
     "world.parents": {"old_slots": "resident_slots"},
+    "reward.family": {"fed": "above", "hungry": "below", "by_age": "between"},
 }
 """Choices of settings that have other names now, by the paths of today."""
+GATES = {"by_age": "age"}
+"""Families of rewards whose gate a file must name now, by their names before."""
 _MEANT = {"learning": {"acting_weights": "float32"}}
 """What complete files of the first versions mean by settings that they lack, where the default is another value."""
 _HINT = "`hedon config migrate FILE` rewrites a file"
@@ -77,7 +80,8 @@ def renamed(tables: Table) -> Iterator[Problem]:
             section, name = path.split(".")
             value = own[section][name] if has(own, [section, name]) else None
             if isinstance(value, str) and value in names:
-                yield Problem(place + path, f'is called "{names[value]}" now ({_HINT})', f'"{value}"')
+                more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
+                yield Problem(place + path, f'is called "{names[value]}" now{more} ({_HINT})', f'"{value}"')
 
     for kind, food in _tables(tables.get("food")).items():
         for name in GIVEN:
@@ -192,7 +196,10 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, r
         section, name = path.split(".")
         for owner in owners:
             if has(owner, [section, name]) and isinstance(owner[section][name], str):
-                owner[section][name] = names.get(owner[section][name], owner[section][name])
+                before = owner[section][name]
+                owner[section][name] = names.get(before, before)
+                if path == "reward.family" and before in GATES:
+                    owner[section].setdefault("gate", GATES[before])
 
 
 def _name_stores(root: Any, below: Table, whole: bool, table: Callable[[], Any] = dict) -> None:

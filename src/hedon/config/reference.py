@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator
 from inspect import getdoc
 
+from hedon.config.channel import SEVERAL, SOURCES, Source
 from hedon.config.field import sections, settings, type_name
 from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
 from hedon.config.problem import format_value
@@ -50,7 +51,29 @@ def reference() -> str:
     """The whole page, in Markdown."""
     names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
     overlays = _table(("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES))
-    return "\n".join([_HEAD, names, overlays, *_sections(Settings(), "")]).rstrip() + "\n"
+    return "\n".join([_HEAD, names, overlays, *_sections(Settings(), ""), _channels()]).rstrip() + "\n"
+
+
+_CHANNELS = """\
+## Channels
+
+A channel is a number that can be known of an agent in a step. `reward.pay` pays for channels, `reward.gate` compares
+one with a threshold, `sensor.observes` lets agents observe them ([guide](guide/reward.md)). What is *of the step* is
+known only when a step is done: who observes it gets that of the step before.
+"""
+
+
+def _channels() -> str:
+    """The part of the page on channels."""
+
+    def row(source: Source) -> tuple[str, ...]:
+        names, where = SEVERAL[source.of] if isinstance(source.of, str) else (source.of, "")
+        shown = ", ".join(f"`{source.name.format(each)}`" for each in names)
+        meant = " or ".join(f"`{each}`" if "<" in each else each for each in names)
+        return shown, source.meaning.format(meant), source.unit, where, "yes" if source.of_step else ""
+
+    head = ("channel", "meaning", "unit", "where", "of the step")
+    return f"{_CHANNELS}\n{_table(head, map(row, SOURCES.values()))}"
 
 
 def _sections(default: object, path: str) -> Iterator[str]:

@@ -10,9 +10,10 @@ import numpy as np
 from hedon.config import Config
 from hedon.config.body import MotorConfig
 from hedon.config.food import FoodConfig
-from hedon.config.layout import choose_species, diet
+from hedon.config.layout import choose_species
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
+from hedon.config.type import diet
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
 from hedon.demography.schedule import factor_at, factor_range, hazard_of, mean_factor, mean_hazard, scaled_hazard

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from hedon.config.config import Config
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES
-from hedon.config.layout import EXTRA, SECOND_GENES, SET_POINT, diet, layouts, store_columns
+from hedon.config.layout import EXTRA, SECOND_GENES, SET_POINT, layouts, store_columns
+from hedon.config.type import diet
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
@@ -256,16 +257,18 @@ def _gene_meaning(name: str, columns: Columns) -> str:
         return f"reward weight for a food of kind {what}"
     if what in columns.prey:
         return f"reward weight for eating a {what}"
-    for ending, meaning in SECOND_GENES.values():
+    for ending, meaning in SECOND_GENES.items():
         if what.endswith(ending):
             return f"{meaning}, beside {name.removesuffix(ending)}"
     if name == SET_POINT:
         return "energy that is sought, as a share of the capacity"
     if name.startswith(EXTRA):
         return f"gene {name.removeprefix(EXTRA)}, which only rules in Python read"
-    return (LEARNING_GENES | FAMILY_GENES).get(
-        name.removeprefix("g_"), f"reward weight for seeing {what.removeprefix('see_')}"
-    )
+    if name.removeprefix("g_") in LEARNING_GENES | FAMILY_GENES:
+        return (LEARNING_GENES | FAMILY_GENES)[name.removeprefix("g_")]
+    sense, _, seen = what.partition("_")
+    verb = {"see": "seeing ", "smell": "smelling "}.get(sense, "")
+    return f"reward weight for {verb}{seen if verb else what}"
 
 
 def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:

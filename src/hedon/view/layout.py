@@ -9,9 +9,10 @@ from typing import Any
 from hedon.config.arena import walls
 from hedon.config.color import OBSTACLE_COLOR, meal_colors, species_color, weight_colors
 from hedon.config.config import Config
-from hedon.config.layout import Gene, SpeciesLayout, diet, gene_columns, layouts, types
+from hedon.config.layout import Gene, SpeciesLayout, gene_columns, layouts
 from hedon.config.species import SpeciesConfig
 from hedon.config.title import weight_title
+from hedon.config.type import diet, types
 
 
 def describe(config: Config) -> dict[str, Any]:
@@ -101,9 +102,9 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, .
     """
     told = species.reward.family == "linear" and not species.reward.rule
     terms = () if species.reward.rule else layout.terms
-    meals = [term for term in terms if told and term.input == "food"]
+    meals = [term for term in terms if told and term.channel.source == "meals"]
     return {
-        "meals": [{"meal": term.index, "gene": columns.index(term.gene), "coef": term.coef} for term in meals],
+        "meals": [{"meal": term.channel.index, "gene": columns.index(term.gene), "coef": term.coef} for term in meals],
         "rest": [term.name for term in terms if term not in meals],
     }
 

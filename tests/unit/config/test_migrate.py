@@ -142,6 +142,19 @@ def test_a_choice_with_another_name_is_refused_with_it(path: str) -> None:
         assert flatten(load_config("baseline", overrides=[f"{path}={new}", *rest]))[path] == new
 
 
+@pytest.mark.parametrize("given", ['reward.family = "by_age"', '[species.agent.reward]\nfamily = "by_age"'])
+def test_weights_by_age_get_age_as_their_gate(write: Write, given: str) -> None:
+    file = write(f"{given}  # the old like action\n")
+    file.write_text(migrated_file(file))
+    assert "# the old like action" in file.read_text()
+    reward = load_config(file).species["agent"].reward
+    assert (reward.family, reward.gate) == ("between", "age")
+    whole = (EARLIER / "one" / "config.toml").read_text().replace('family = "linear"', 'family = "by_age"')
+    own = parse_config(whole, "here").species["agent"].reward
+    assert (own.family, own.gate) == ("between", "age")
+    assert parse_config(whole.replace("by_age", "hungry"), "here").species["agent"].reward.gate == "energy"
+
+
 def test_founders_of_the_first_versions_are_read(tmp_path: Path) -> None:
     text = (EARLIER / "one" / "config.toml").read_text()
     genes = r"\n\n\[(genome\.action|genome\.neutral|food\.\w+\.gene)\]\ninitial_mean.*\ninitial_sd.*"

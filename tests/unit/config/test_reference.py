@@ -24,10 +24,11 @@ family.threshold = {}
 extra.kindness = {}
 mutation.w_action = {}
 [reward]
-family = "fed"
+family = "above"
 rule = "my.py:pay"
 see.fungus = {}
 smell.fungus = {}
+pay.moved = {}
 [sensor]
 smells = ["*"]
 [store.water]
@@ -58,6 +59,7 @@ KINDS = {
     "genome.mutation.<kind>": "genome.mutation.w_action",
     "reward.see.<kind>": "reward.see.fungus",
     "reward.smell.<kind>": "reward.smell.fungus",
+    "reward.pay.<kind>": "reward.pay.moved",
 }
 
 

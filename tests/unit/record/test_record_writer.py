@@ -279,15 +279,18 @@ def test_a_million_steps_take_less_than_30_megabytes(tmp_path: Path) -> None:
 
 def test_every_gene_says_what_it_is() -> None:
     genes = [
-        "reward.family=by_age",
+        "reward.family=between",
+        "reward.gate=age",
         "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
         "reward.see.wall.coef=0.1",
+        "reward.pay.child.channel=births",
     ]
     table = agent_table(columns_of(load_config("baseline", overrides=genes)))
     meaning = {column.name: column.meaning for column in table.columns}
     assert meaning["w_normal"] == "reward weight for a food of kind normal"
     assert meaning["w_normal_old"] == "reward weight when old, beside w_normal"
+    assert meaning["w_child"] == "reward weight for child"
     assert meaning["w_see_wall"] == "reward weight for seeing wall"
     assert meaning["set_point"] == "energy that is sought, as a share of the capacity"
     assert meaning["g_gamma"] == "power of ten by which the odds of the discount differ"

@@ -9,7 +9,8 @@ import pytest
 
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
-from hedon.config.layout import hunted, hunters, layouts
+from hedon.config.layout import layouts
+from hedon.config.type import hunted, hunters
 from hedon.study.catalogue import choose
 from hedon.study.item import ItemInputs
 from hedon.study.verdict import Verdict, judge, verdicts

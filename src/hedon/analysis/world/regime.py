@@ -40,7 +40,8 @@ from hedon.analysis.world.population import whole_window
 from hedon.analysis.world.record import all_eaten
 from hedon.analysis.world.species import require_one_species
 from hedon.config import Config
-from hedon.config.layout import choose_species, diet
+from hedon.config.layout import choose_species
+from hedon.config.type import diet
 from hedon.demography.life import hazard
 from hedon.demography.schedule import factor_at
 

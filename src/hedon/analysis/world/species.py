@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import polars as pl
 
 from hedon.config.config import Config
-from hedon.config.layout import diet, layouts
+from hedon.config.layout import layouts
+from hedon.config.type import diet
 from hedon.error import ArgumentError
 from hedon.record.schema import Columns
 

@@ -1,0 +1,73 @@
+"""Types: what senses can tell apart, and which of them a species eats, sees, touches and smells."""
+
+from collections.abc import Sequence
+
+from hedon.config.settings import Settings
+from hedon.config.species import EVERYTHING, SpeciesConfig
+
+WALL = "wall"
+"""What senses call a wall."""
+OBSTACLE = "obstacle"
+"""What senses call an obstacle, in worlds that have some."""
+SOLID = (WALL, OBSTACLE)
+"""What every species sees and collides with, where it is."""
+
+
+def types(config: Settings) -> tuple[str, ...]:
+    """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
+    return (*config.species, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
+
+
+def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
+    """What a species eats: factors by name.
+
+    Args:
+        config: with the foods.
+        species: one of the config's.
+    """
+    return {
+        each: factor
+        for name, factor in species.diet.eats
+        for each in (config.food if name == EVERYTHING else [name])
+        if factor != 0.0
+    }
+
+
+def hunted(config: Settings) -> str:
+    """The first species that another one eats.
+
+    Raises:
+        StopIteration: no species is eaten by another.
+    """
+    return next(name for name in config.species if hunters(config, name))
+
+
+def hunters(config: Settings, name: str) -> tuple[str, ...]:
+    """The other species that eat a species, in order.
+
+    Args:
+        config: with the species.
+        name: of the species that is eaten.
+    """
+    return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
+
+
+def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
+    """The types that a list of names stands for, in order; walls and obstacles are always among them.
+
+    Args:
+        config: with the types.
+        names: of types, or `EVERYTHING`.
+    """
+    every = types(config)
+    return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
+
+
+def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
+    """The sources of smell that a list of names stands for, in order: species and kinds of food.
+
+    Args:
+        config: with the types.
+        names: of sources, or `EVERYTHING`.
+    """
+    return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)

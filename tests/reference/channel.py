@@ -1,0 +1,106 @@
+"""What can be known of an agent in a step, by name: the tables of channels in docs/guide/reward.md."""
+
+import math
+
+import numpy as np
+from reference.chance import harmful
+from reference.setting import Rules, Species
+from reference.state import Agent, Turn, World
+
+OF_STEP = ("_before", "_change", "eaten_", "damage", "effort", "force", "moved", "drive_reduction")
+"""How names begin or end of what is known only when a step is done."""
+
+
+def is_of_step(name: str) -> bool:
+    """Whether an agent that observes it gets that of the step before."""
+    return name.startswith(OF_STEP) or name.endswith(OF_STEP)
+
+
+def channel(rules: Rules, world: World, turn: Turn, name: str) -> float:
+    """One number of an agent; in `world` its step is not counted yet."""
+    agent, start, deed, species = turn.agent, turn.start, turn.deed, rules.of(turn.agent)
+    if name in species.stores:
+        return agent.held[name]
+    if name in (f"{store}_before" for store in species.stores):
+        return start.held[name.removesuffix("_before")]
+    if name in (f"{store}_change" for store in species.stores):
+        store = name.removesuffix("_change")
+        return agent.held[store] - start.held[store]
+    head, _, what = name.partition("_")
+    if head == "eaten":
+        return float(turn.meal[[*rules.kinds, *rules.names].index(what)])
+    if head == "see":
+        readings = np.maximum(deed.seen[:, species.sees.index(what.removesuffix("_max"))], 0)
+        return float(readings.max() if what.endswith("_max") else readings.mean())
+    if head == "smell":
+        return float(turn.smelled[species.smells.index(what)].mean())
+    if head == "contacts":
+        return felt_sectors(species, turn, [species.touches.index(what)])
+    if head == "season":
+        angle = 2 * math.pi * world.step / year(rules, species)
+        return math.sin(angle) if what == "sine" else math.cos(angle)
+    left, right = turn.forces
+    plain = {
+        "damage": lambda: rules.obstacle.damage * sum(each < harmful(rules, world.step) for each in deed.obstacles),
+        "nearness": lambda: float(np.maximum(deed.seen, 0).sum(axis=1).mean()),
+        "touched": lambda: felt_sectors(species, turn, range(len(species.touches))),
+        "effort": lambda: math.hypot(left, right) / (species.max_force * math.sqrt(2)),
+        "force_left": lambda: left,
+        "force_right": lambda: right,
+        "force": lambda: math.hypot(left, right),
+        "moved": lambda: math.dist((deed.x, deed.y), (start.x, start.y)),
+        "x": lambda: deed.x,
+        "y": lambda: deed.y,
+        "heading": lambda: deed.angle,
+        "heading_sine": lambda: math.sin(start.angle),
+        "heading_cosine": lambda: math.cos(start.angle),
+        "velocity_x": lambda: deed.motion[0],
+        "velocity_y": lambda: deed.motion[1],
+        "angular_velocity": lambda: deed.motion[2],
+        "age": lambda: world.step + 1 - agent.birth_step,
+        "births": lambda: agent.births or 0,
+        "waits": lambda: float(agent.ready_until >= world.step),
+        "drive_reduction": lambda: drive(species, start) - drive(species, agent),
+        "step": lambda: world.step,
+        "alive": lambda: sum(each.species == agent.species for each in world.agents),
+        "one": lambda: 1.0,
+    }
+    return float(plain[name]())
+
+
+def drive(species: Species, agent: Agent) -> float:
+    """Distance of the stores from their set points, in shares of their capacities, or of where they weaken motors."""
+    apart = []
+    for name, store in species.stores.items():
+        point = species.gene(agent.genome, "set_point" if name == "energy" else f"set_point_{name}")
+        apart.append(point - agent.held[name] / (store.motor_threshold or store.capacity))
+    return math.hypot(*apart)
+
+
+def felt_sectors(species: Species, turn: Turn, types: range | list[int]) -> float:
+    """How many sectors felt any of some types that it can touch."""
+    count = species.sensor.touch_sectors
+    felt = [turn.deed.felt >> t * count & ((1 << count) - 1) for t in types]
+    return float(np.bitwise_or.reduce(felt).item().bit_count())
+
+
+def year(rules: Rules, species: Species) -> int:
+    """The length of the year that a species knows: its own, or that of the first schedule with a period."""
+    schedules = [food.schedule for food in rules.foods] + [species.hazard.schedule, rules.obstacle.schedule]
+    periods = [species.sensor.season_period, *(each.period for table in schedules for each in table.values())]
+    return next(period for period in periods if period)
+
+
+PLACED = ("x", "y", "moved", "touched", "contacts_", "velocity_", "angular_velocity", "heading")
+"""How names begin of what depends on where a step ended."""
+
+
+def is_paid_by_place(species: Species) -> bool:
+    """Whether the reward depends on where a step ended."""
+    paid = [pay.channel or name for name, pay in species.reward.pay.items()]
+    return any(name.startswith(PLACED) for name in (species.reward.gate, *paid))
+
+
+def kept_names(species: Species) -> list[str]:
+    """What of a step is kept for the next observation, in order."""
+    return [name for name in species.sensor.observes if is_of_step(name)]
