@@ -8,7 +8,7 @@ import pytest
 from acting_weights import AFTER_W2, HIDDEN, as_read
 from observed_touch import assert_touches, touch_bits
 from observed_world import food_slots, read_deeds, read_world, rollout_rows
-from reference.channel import is_paid_by_place
+from reference.channel import is_paid_by_place, paid_names
 from reference.draw import normals
 from reference.heredity import first_log_sd, inherited_network
 from reference.meal import can_digest
@@ -85,7 +85,8 @@ class Judge:
         rewards = np.array([expected.rewards[agent.agent_id] for agent in before.agents])
         scale = REWARD * max(1.0, np.abs(rewards).max())
         unknown = [
-            deed.replaced and is_paid_by_place(self.model.rules.of(agent))
+            (deed.replaced and is_paid_by_place(self.model.rules.of(agent)))
+            or (any(each.replaced for each in deeds) and "meals_near" in paid_names(self.model.rules.of(agent)))
             for agent, deed in zip(before.agents, deeds, strict=True)
         ]
         paid = rollout_rows(simulation, before, slots, "reward")
@@ -150,7 +151,7 @@ class Judge:
             species, smelled = rules.of(agent), smells(rules, before, agent)
             here = (agent.x, agent.y, agent.angle)
             deed = Deed((0.0, 0.0), *here, [], [], [], self.sight(agent, row), tuple(motion[i]), touch[i])
-            turn = Turn(agent, agent, deed, [], (0.0, 0.0), smelled)
+            turn = Turn(agent, agent, deed, [], (0.0, 0.0), smelled, before, [])
             rays, bits = (
                 species.sensor.ray_count * len(species.sees),
                 len(species.touches) * species.sensor.touch_sectors,

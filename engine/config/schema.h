@@ -198,12 +198,13 @@ struct SensorConfig {
   int32_t touch_sectors;
   float mouth_spread;  ///< [degree]
   float mouth_center;  ///< [degree]
+  float near_range;  ///< [u]
   SensorRayInside ray_inside;
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, smell_decay, noses, nose_angle, touch_sectors,
-      mouth_spread, mouth_center, ray_inside)
+      mouth_spread, mouth_center, near_range, ray_inside)
   static constexpr Limit LIMITS[] = {Limit::from(1, 32), Limit::from(0, 180), Limit::over(0, 100000), Limit::from(0.001,
       10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit::from(-180, 180),
-      Limit()};
+      Limit::over(0, 100000), Limit()};
 };
 
 struct PopulationConfig {
@@ -278,7 +279,7 @@ struct BirthConfig {
       Limit::from(1, 1000), Limit(), Limit::from(0, 10), Limit(), Limit::from(0, 1000000), Limit::from(0, 10000)};
 };
 
-HEDON_ENUM(RewardFamily, linear, sinh, scaled, above, below, between)
+HEDON_ENUM(RewardFamily, linear, sinh, scaled, above, below, between, around)
 struct RewardConfig {
   RewardFamily family;
   float threshold;  ///< [that of the gate]
@@ -346,15 +347,15 @@ HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
 HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, store_change, meals, damage,
-      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, effort, force, force_norm, moved, position,
-      age, births, waits, drive_reduction, season, step, alive, neighbor, one, last)
+      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, near, meals_near, effort, force, force_norm,
+      moved, position, age, births, waits, drive_reduction, season, step, alive, neighbor, one, last)
 HEDON_ENUM(ChannelOf, one, two, stores, kinds, meals, sees, smells, noses, touches, season, queries, harm, mates, drive,
       last)
 inline constexpr ChannelOf CHANNEL_OF[] = {ChannelOf::two, ChannelOf::one, ChannelOf::two, ChannelOf::one,
       ChannelOf::stores, ChannelOf::stores, ChannelOf::stores, ChannelOf::meals, ChannelOf::harm, ChannelOf::sees,
       ChannelOf::sees, ChannelOf::one, ChannelOf::noses, ChannelOf::smells, ChannelOf::touches, ChannelOf::one,
-      ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one,
-      ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one, ChannelOf::one, ChannelOf::queries,
-      ChannelOf::one, ChannelOf::last};
+      ChannelOf::kinds, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two,
+      ChannelOf::one, ChannelOf::one, ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one,
+      ChannelOf::one, ChannelOf::queries, ChannelOf::one, ChannelOf::last};
 
 }  // namespace hedon

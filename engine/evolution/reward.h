@@ -31,10 +31,8 @@ HEDON_FN double by_gene(float setting, int32_t gene, const float* genome) {
   return gene < 0 ? setting : setting * exp_double(genome[gene] * LOG_10);
 }
 
-/// Whether weights of a family depend on a gate.
-constexpr bool has_gate(RewardFamily family) {
-  return family == RewardFamily::above || family == RewardFamily::below || family == RewardFamily::between;
-}
+/// Whether weights of a family depend on a gate: those from `above` on do.
+constexpr bool has_gate(RewardFamily family) { return family >= RewardFamily::above; }
 
 /// By how much a gate is above the threshold of a family, in units of its width.
 HEDON_FN double beyond(const RewardConfig& config, const SpeciesLayout& layout, const float* genome, double gate) {
@@ -60,6 +58,10 @@ HEDON_FN float weight_of(const RewardConfig& config, const SpeciesLayout& layout
       return static_cast<float>(w * logistic(-beyond(config, layout, genome, gate)));
     case RewardFamily::between:
       return static_cast<float>(w + (second - w) * logistic(beyond(config, layout, genome, gate)));
+    case RewardFamily::around: {
+      const double x = beyond(config, layout, genome, gate);
+      return static_cast<float>(4.0 * w * logistic(x) * logistic(-x));
+    }
   }
   return w;
 }

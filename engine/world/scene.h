@@ -52,6 +52,21 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
             put);
 }
 
+/// Calls f(circle) for the circles in the cells that a square around a point touches: for all within `reach` [u], and
+/// for some others.
+template <class F>
+HEDON_FN void for_each_circle_in(const World& world, Vec2 center, float reach, F&& f) {
+  const RayGrid& grid = world.shape->scene;
+  const int32_t first_column = cell_along(center.x - reach, grid.inverse_cell, grid.columns);
+  const int32_t last_column = cell_along(center.x + reach, grid.inverse_cell, grid.columns);
+  const int32_t first_row = cell_along(center.y - reach, grid.inverse_cell, grid.rows);
+  const int32_t last_row = cell_along(center.y + reach, grid.inverse_cell, grid.rows);
+  for (int32_t row = first_row; row <= last_row; ++row) {
+    const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
+    for (int32_t i = start[first_column]; i < start[last_column + 1]; ++i) f(i);
+  }
+}
+
 /// The scene in the form for the kernels.
 HEDON_FN RayTargets ray_targets(const World& world) {
   const RayScene& scene = world.scene;

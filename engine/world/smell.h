@@ -28,25 +28,17 @@ HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forwa
 /// order of the scene. Needs the scene.
 HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, int32_t own, float* smelled) {
   const RayScene& scene = world.scene;
-  const RayGrid& grid = world.shape->scene;
   const float decay = species.config->sensor.smell_decay;
   const float reach = smell_reach(world, decay);
   const int32_t channels = species.layout->smells.count;
   double sum[MAX_TYPES] = {};
-  const int32_t first_column = cell_along(nose.x - reach, grid.inverse_cell, grid.columns);
-  const int32_t last_column = cell_along(nose.x + reach, grid.inverse_cell, grid.columns);
-  const int32_t first_row = cell_along(nose.y - reach, grid.inverse_cell, grid.rows);
-  const int32_t last_row = cell_along(nose.y + reach, grid.inverse_cell, grid.rows);
-  for (int32_t row = first_row; row <= last_row; ++row) {
-    const int32_t* start = world.scene.start.data + int64_t{row} * grid.columns;
-    for (int32_t i = start[first_column]; i < start[last_column + 1]; ++i) {
-      const int32_t channel = species.scent.of_type[static_cast<int32_t>(scene.type[i])];
-      const Vec2 apart{scene.x[i] - nose.x, scene.y[i] - nose.y};
-      const float squared = squared_length(apart);
-      if (channel < 0 || i == own || !(squared < reach * reach)) continue;
-      sum[channel] += static_cast<double>(exp_float(-decay * sqrtf(squared)));
-    }
-  }
+  for_each_circle_in(world, nose, reach, [&](int32_t i) {
+    const int32_t channel = species.scent.of_type[static_cast<int32_t>(scene.type[i])];
+    const Vec2 apart{scene.x[i] - nose.x, scene.y[i] - nose.y};
+    const float squared = squared_length(apart);
+    if (channel < 0 || i == own || !(squared < reach * reach)) return;
+    sum[channel] += static_cast<double>(exp_float(-decay * sqrtf(squared)));
+  });
   for (int32_t c = 0; c < channels; ++c) smelled[c] = sum[c] < 1.0 ? static_cast<float>(sum[c]) : 1.0f;
 }
 

@@ -81,7 +81,8 @@ class Model:
 
     def advance(self, before: World, deeds: Sequence[Deed]) -> Outcome:
         rules, world = self.rules, before.copy()
-        turns = [self.act(before, *each) for each in zip(before.agents, world.agents, deeds, strict=True)]
+        turns: list[Turn] = []
+        turns += [self.act(before, turns, *each) for each in zip(before.agents, world.agents, deeds, strict=True)]
         eat(rules, world, turns)
         for turn in turns:
             pay(rules, world, turn)
@@ -107,11 +108,12 @@ class Model:
             open_window(rules, world)
         return outcome
 
-    def act(self, before: World, start: Agent, agent: Agent, deed: Deed) -> Turn:
+    def act(self, before: World, company: list[Turn], start: Agent, agent: Agent, deed: Deed) -> Turn:
         """What an agent sensed and did, and where it ended."""
         agent.x, agent.y, agent.angle = deed.x, deed.y, deed.angle
         forces = motor_forces(self.rules.of(agent), deed.action, start)
-        return Turn(agent, start, deed, [0] * len(agent.eaten), forces, smells(self.rules, before, start))
+        smelled = smells(self.rules, before, start)
+        return Turn(agent, start, deed, [0] * len(agent.eaten), forces, smelled, before, company)
 
     def draw_fate(self, world: World, turn: Turn) -> None:
         """Whether an agent has a child, and whether it dies. Who starves or was eaten dies, and has none."""

@@ -57,6 +57,8 @@ def weight(rules: Rules, world: World, turn: Turn, name: str) -> float:
     if family == "between":
         second = species.gene(genome, f"w_{name}_{'old' if species.reward.gate == 'age' else 'above'}")
         return w + (second - w) * above
+    if family == "around":
+        return 4 * w * above * (1 - above)
     return w * (above if family == "above" else 1 - above)
 
 

@@ -151,7 +151,11 @@ class Deed:
 
 @dataclass
 class Turn:
-    """One agent's step, as it goes on: what it was at the start, what it did, and what came of it."""
+    """One agent's step, as it goes on: what it was at the start, what it did, and what came of it.
+
+    before    the world at the start
+    company   the turns of all agents
+    """
 
     agent: Agent
     start: Agent
@@ -159,6 +163,8 @@ class Turn:
     meal: list[int]
     forces: tuple[float, float]
     smelled: np.ndarray
+    before: World
+    company: "list[Turn]"
     starved: bool = False
     caught: bool = False
     """Another agent ate it."""

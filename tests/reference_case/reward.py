@@ -68,8 +68,10 @@ CHANNELS = {
             *each("mate", 'reward.family="above"', 'reward.gate="waits"', "reward.threshold=0.5"),
             *each("mate", 'birth.mating="pairs"', "birth.mating_window=8", "birth.mating_range=40", *pay("waits", 0.3)),
             *each("mate", *pay("births", 1)),
+            *each("social", 'reward.family="around"', 'reward.gate="near_social"', "reward.threshold=2"),
+            *each("social", "sensor.near_range=60", *pay("shared", 0.5, "meals_near"), *pay("near_normal", 0.1)),
         ),
-        {"births": 20, "mated": 5, "paid_waits": 20, "paid_births": 5},
+        {"births": 20, "mated": 5, "paid_waits": 20, "paid_births": 5, "paid_shared": 10, "paid_near_normal": 300},
     ),
     "observers": Case(
         "agents that know their age, the season, and what the step before brought them",

@@ -71,6 +71,8 @@ SOURCES = {
     "smell_mean": Source("smell_{}", "mean over the noses of the smell of {}, in [0, 1]", of="smells"),
     "contacts": Source("contacts_{}", "touch sectors that feel {}", of="touches"),
     "touched": Source("touched", "touch sectors that feel anything"),
+    "near": Source("near_{}", "others of {} within sensor.near_range", of="kinds"),
+    "meals_near": Source("meals_near", "meals of others of its species within sensor.near_range", of_step=True),
     "effort": Source("effort", "norm of the forces of both motors, as a share of its largest", of_step=True),
     "force": Source("force_{}", "force of the {} motor", "mass·u/s²", ("left", "right"), True),
     "force_norm": Source("force", "norm of the forces of both motors", "mass·u/s²", of_step=True),

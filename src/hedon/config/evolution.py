@@ -17,7 +17,7 @@ FAMILY_GENES = {
     "threshold_width": "power of ten by which the width of that threshold differs",
 }
 """What of the family of a reward a gene may set, with what the gene is."""
-GATED = ("above", "below", "between")
+GATED = ("above", "below", "between", "around")
 """Families of rewards that have a gate, with a threshold."""
 OF_ALL_GENES = {
     "law": "mutation_law",
@@ -134,14 +134,17 @@ class RewardConfig:
 
     How a weight follows from its genes is the family. With x = (gate - threshold) / threshold_width and
     σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `above` w·σ(x) and
-    `below` w·σ(-x); `between` w + (w' - w)·σ(x) with a second gene w'. The gate is a channel.
+    `below` w·σ(-x); `between` w + (w' - w)·σ(x) with a second gene w'; `around` 4·w·σ(x)·σ(-x). The gate is a channel.
     """
 
-    family: Literal["linear", "sinh", "scaled", "above", "below", "between"] = setting(
+    family: Literal["linear", "sinh", "scaled", "above", "below", "between", "around"] = setting(
         "linear", "how a weight follows from its genes", "", PAPER + "; the others are ours", shapes=True
     )
     gate: str = setting(
-        "energy", "the channel of which above, below and between read the threshold (guide/reward.md)", "", OURS
+        "energy",
+        "the channel that the families above, below, between and around compare with the threshold (guide/reward.md)",
+        "",
+        OURS,
     )
     threshold: float = setting(
         50.0, "value of the gate around which weights change", "that of the gate", OURS, ge=-1e6, le=1e6
