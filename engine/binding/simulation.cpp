@@ -37,8 +37,8 @@ nb::object copy_array(std::vector<T> values, std::vector<size_t> shape) {
 }
 
 /// Rows of lives as a dict of columns.
-nb::dict columns(const Life* life, const int32_t* eaten, const float* genome, const std::vector<int64_t>& rows,
-                 const WorldShape& shape) {
+nb::dict columns(const Life* life, const int32_t* eaten, const float* genome, const double* store,
+                 const std::vector<int64_t>& rows, const WorldShape& shape) {
   nb::dict out;
   Life::for_each_field([&](const char* name, auto member) {
     using Field = std::remove_cvref_t<decltype(life->*member)>;
@@ -54,6 +54,7 @@ nb::dict columns(const Life* life, const int32_t* eaten, const float* genome, co
   };
   out["eaten"] = table(eaten, shape.meals());
   out["genome"] = table(genome, shape.genes);
+  out["store"] = table(store, shape.stores - 1);
   return out;
 }
 
@@ -84,8 +85,8 @@ nb::dict take_rows(PythonSimulation& self, int index) {
   World& from = self.world(index);
   const WorldState& state = from.state;
   const std::vector<int64_t> rows = waiting_rows(from);
-  nb::dict out =
-      columns(state.death_log.data, state.death_log_eaten.data, state.death_log_genome.data, rows, *from.shape);
+  nb::dict out = columns(state.death_log.data, state.death_log_eaten.data, state.death_log_genome.data,
+                         state.death_log_store.data, rows, *from.shape);
   const auto column = [&](const Array<int32_t>& of) {
     std::vector<int32_t> values;
     for (const int64_t row : rows) values.push_back(of[row]);
@@ -103,7 +104,8 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   const World& from = self.slotted(index);
   std::vector<int64_t> rows;
   for (int32_t i = 0; i < from.head().living_count; ++i) rows.push_back(from.state.living[i]);
-  nb::dict out = columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, rows, *from.shape);
+  nb::dict out = columns(from.state.life.data, from.state.eaten.data, from.state.genome.data, from.state.store.data,
+                         rows, *from.shape);
   std::vector<int32_t> species;
   for (const int64_t slot : rows) species.push_back(from.shape->species_of(static_cast<int32_t>(slot)));
   out["species"] = copy_array(std::move(species), {rows.size()});

@@ -136,7 +136,7 @@ void Device::list_pieces() {
   WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
     auto& field = world.state.*member;
     if constexpr (IsArray<std::remove_cvref_t<decltype(field)>>::value) {
-      const bool log = size.rows == Extent::death_log || size.rows == Extent::mating_death_log;
+      const bool log = is_by_death(size.rows);
       const int64_t rows = world.shape->death_log_rows;
       const Kind kind = strcmp(name, "head") == 0 ? Kind::head
                         : log                     ? Kind::death_log

@@ -41,8 +41,9 @@ struct View {
 /// What the chosen agent senses and how its network answers.
 struct AgentProbe {
   PackedObservation observation;
-  ObservationExtra extra;  ///< of a wide observation
-  float output[16];        ///< mean of the two actions, then the value
+  ObservationExtra extra;        ///< of a wide observation
+  float output[16];              ///< mean of the two actions, then the value
+  float observed[MAX_CHANNELS];  ///< what it observes beside rays and touch, in the order of its layout
 };
 
 constexpr size_t SPARE = size_t{4} << 20;  ///< bytes that a world needs besides its own, with room to spare
@@ -321,6 +322,9 @@ HEDON_EXPORT(hedon_probe) const AgentProbe* hedon_probe(int32_t slot) {
   note_start(world(), slot);
   observe(world(), slot, 0, probe.observation);
   memset(probe.output, 0, sizeof probe.output);
+  const FixedList<Channel, MAX_CHANNELS>& observed = world().species(slot).layout->observed;
+  for (int32_t d = 0; d < observed.count; ++d)
+    probe.observed[d] = read_channel(world(), slot, probe.observation, observed[d]);
   if (world().species(slot).has_network)
     world().kernel->network.forward(world().species(slot).network, world().network(slot), probe.observation,
                                     probe.output);

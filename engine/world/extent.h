@@ -45,6 +45,7 @@ enum class Extent : uint8_t {
   mating_slots,      ///< slots, if some species has two parents
   mating_death_log,  ///< the same, if some species has two parents
   store_slots,       ///< slots, if some species has a store beside energy
+  store_death_log,   ///< deaths that wait for the reader, if some species has a store beside energy
   last_slots,        ///< slots, if some species observes what was of the step before
   birth_slots,       ///< slots, if some species senses, or is paid for, the children that it had
   last,              ///< most numbers of a step that are kept for the next observation
@@ -81,6 +82,11 @@ HEDON_FN bool is_by_slot(Extent rows) {
          rows == Extent::obstacle_slots || rows == Extent::store_slots || rows == Extent::instinct_slots ||
          rows == Extent::mating_slots || rows == Extent::hunted_slots || rows == Extent::last_slots ||
          rows == Extent::birth_slots;
+}
+
+/// Whether an array with these rows has one for each death that waits for the reader, or none at all.
+HEDON_FN bool is_by_death(Extent rows) {
+  return rows == Extent::death_log || rows == Extent::mating_death_log || rows == Extent::store_death_log;
 }
 
 struct ArrayShape {
@@ -157,6 +163,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.mating ? shape.death_log_rows : 0;
     case Extent::store_slots:
       return shape.stores > 1 ? shape.capacity : 0;
+    case Extent::store_death_log:
+      return shape.stores > 1 ? shape.death_log_rows : 0;
     case Extent::last_slots:
       return shape.last > 0 ? shape.capacity : 0;
     case Extent::birth_slots:

@@ -188,6 +188,8 @@ HEDON_FN void kill(World& world, int32_t slot) {
   state.death_log_cause[row] = static_cast<int32_t>(cause_of_death(world, slot));
   for (int32_t m = 0; m < meals; ++m) state.death_log_eaten[row * meals + m] = state.eaten[int64_t{slot} * meals + m];
   for (int32_t g = 0; g < genes; ++g) state.death_log_genome[row * genes + g] = world.genome(slot)[g];
+  for (int32_t i = 1; i < world.shape->stores; ++i)
+    state.death_log_store[row * (world.shape->stores - 1) + i - 1] = world.held(slot, i);
 }
 
 /// Tries per founder or food of a new world; a half-full arena needs a few.

@@ -187,6 +187,7 @@ struct WorldState {
   Array<int32_t> death_log_mate;
   Array<int32_t> death_log_eaten;
   Array<float> death_log_genome;
+  Array<double> death_log_store;  // held of each store but energy
 
   HEDON_ARRAYS(WorldState, (head, one, one, saved), (fault, one, one, derived), (counters, species, one, saved),
                (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),
@@ -209,7 +210,8 @@ struct WorldState {
                (log_prob, slots, steps, rollout), (value, slots, steps, rollout), (reward, slots, steps, rollout),
                (death_log, death_log, one, waiting), (death_log_species, death_log, one, waiting),
                (death_log_cause, death_log, one, waiting), (death_log_mate, mating_death_log, one, waiting),
-               (death_log_eaten, death_log, meals, waiting), (death_log_genome, death_log, genes, waiting))
+               (death_log_eaten, death_log, meals, waiting), (death_log_genome, death_log, genes, waiting),
+               (death_log_store, store_death_log, more_stores, waiting))
 };
 
 }  // namespace hedon

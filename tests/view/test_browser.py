@@ -150,12 +150,16 @@ def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
         watched.until("document.querySelector('#agent').textContent.includes('value of now')")
 
 
-def shown_rows(watched):
-    """The tables of the agent's panel: what stands beside what."""
-    rows = watched.get(
+def shown_pairs(watched):
+    """The tables of the agent's panel: what stands beside what, in order."""
+    return watched.get(
         "[...document.querySelectorAll('#agent tr')].map((row) => [...row.children].map((cell) => cell.innerText))"
     )
-    return dict(rows)
+
+
+def shown_rows(watched):
+    """The same by what stands first; the last row of a name."""
+    return dict(shown_pairs(watched))
 
 
 def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
@@ -190,6 +194,32 @@ def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
                 hungry += part != 0
             assert rows["… by action"] == "0"
         assert hungry > 3
+
+
+def test_an_agent_shows_its_stores_and_what_it_observes(watch):
+    settings = ["store.water.capacity=7", "store.water.initial=3", "store.water.basic_cost=0.01", "sensor.scaling=unit"]
+    settings += ["sensor.observes.age=100", "sensor.observes.moved=0.5"]
+    config = load_config("small", overrides=settings)
+    page = {"run": False, "worlds": [live_world(config, "small")]}
+    with serving(Server({"page": lambda: page}, dict)) as server:
+        watched = watch(server.link)
+        run_live(watched, 100)
+        watched.get("hedon.seek(hedon.source.last)")
+        watched.until("hedon.frame.step === hedon.source.last")
+        simulation = Simulation(config, seeds=[1], backend="" if watched.get("hedon.source.fused") else "portable")
+        simulation.run(100)
+        world, layout = simulation.worlds[0], layouts(config)["agent"]
+        lives, observed = world.agents(), world.observations(0)[:, -len(layout.observed) :]
+        for i in range(0, world.alive, 9):
+            watched.get(f"hedon.choose({lives['agent_id'][i]})")
+            watched.until(f"document.querySelector('#agent h2')?.textContent === 'Agent {lives['agent_id'][i]}'")
+            rows = shown_pairs(watched)
+            (held,) = (text for name, text in rows if name == "water" and " of " in text)
+            assert [float(number) for number in held.split(" of ")] == pytest.approx([lives["water"][i], 7], abs=6e-3)
+            shown = {name: float(text.split()[0].replace(",", "")) for name, text in rows if name in ("age", "moved")}
+            for channel, value in zip(layout.observed, observed[i], strict=True):
+                if channel.name in ("age", "moved"):
+                    assert shown[channel.name] == pytest.approx(value * channel.scale, abs=6e-4)
 
 
 @pytest.mark.parametrize("preset", ["poison", "pitfall"])

@@ -27,6 +27,11 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
         assert [layout["genes"][gene]["name"] for gene in species["genes"]] == list(own.gene_names)
         assert [layout["types"][seen] for seen in species["sees"]] == list(own.sees)
         assert [layout["types"][smelled] for smelled in species["smells"]] == list(own.smells)
+        assert species["observed"] == [
+            {"name": each.name, "unit": each.unit, "scale": each.scale, "meaning": each.meaning}
+            for each in own.observed
+        ]
+        assert [store["name"] for store in species["stores"]] == list(own.stores)
         told = [layout["genes"][term["gene"]]["name"] for term in species["reward"]["meals"]]
         assert told == [f"w_{layout['meals'][term['meal']]}" for term in species["reward"]["meals"]]
         assert [*told, *(f"w_{name}" for name in species["reward"]["rest"])] == [term.gene for term in own.terms]

@@ -5,7 +5,7 @@ import { LearningChart } from "./learning";
 import { castRays } from "./rays";
 import { smell } from "./smells";
 import type { Source } from "./source";
-import type { Frame, Gene, Life } from "./types";
+import type { Frame, Gene, Life, Species } from "./types";
 
 const SHOWN_CHILDREN = 12;
 const ROUNDED = 1e4; // rewards are sums of numbers of 7 digits
@@ -56,7 +56,7 @@ export class AgentPanel {
     const gone = present ? [] : [element("p", { text: life ? whenGone(life, frame) : "There is no such agent in these records." })];
     this.state.fill(heading, ...gone, ...(life ? [lifeTable(source, life, frame, at, (id) => this.link(id))] : []));
     this.seen.fill(...(present ? seenTitle(source, frame, at) : []));
-    this.answer.fill(...(present ? [...smellsOf(source, frame, at), ...answer(source)] : []));
+    this.answer.fill(...(present ? [...smellsOf(source, frame, at), ...observed(source, source.layout.species[frame.species[at]!]!), ...answer(source)] : []));
     if (life) {
       const neutral = this.neutral(source, life);
       this.genes.fill(element("h3", { text: "its genes" }), genome(source, life, (gene) => gene.role !== "neutral"));
@@ -169,11 +169,20 @@ function whenGone(life: Life, frame: Frame | undefined): string {
   return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
 }
 
+/** What it holds of each of its stores. */
+function held(source: Source, frame: Frame, at: number): [string, string][] {
+  return source.layout.species[frame.species[at]!]!.stores.map(({ name, capacity }, i) => {
+    const amount = i === 0 ? frame.energy[at] : frame.held[name]?.[at];
+    const known = amount !== undefined && !Number.isNaN(amount);
+    return [name, known ? `${show(amount)} of ${show(capacity)}` : "not recorded"];
+  });
+}
+
 function lifeTable(source: Source, life: Life, frame: Frame | undefined, at: number, link: (id: number) => HTMLElement): HTMLElement {
   const rows: [string, Node | string][] = [];
   const born = `born at ${show(life.birth)}${life.death >= 0 ? `, died at ${show(life.death)}` : ""}`;
   if (source.layout.species.length > 1) rows.push(["species", source.layout.species[life.species]!.name]);
-  if (frame && at >= 0) rows.push(["age", `${counted(Math.floor(frame.step) - life.birth, "step")} (${born})`], ["energy", `${show(frame.energy[at])} of ${show(source.layout.energy_capacity)}`]);
+  if (frame && at >= 0) rows.push(["age", `${counted(Math.floor(frame.step) - life.birth, "step")} (${born})`], ...held(source, frame, at));
   else rows.push(["life", born]);
   rows.push(["generation", show(life.generation)], ["parent", life.parent >= 0 ? link(life.parent) : "none, a founder"]);
   return table(rows);
@@ -223,6 +232,17 @@ function smellsOf(source: Source, frame: Frame, at: number): HTMLElement[] {
   const sides = smell(layout, frame, at);
   const text = (channel: number) => (sides.length === 1 ? show(sides[0]![channel]) : `left ${show(sides[1]![channel])}, right ${show(sides[0]![channel])}`);
   return [element("h3", { text: "what it smells" }), table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]))];
+}
+
+/** What it observes beside rays and touch, in units; only a live world knows it. */
+function observed(source: Source, species: Species): HTMLElement[] {
+  const probe = source.agentProbe();
+  if (!probe) return [];
+  const rows = species.observed.map(({ name, unit, scale, meaning }, i): [string, Node] => {
+    const value = show(probe.observed[i]! * scale, 3);
+    return [name, element("span", { title: meaning, text: unit === "1" || unit === "amount" ? value : `${value} ${unit}` })];
+  });
+  return [element("h3", { text: "what else it observes" }), table(rows)];
 }
 
 /** What its network says: how strong each motor is, and how much reward it expects. */

@@ -302,8 +302,8 @@ export class Engine {
     return {
       reading: new Float32Array(buffer, at, 32).slice(),
       type: new Uint8Array(buffer, at + 128, 32).slice(),
-      dense: new Float32Array(buffer, at + 168, 6).slice(),
       output: new Float32Array(buffer, at + 256, 3).slice(),
+      observed: new Float32Array(buffer, at + 320, 32).slice(),
     };
   }
 

@@ -21,17 +21,21 @@ interface Body {
   y: number;
   angle: number;
   energy: number;
+  held: number[]; // of each store beside energy
 }
 
 export class Film {
   private parts: Filmed[] = [];
   private readonly kept = new Map<string, Frame[] | "asked">(); // by file, in the order of use
+  private readonly stores: string[]; // beside energy, of all species
 
   constructor(
     private readonly layout: Layout,
     private readonly world: number,
     private readonly ask: (file: string) => Promise<Columns | undefined>,
-  ) {}
+  ) {
+    this.stores = [...new Set(layout.species.flatMap(({ stores }) => stores.slice(1).map(({ name }) => name)))];
+  }
 
   /** Takes the list of parts as it is now. */
   update(parts: Part[]): void {
@@ -105,9 +109,10 @@ export class Film {
     const kind = columns.kind as string[];
     const [world, step, id] = [numbers(columns, "world"), numbers(columns, "step"), numbers(columns, "id")];
     const [x, y, angle, energy] = ["x", "y", "angle", "energy"].map((name) => numbers(columns, name));
+    const held = this.stores.map((name) => numbers(columns, name));
     for (let row = 0; row < step.length; row++) {
       if (world[row] !== this.world || step[row]! < first || step[row]! >= end) continue;
-      const body = { kind: kind[row]!, id: id[row]!, x: x![row]!, y: y![row]!, angle: angle![row]!, energy: energy![row]! };
+      const body = { kind: kind[row]!, id: id[row]!, x: x![row]!, y: y![row]!, angle: angle![row]!, energy: energy![row]!, held: held.map((store) => store[row] ?? NaN) };
       const known = moments.get(step[row]!);
       if (known) known.push(body);
       else moments.set(step[row]!, [body]);
@@ -126,6 +131,7 @@ export class Film {
       y: Float32Array.from(agents, (each) => each.y),
       angle: Float32Array.from(agents, (each) => each.angle),
       energy: Float32Array.from(agents, (each) => each.energy),
+      held: Object.fromEntries(this.stores.map((name, i) => [name, Float32Array.from(agents, (each) => each.held[i]!)])),
       species: Uint8Array.from(agents, (each) => species.get(each.kind)!),
       foodX: Float32Array.from(eaten, (each) => each.x),
       foodY: Float32Array.from(eaten, (each) => each.y),

@@ -166,11 +166,26 @@ function frame(world: Engine, living: Int32Array): Frame {
     y: Float32Array.from(living, (slot) => y[slot]!),
     angle: Float32Array.from(living, (slot) => angle[slot]!),
     energy: Float32Array.from(living, (slot) => Number(energy[slot])),
+    held: held(world, living),
     species: Uint8Array.from(living, speciesOf),
     foodX: Float32Array.from(foods, (i) => Number(fx[i])),
     foodY: Float32Array.from(foods, (i) => Number(fy[i])),
     foodKind: Uint8Array.from(kinds),
   };
+}
+
+/** What the living hold of each store beside energy. */
+function held(world: Engine, living: Int32Array): Record<string, Float32Array> {
+  const { species } = layout!;
+  const width = Math.max(...species.map(({ stores }) => stores.length)) - 1;
+  if (width === 0) return {};
+  const store = world.view("store") as Float64Array;
+  const names = new Set(species.flatMap(({ stores }) => stores.slice(1).map(({ name }) => name)));
+  const of = (name: string, slot: number) => {
+    const at = species[speciesOf(slot)]!.stores.findIndex((each) => each.name === name);
+    return at > 0 ? store[slot * width + at - 1]! : NaN;
+  };
+  return Object.fromEntries([...names].map((name) => [name, Float32Array.from(living, (slot) => of(name, slot))]));
 }
 
 /** The slot of an agent, or -1 if it does not live. */

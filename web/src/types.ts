@@ -23,6 +23,8 @@ export interface Species {
   genes: number[]; // of the layout's genes, in the order of the genome
   starts: number[]; // of each of them, the mean of the founders
   drifts: boolean[]; // whether the neutral markers mutate like it, so that they show its drift
+  stores: { name: string; capacity: number }[]; // energy first
+  observed: { name: string; unit: string; scale: number; meaning: string }[]; // beside rays and touch
   reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // what meals tell of it, and the rest
 }
 
@@ -49,6 +51,7 @@ export interface Frame {
   y: Float32Array;
   angle: Float32Array;
   energy: Float32Array;
+  held: Record<string, Float32Array>; // of each store beside energy, as far as it is known; NaN for species without it
   species: Uint8Array;
   foodX: Float32Array;
   foodY: Float32Array;
@@ -77,6 +80,7 @@ export interface AgentProbe {
   reading: Float32Array; // distance + 1, 0 for nothing
   type: Uint8Array;
   output: Float32Array; // two actions, then the value
+  observed: Float32Array; // beside rays and touch, in the order of its species
 }
 
 /** Something that happened, for the time line. */

@@ -21,12 +21,15 @@ RESERVED_STORES = (
     *("energy", "age", "reward", "children", "generation", "distance", "eaten", "genome", "cause", "species", "step"),
     *("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity", "heading", "heading_sine", "heading_cosine"),
     *("force_left", "force_right", "agent_id", "parent_id", "mate_id", "birth_step", "death_step", "birth_energy"),
-    *("energy_gained", "energy_spent"),
+    *("energy_gained", "energy_spent", "mean_force_left", "mean_force_right", "reward_sum"),
+    *("world", "seed", "kind", "id"),
 )
 """Names of other numbers of an agent, which no store can have."""
 NAME = r"[a-z][a-z0-9_]{0,31}"
 """What kinds of food, species, stores, and genes and queries of rules may be called."""
 NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
+RESERVED_STARTS = ("eaten_", "w_", "g_", "neutral_", "extra_", "set_point")
+"""How names of meals and genes begin in the records."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -121,6 +124,8 @@ def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -
     for name in species.store:
         if not re.fullmatch(NAME, name) or name in RESERVED_STORES:
             check.add(f"{path}store.{name}", f"{NAME_RULE} and not be one of " + ", ".join(RESERVED_STORES))
+        elif name.startswith(RESERVED_STARTS):
+            check.add(f"{path}store.{name}", "a store's name must not begin with " + ", ".join(RESERVED_STARTS))
     for kind in diet(config, species).keys() & config.food.keys():
         for name in config.food[kind].needs.keys() & set(store_columns(config)) - set(species.store):
             rule = f"it needs {name}, which it could never hold: give it store.{name}, or take {kind} out of diet.eats"

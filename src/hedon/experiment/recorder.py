@@ -94,7 +94,7 @@ class Recorder:
         rows = []
         for world in self.simulation.worlds:
             with suppress(EngineError):  # a world that stopped since its slots are inconsistent
-                rows.append(agent_rows(world, self.simulation.engine.living_rows(world.index)))
+                rows.append(agent_rows(world, world.agents()))
         self.writer.replace_living(*rows)
 
     def frame(self) -> None:

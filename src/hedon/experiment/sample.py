@@ -18,11 +18,12 @@ Rows = dict[str, Any]
 
 
 def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
-    """Rows of the table `agents` from the engine's rows (`take_rows`, `living_rows`).
+    """Rows of the table `agents`.
 
     Args:
         world: The world that they live or lived in.
-        lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals).
+        lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals), as
+            `World.agents` and `World.deaths` give them.
     """
     columns = columns_of(world.config)
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
@@ -33,6 +34,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
         "world": world.index,
         "seed": world.seed,
         **{name: lives[name] for name in direct},
+        **_held_rows(world.config, lives),
         **{f"eaten_{name}": lives["eaten"][:, k] for name, k in _meals(columns).items()},
         "mean_force_left": lives["force_left"] / steps,
         "mean_force_right": lives["force_right"] / steps,
@@ -57,6 +59,15 @@ def _gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
                 mine = lives["species"] == species
                 values[mine] = lives["genome"][mine, layout.gene_names.index(name)]
         rows[name] = values
+    return rows
+
+
+def _held_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
+    """What agents hold of the stores beside energy, by the names of the columns; NaN where a species lacks one."""
+    rows: Rows = {}
+    for name in columns_of(config).held_names:
+        has = np.array([name in species.store for species in config.species.values()])
+        rows[name] = np.where(has[lives["species"]], lives[name], np.nan).astype(np.float32)
     return rows
 
 
@@ -132,10 +143,11 @@ def frame_rows(world: World) -> list[Rows]:
     """Rows of the table `frames`: every agent and every food of a world as it is now."""
     lives, foods = world.agents(), world.foods()
     here = {"world": world.index, "step": world.step}
+    placed = {column: lives[column] for column in ("x", "y", "angle", "energy")}
     rows = []
     for species, name in enumerate(world.config.species):
         mine = lives["species"] == species
-        agents = {column: lives[column][mine] for column in ("x", "y", "angle", "energy")}
+        agents = {column: values[mine] for column, values in (_held_rows(world.config, lives) | placed).items()}
         rows.append({**here, "kind": name, "id": lives["agent_id"][mine], **agents})
     for k, kind in enumerate(world.config.food):
         mine = foods["kind"] == k

@@ -1,13 +1,17 @@
 """The manifest that a session of a run writes at its beginning and at its end."""
 
+from collections.abc import Iterator
 from dataclasses import asdict, replace
 
+from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, digest
+from hedon.config.evolution import GATED
+from hedon.config.layout import layouts
 from hedon.config.load import is_modified
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.simulation import Simulation
 from hedon.record.digest import records_digest
-from hedon.record.manifest import Manifest, Session
+from hedon.record.manifest import ChannelNote, Manifest, Session
 from hedon.record.provenance import collect_provenance, utc_now
 from hedon.record.schema import columns_of
 from hedon.record.writer import Writer
@@ -38,11 +42,29 @@ def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) ->
         extinct_steps=tuple(None for _ in plan.seeds),
         food_colors=tuple(food.color for food in config.food.values()),
         frames=plan.frames,
+        channels=tuple(channel_notes(config)),
         obstacle_places=_places(simulation) if config.obstacle.count else (),
         rules=tuple(rule.source for rule in simulation.rules),
         **collect_provenance(),
     )
     return replace(manifest, sessions=(_session(manifest, from_step),))
+
+
+def channel_notes(config: Config) -> Iterator[ChannelNote]:
+    """What agents of each species observe beside rays and touch, are paid for, and have a gate by.
+
+    Args:
+        config: with the species.
+    """
+    for species, layout in layouts(config).items():
+        for each in layout.observed:
+            yield ChannelNote(species, "observed", each.name, "", each.scale, each.unit, each.meaning)
+        reward = config.species[species].reward
+        for term in () if reward.rule else layout.terms:
+            each = term.channel
+            yield ChannelNote(species, "paid", each.name, term.gene, term.coef, each.unit, each.meaning)
+        if reward.family in GATED and not reward.rule:
+            yield ChannelNote(species, "gate", layout.gate.name, "", 1.0, layout.gate.unit, layout.gate.meaning)
 
 
 def _places(simulation: Simulation) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:

@@ -234,17 +234,19 @@ class World:
         rows["age"] = self.step - rows["birth_step"]
         for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
             rows[name] = self.view(f"physics.bodies.{name}")[living]
-        held = self.view("store")[living] if len(self.view("store")) else np.zeros((len(living), 0))
-        for name in store_columns(self.config):
-            rows[name] = np.zeros(len(living))
-            for species, each in enumerate(self.config.species.values()):
-                if name in each.store:
-                    mine = rows["species"] == species
-                    rows[name][mine] = held[mine, list(each.store).index(name)]
-        return rows
+        return rows | self._held(rows.pop("store"), rows["species"])
+
+    def _held(self, held: NDArray[np.float64], species: NDArray[np.int32]) -> dict[str, NDArray[np.float64]]:
+        """What agents of these species hold of each store beside energy, by its name; 0 of those that they lack."""
+        found = {name: np.zeros(len(species)) for name in store_columns(self.config)}
+        for i, each in enumerate(self.config.species.values()):
+            mine = species == i
+            for column, name in enumerate(each.store):
+                found[name][mine] = held[mine, column]
+        return found
 
     def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
-        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`.
+        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`, and its stores.
 
         The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
         runs. Without a use for them you need not call it.
@@ -262,7 +264,8 @@ class World:
                 f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
                 "call World.deaths more often, or take those that are left with World.deaths(partial=True)"
             )
-        return self._engine.take_rows(self.index)
+        rows = self._engine.take_rows(self.index)
+        return rows | self._held(rows.pop("store"), rows["species"])
 
     def foods(self) -> dict[str, NDArray[Any]]:
         """Kind (index in the config's order) and place [u] of each food present, (foods,) each."""

@@ -73,6 +73,29 @@ class RuleSource:
 
 
 @dataclass(frozen=True)
+class ChannelNote:
+    """A number of an agent that has a use.
+
+    Attributes:
+        species: name of the species.
+        use: "observed", "paid" or "gate".
+        name: of the channel.
+        gene: what weighs it in the reward; empty for none.
+        scale: what it is divided by, or its factor in the reward.
+        unit: of the number as it is.
+        meaning: as a phrase.
+    """
+
+    species: str
+    use: str
+    name: str
+    gene: str
+    scale: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
 class Parent:
     """The run that a branch started from.
 
@@ -126,6 +149,8 @@ class Manifest:
         obstacle_places: per world, the corners of each obstacle [u]; empty without obstacles.
         mating: whether some species has two parents.
         stores: names of the stores beside energy, of all species.
+        levels: whether agents and frames have a column for each of them; not before 1.0.
+        channels: what agents observe beside rays and touch, are paid for, and what opens the gate of their reward.
         causes: whether agents die of more than age and energy; None in old manifests.
         rules: the rules in Python, with their texts.
         format_version: of the run folder.
@@ -169,6 +194,8 @@ class Manifest:
     obstacles: bool = False
     mating: bool = False
     stores: tuple[str, ...] = ()
+    levels: bool = False
+    channels: tuple[ChannelNote, ...] = ()
     causes: bool | None = None
     obstacle_places: tuple[tuple[tuple[tuple[float, float], ...], ...], ...] = ()
     rules: tuple[RuleSource, ...] = ()

@@ -33,6 +33,7 @@ class Columns:
         obstacles: whether the worlds have obstacles.
         mating: whether some species has two parents.
         stores: names of the stores beside energy, of all species.
+        levels: whether agents and frames have a column for each of them; not before 1.0.
         causes: whether agents die of more than age and energy; None where a manifest does not say: columns of causes
             and of hunts then are there if there are several species.
     """
@@ -45,6 +46,7 @@ class Columns:
     obstacles: bool = False
     mating: bool = False
     stores: tuple[str, ...] = ()
+    levels: bool = False
     causes: bool | None = None
 
     @property
@@ -71,6 +73,11 @@ class Columns:
     def several(self) -> bool:
         """Whether there are several species: then rows name it."""
         return len(self.species) > 1
+
+    @property
+    def held_names(self) -> tuple[str, ...]:
+        """The stores beside energy that agents and frames have columns of."""
+        return self.stores if self.levels else ()
 
     @property
     def has_causes(self) -> bool:
@@ -101,6 +108,7 @@ def columns_of(config: Config) -> Columns:
         obstacles=config.obstacle.count > 0,
         mating=any(species.birth.mating == "pairs" for species in config.species.values()),
         stores=store_columns(config),
+        levels=bool(store_columns(config)),
         causes=bool(prey) or starving,
     )
 
@@ -140,6 +148,7 @@ def agent_table(columns: Columns) -> Table:
         *([_CAUSE] if columns.has_causes else []),
         Column("birth_energy", "f32", "energy", "energy at birth"),
         Column("energy", "f32", "energy", "energy at death, or at the last flush"),
+        *(_held_column(name, f"{name} at death, or at the last flush", columns) for name in columns.held_names),
         *(Column(f"eaten_{kind}", "i32", "1", f"pieces of food of kind {kind} eaten") for kind in columns.food_kinds),
         *(Column(f"eaten_{name}", "i32", "1", f"agents of the species {name} eaten") for name in columns.prey),
         Column("energy_gained", "f32", "energy", "energy of all food eaten; poison counts negative"),
@@ -225,6 +234,10 @@ def _frame_table(columns: Columns) -> Table:
         Column("y", "f32", "u", "position of the center"),
         Column("angle", "f32", "rad", "heading, 0 along +y, counter-clockwise; missing for food", nullable=True),
         Column("energy", "f32", "energy", "energy; missing for food", nullable=True),
+        *(
+            Column(name, "f32", "amount", f"{name}; missing for food, and for species without it", nullable=True)
+            for name in columns.held_names
+        ),
     )
 
 
@@ -241,6 +254,11 @@ def run_tables(columns: Columns) -> dict[str, Table]:
 def _species_columns(columns: Columns) -> list[Column]:
     name = Column("species", "string", "", "name of the species", choices=columns.species)
     return [name] if columns.several else []
+
+
+def _held_column(name: str, meaning: str, columns: Columns) -> Column:
+    lacked = "; missing for species without it" if columns.several else ""
+    return Column(name, "f32", "amount", meaning + lacked, nullable=columns.several)
 
 
 def _gene_column(name: str, columns: Columns) -> Column:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 
 from hedon.record.column import Table
-from hedon.record.manifest import Manifest, Session
+from hedon.record.manifest import ChannelNote, Manifest, Session
 from hedon.record.schema import FORMAT_VERSION, Columns, run_tables
 from hedon.record.snapshot import Snapshot
 from hedon.report.figure import FIGURES
@@ -63,7 +63,7 @@ _MECHANISMS = {
     "death by starvation, or agents that eat agents": Columns(("normal",), 1, causes=True),
     "agents that eat agents, here those of a species `prey`": Columns(("normal",), 1, prey=("prey",), causes=True),
     "obstacles": Columns(("normal",), 1, obstacles=True),
-    "other stores than energy, here `water`": Columns(("normal",), 1, stores=("water",)),
+    "other stores than energy, here `water`": Columns(("normal",), 1, stores=("water",), levels=True),
 }
 """What gives the tables more columns, each with the columns that a run then has."""
 
@@ -100,11 +100,12 @@ def records_page() -> str:
     parts = [_HEAD]
     for table in tables.values():
         parts.append(_table_section(table))
-        parts += [_further_columns(table)] if table.name != "frames" else []
+        parts.append(_further_columns(table))
         if table.name == "population":
             parts.append(_LEDGER)
     parts.append(f"## manifest.json\n\n{_attributes(Manifest)}")
     parts.append(f"### Each of `sessions`\n\n{_attributes(Session)}")
+    parts.append(f"### Each of `channels`\n\n{_attributes(ChannelNote)}")
     parts.append(f"## final.npz\n\nPlain NumPy arrays, one per field.\n\n{_attributes(Snapshot)}")
     parts.append(f"## summary.json\n\n{_SUMMARY}\n{_key_table(INTERVAL_KEYS)}")
     parts.append(f"### The run\n\n{_key_table(RUN_KEYS)}")

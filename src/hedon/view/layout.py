@@ -24,7 +24,8 @@ def describe(config: Config) -> dict[str, Any]:
         `types`, by channel), noses (count, degrees between the heading and each of two, decay [1/u] of smell with
         distance), smells (indices into `types`, by channel), genes (indices into `genes`, in genome order), starts
         (mean of the founders, by gene), drifts (whether its neutral markers mutate like the gene, so that they show its
-        drift) and reward (see `_reward`);
+        drift), reward (see `_reward`), stores (name and capacity of each, energy first) and observed (name, unit, scale
+        and meaning of what it observes beside rays and touch);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
         `genes`: of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none), title in
@@ -90,6 +91,11 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
         "starts": [gene.law.initial_mean for gene in layout.genes],
         "drifts": [gene.mutation == neutral for gene in layout.genes],
         "reward": _reward(species, layout, columns),
+        "stores": [{"name": name, "capacity": store.capacity} for name, store in species.stores.items()],
+        "observed": [
+            {"name": each.name, "unit": each.unit, "scale": each.scale, "meaning": each.meaning}
+            for each in layout.observed
+        ],
     }
 
 
