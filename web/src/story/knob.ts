@@ -9,21 +9,22 @@ import type { Stage } from "./stage";
 export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void): () => void {
   const knobs = [...section.querySelectorAll<HTMLInputElement>("input[data-path]")];
   const paths = (knob: HTMLInputElement) => knob.dataset.path!.split(" ");
-  const show_ = () => {
-    for (const knob of knobs) {
-      const text = show(Number(knob.value), 5);
-      knob.parentElement!.querySelector("output")!.textContent = text;
-      for (const path of paths(knob)) {
-        for (const each of section.querySelectorAll(`[data-of="${CSS.escape(path)}"]`)) each.textContent = text;
-      }
+  const tell = (knob: HTMLInputElement, value: number) => {
+    const text = show(value, 5);
+    knob.parentElement!.querySelector("output")!.textContent = text;
+    for (const path of paths(knob)) {
+      for (const each of section.querySelectorAll(`[data-of="${CSS.escape(path)}"]`)) each.textContent = text;
     }
   };
   const read = () => {
-    for (const knob of knobs) knob.value = String(stage.value(paths(knob)[0]!));
-    show_();
+    for (const knob of knobs) {
+      const value = stage.value(paths(knob)[0]!);
+      knob.value = String(value);
+      tell(knob, value); // which a link may set to what lies between two places of the slider
+    }
   };
   for (const knob of knobs) {
-    knob.addEventListener("input", show_);
+    knob.addEventListener("input", () => tell(knob, Number(knob.value)));
     knob.addEventListener("change", () => {
       const wrong = stage.set(paths(knob), knob.value);
       knob.setCustomValidity(wrong);

@@ -36,11 +36,17 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     chart.begin();
     chart.line(points, styleColor("--mark"));
   };
+  /** Units per step on a part of the path. */
+  const pace = (from: number, to: number): number => {
+    let way = 0;
+    for (let i = from + 2; i + 1 < to; i += 2) way += Math.hypot(path[i]! - path[i - 2]!, path[i + 1]! - path[i - 1]!);
+    return (2 * way) / (to - from);
+  };
   const answer = () => {
     const [before, after] = [rate(0, FIRST), rate(ROUNDS - FIRST, ROUNDS)];
     const times = after / Math.max(before, BEFORE_LEAST);
     const guessed = guess.value() ? ` You guessed ${guess.value()} times.` : "";
-    guess.answer(`Before: ${show(before, 1)} meals per 1,000 steps. After: ${show(after, 1)}, ${show(times, 1)} times as many.${guessed}`);
+    guess.answer(`Before: ${show(before, 1)} meals per 1,000 steps. After: ${show(after, 1)}, ${show(times, 1)} times as many.${guessed} It moves ${show(pace(2 * PATH, path.length))} units per step, at first ${show(pace(0, 2 * PATH))}.`);
   };
 
   stage.onBegin = () => {
@@ -84,7 +90,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     read();
     stage.begin();
   });
-  Object.assign(stage, { rate, path: () => path });
+  Object.assign(stage, { rate, pace: () => pace(2 * PATH, path.length) }); // for tests and curious persons
   return {
     section,
     stage,

@@ -120,8 +120,11 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
 function bindDrag(chart: Chart, stage: Stage, read: () => void, begin: () => void): void {
   const { canvas } = chart;
   let held = "";
-  const top = (path: string) => Number(stage.host.querySelector<HTMLInputElement>(`input[data-path="${path}"]`)!.max);
-  const put = (path: string, value: number) => stage.set([path], String(Number(Math.min(Math.max(value, 0), top(path)).toPrecision(3))));
+  const put = (path: string, value: number) => {
+    const knob = stage.host.querySelector<HTMLInputElement>(`input[data-path="${path}"]`)!;
+    knob.value = String(value); // which takes the nearest value that the slider has
+    stage.set([path], knob.value);
+  };
   const move = (event: PointerEvent) => {
     const [, y] = chart.place(event);
     const chance = y / 1000;
