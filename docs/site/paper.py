@@ -6,6 +6,7 @@ Pandoc turns its Markdown into the markup of Typst, which sets it. Links to othe
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pypandoc
 import typst
@@ -33,7 +34,8 @@ def main(out: Path) -> None:
         out: where.
     """
     out.parent.mkdir(parents=True, exist_ok=True)
-    typst.compile(markup(SOURCE.read_text(encoding="utf-8")).encode(), output=str(out), root=str(ROOT))
+    compiler: Any = typst  # its types want a root of the type of the source
+    out.write_bytes(compiler.compile(markup(SOURCE.read_text(encoding="utf-8")).encode(), root=str(ROOT)))
 
 
 if __name__ == "__main__":

@@ -60,7 +60,8 @@ class Snapshot:
         ray_count, ray_length: number and length of the rays of each species, the latter in [u], shape (s,).
         ray_spread: angle between the heading and the outermost ray on each side [degree], shape (s,).
         mouth_spread: half-width of the mouth [degree], shape (s,).
-        mouth_center: direction of its middle, counter-clockwise of the heading [degree], shape (s,); None for 0.
+        mouth_center: direction of its middle, counter-clockwise of the heading [degree], shape (s,);
+            empty for 0 of each.
     """
 
     world: int
@@ -86,10 +87,10 @@ class Snapshot:
     species_names: tuple[str, ...] = ("agent",)
     obstacles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), np.float32))
     food_radius: float = 4.0
-    mouth_center: np.ndarray | None = None
+    mouth_center: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
-        if self.mouth_center is None:  # a file of an earlier version
+        if not len(self.mouth_center):  # a file of an earlier version
             object.__setattr__(self, "mouth_center", np.zeros(len(self.mouth_spread)))
         sizes: dict[str, int] = {"4": 4, "2": 2}
         for name, (dtype, letters) in _ARRAYS.items():

@@ -7,6 +7,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import load_config
 from hedon.config.layout import layouts
@@ -159,7 +160,8 @@ def test_the_claims_are_one_family() -> None:
 
 def tables(name: str, worlds: dict) -> dict[str, list[dict]]:
     (item,) = choose([name])[0].items
-    return {table.name: table.rows.to_dicts() for table in item.make(ItemInputs("corrected", worlds))}
+    made = item.make(ItemInputs("corrected", worlds))
+    return {table.name: table.rows.to_dicts() for table in made if isinstance(table, ResultTable)}
 
 
 def test_worlds_of_each_condition_are_counted_by_what_died_out() -> None:
