@@ -207,4 +207,4 @@ def test_studies_and_items_are_chosen_by_name_and_in_their_own_order() -> None:
     (paper,) = choose(["birth", "kanagawa-doya-2024/hazard", "birth"])
     assert (paper.name, [item.name for item in paper.items]) == ("kanagawa-doya-2024", ["hazard", "birth"])
     (whole,) = choose(["fear", "sequel-fear"])
-    assert len(whole.items) == 10
+    assert len(whole.items) == 12
