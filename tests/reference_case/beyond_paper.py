@@ -3,7 +3,7 @@
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER
 from reference_case.obstacle import OBSTACLES
-from reference_case.reward import REWARDS
+from reference_case.paid import REWARDS
 from reference_case.ruled import RULED
 from two_stores import STORES
 

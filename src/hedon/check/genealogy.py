@@ -78,10 +78,12 @@ def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: b
     """Rules on an agent and its parent. Agents that died before a branch began are only in the parent run."""
     child, known = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
     counted, begun = pl.col("counted"), first_step(manifest)
+    # The rows of a killed run may lack one of two parents.
+    both = known & (pl.col("mate_id").is_null() | pl.col("mate_generation").is_not_null())
     rules = {
         "its parent is itself or a younger agent": pl.col("parent_id") >= pl.col("agent_id"),
-        "its generation is not one more than its parents'": pl.col("generation")
-        != pl.max_horizontal("parent_generation", "mate_generation") + 1,
+        "its generation is not one more than its parents'": both
+        & (pl.col("generation") != pl.max_horizontal("parent_generation", "mate_generation") + 1),
         "was born before its parent or in the same step": pl.col("birth_step") <= pl.col("parent_birth"),
         "was born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
         "its parents are of another species": (pl.col("parent_species") != pl.col("species"))

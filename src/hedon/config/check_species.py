@@ -193,7 +193,7 @@ def _sight(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
 
 
 def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    """Whoever names a channel names one that there is."""
+    """Every name of a channel is one that there is."""
     known, reward = known_channels(config, species), species.reward
     names = list(dict.fromkeys(channel.name for channel in known.values()))
 

@@ -14,7 +14,7 @@ const ABOUT: Record<string, string> = {
   predators: "Predators (ringed) eat prey. Both learn, and what the sight of the other feels like evolves.",
   poison: "Violet food costs energy. Poison can even feel good to a newborn.",
   seasons: "Food grows twice as fast in summer and not at all in winter.",
-  pitfalls: "Triangles hurt whoever touches them.",
+  pitfalls: "Triangles hurt all that touch them.",
 };
 
 export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
