@@ -125,7 +125,7 @@ def _permuted(samples: tuple[Floats, ...], statistic: Any, kind: str = "independ
     """Two-sided p value; of all permutations where they are few enough."""
     rng = np.random.default_rng(_SEED)
     found = stats.permutation_test(
-        samples, statistic, permutation_type=kind, n_resamples=PERMUTATIONS, random_state=rng, vectorized=True
+        samples, statistic, permutation_type=kind, n_resamples=PERMUTATIONS, rng=rng, vectorized=True
     )
     return float(found.pvalue)
 

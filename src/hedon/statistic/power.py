@@ -52,4 +52,7 @@ def effect_seen(worlds: int, power: float = 0.8, level: float = 0.05, *, paired:
         level: of the test.
         paired: whether worlds are compared in pairs.
     """
-    return float(optimize.brentq(lambda d: t_test_power(d, worlds, level, paired=paired) - power, 0.0, 1e3))
+    found = optimize.root_scalar(
+        lambda effect: t_test_power(effect, worlds, level, paired=paired) - power, bracket=(0.0, 1e3)
+    )
+    return float(found.root)

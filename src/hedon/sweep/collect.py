@@ -58,7 +58,7 @@ def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]])
     if not frames:
         return pl.DataFrame(schema=dict.fromkeys(KEYS, pl.Int64))
     made = pl.concat(frames, how="diagonal_relaxed").unique(["key", "seed"], keep="first")
-    values = {name: [_plain(each.settings[name]) for each in plan.conditions] for name in plan.factors}
+    values = {name: [table_value(each.settings[name]) for each in plan.conditions] for name in plan.factors}
     settings = pl.DataFrame(
         {
             "condition": range(len(plan.conditions)),
@@ -104,6 +104,6 @@ def _alike(values: list[Any]) -> list[Any]:
     return values
 
 
-def _plain(value: Any) -> Any:
+def table_value(value: Any) -> Any:
     """A value of a setting as a table holds it: a list as text."""
     return value if isinstance(value, str | int | float) else format_value(value)

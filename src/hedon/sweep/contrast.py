@@ -14,6 +14,7 @@ from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, st
 from hedon.report.answer import Answer
 from hedon.statistic.contrast import Contrast, Floats, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
+from hedon.sweep.collect import table_value
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.response import responses
@@ -75,7 +76,9 @@ def comparable(
     Returns:
         The worlds of each value, and the other factors in which they differ, if they are not crossed.
     """
-    first, second = (table.filter(pl.col(by) == _held(level)) for level in levels)
+    held = [table_value(level) for level in levels]
+    held = list(map(str, held)) if table.schema[by] == pl.String else held
+    first, second = (table.filter(pl.col(by) == value) for value in held)
     others = [name for name in plan.factors if name != by]
     if not others:
         return first, second, []
@@ -83,7 +86,8 @@ def comparable(
     shared = set(rows[0]) & set(rows[1])
     if not shared:
         return first, second, others
-    return *(each.filter([row in shared for row in own]) for each, own in zip((first, second), rows, strict=True)), []
+    one, other = (each.filter([row in shared for row in own]) for each, own in zip((first, second), rows, strict=True))
+    return one, other, []
 
 
 def compare(
@@ -217,7 +221,3 @@ def draw_contrasts(found: Sequence[Compared], by: str, names: Sequence[str]) -> 
         axes.set_xlabel("difference, in standard deviations")
         head(axes, f"{by}: {names[1]} against {names[0]}", "dots: effect size; bars: 95 % interval over worlds")
     return figure
-
-
-def _held(value: Any) -> Any:
-    return value if isinstance(value, str | int | float) else format_value(value)
