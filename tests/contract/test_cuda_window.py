@@ -58,6 +58,17 @@ MECHANISMS = {
         "reward.drive_reduction_coef=1",
         "sensor.mouth_spread=180",
     ),
+    "channels": (
+        *(
+            "reward.pay.births.coef=1",
+            "reward.pay.meals_near.coef=0.5",
+            "reward.pay.touched.coef=0.1",
+            "birth.kappa=0.5",
+        ),
+        *("reward.family=around", "reward.gate=near_normal", "reward.threshold=2", "sensor.observes.moved=1"),
+        *("sensor.observes.energy_change=0.1", "sensor.observes.near_agent=5", "sensor.observes.season_sine=1"),
+        "sensor.season_period=9",
+    ),
     "fixed": ("learning.policy=fixed", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
 }
