@@ -1,0 +1,108 @@
+"""The gallery: places of the article with a picture and a sentence. `HEDON_PICTURES=1` makes its pages and pictures."""
+
+import os
+from dataclasses import dataclass, field
+
+import pytest
+from project_files import ROOT
+from view_page import serving, story_server
+
+from hedon import Simulation, _engine, load_config
+from hedon.view.story import PAGE, SCENES
+
+pytest_plugins = ("view_fixture",)
+
+GALLERY = ROOT / "docs" / "gallery"
+PICTURES = os.environ.get("HEDON_PICTURES")
+LARGEST = 300_000  # bytes of one picture
+HEAD = """# Gallery
+
+Places in the article `hedon view --story`, each with its picture. Add what stands below a picture to the end of the
+article's address: you get the same world, to the bit. A test makes this page and its pictures
+(`HEDON_PICTURES=1 uv run pytest tests/view/test_gallery.py`).
+"""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place: its scene, the file of its config, the step, what differs, and what one sees there."""
+
+    scene: str
+    file: str
+    step: int
+    sentence: str
+    changes: dict[str, str] = field(default_factory=dict)
+    notes: dict[str, str] = field(default_factory=dict)
+
+    def digest(self) -> str:
+        config = load_config(SCENES / f"{self.file}.toml", overrides=[f"{k}={v}" for k, v in self.changes.items()])
+        simulation = Simulation(config, seeds=[1])
+        simulation.run(self.step)
+        return simulation.worlds[0].digest()[:8]
+
+    def address(self, digest: str) -> str:
+        given = {"scene": self.scene, "seed": "1", "step": str(self.step), **self.notes, **self.changes}
+        return "#" + "&".join(f"{name}={value}" for name, value in {**given, "digest": digest}.items())
+
+
+PLACES = {
+    "learned": Place(
+        "learning", "learning", 81920, "It has learned: the gray path is how it began, the pink one how it goes on."
+    ),
+    "dislikes-moving": Place(
+        "learning",
+        "learning",
+        20480,
+        "Moving hurts it, and a meal is worth nothing to it: it hardly stirs.",
+        {"food.normal.gene.initial_mean": "0", "genome.action.initial_mean": "-10"},
+    ),
+    "family": Place(
+        "family", "family", 700, "One family, by its color, among the others after 700 steps.", notes={"agent": "0"}
+    ),
+    "predators": Place(
+        "sandbox",
+        "predators",
+        300,
+        "Six predators, ringed, have begun to eat; pale is full of energy.",
+        notes={"world": "predators"},
+    ),
+    "pitfalls": Place("sandbox", "pitfalls", 300, "Triangles hurt who touches them.", notes={"world": "pitfalls"}),
+}
+
+
+def addresses() -> dict[str, str]:
+    """The address of each place, by name, as the gallery has it."""
+    lines = (GALLERY / "README.md").read_text().split("\n")
+    return dict(zip(PLACES, [line.strip("`") for line in lines if line.startswith("`#")], strict=True))
+
+
+@pytest.mark.skipif(
+    not {"avx2", "avx512"} & set(_engine.kernel.kernel_names()), reason="this processor does not fuse multiply-adds"
+)
+def test_the_gallery_has_the_bits_of_the_engine():
+    def section(name: str, place: Place) -> str:
+        return f"\n## {place.sentence}\n\n![{place.sentence}]({name}.png)\n\n`{place.address(place.digest())}`\n"
+
+    made = HEAD + "".join(section(*each) for each in PLACES.items())
+    if PICTURES:
+        (GALLERY / "README.md").write_text(made)
+    assert (GALLERY / "README.md").read_text() == made, "a world is another now: take the pictures again"
+
+
+@pytest.fixture(scope="module")
+def server():
+    with serving(story_server()) as running:
+        yield running
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_each_place_of_the_gallery_has_its_picture(name, server, watch):
+    path = GALLERY / f"{name}.png"
+    if PICTURES:
+        watched = watch(f"{server.link}{PAGE}{addresses()[name]}")
+        watched.until("hedon.opened !== ''", 400)
+        watched.until(f"document.querySelector('#{PLACES[name].scene} .digest').textContent.includes('as in the link')")
+        drawn = watched.get("hedon.pictures")
+        watched.until(f"hedon.pictures > {drawn} + 3")
+        path.write_bytes(watched.page.locator(f"#{PLACES[name].scene} .view").screenshot())
+    assert 10_000 < path.stat().st_size < LARGEST
