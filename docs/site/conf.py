@@ -20,7 +20,7 @@ author = "the authors of hedon"
 copyright = author  # noqa: A001 - Sphinx's name
 release = version = installed_version("hedon")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinxcontrib.mermaid"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "README"
 include_patterns = ["*.md", "docs/**", "benchmarks/*.md", "src/hedon_studies/*/*.md"]
 exclude_patterns = [
@@ -38,7 +38,6 @@ exclude_patterns = [
 
 myst_enable_extensions = ["dollarmath", "amsmath", "strikethrough"]
 myst_heading_anchors = 4
-myst_fence_as_directive = ["mermaid"]
 
 default_role = "code"  # of `names` in docstrings
 autodoc_member_order = "bysource"

@@ -52,6 +52,18 @@ def test_its_links_lead_somewhere(site: Path) -> None:
     assert len(names) > 40
 
 
+def test_a_page_asks_no_other_host_for_anything(site: Path) -> None:
+    """Neither for a script, a style or a picture, nor by a program within the page."""
+    asked = []
+    for page in sorted(site.rglob("*.html")):
+        text = page.read_text(encoding="utf-8")
+        asked += re.findall(r'<(?:script|img|iframe)[^>]*\bsrc="((?:https?:)?//[^"]*)"', text)
+        asked += re.findall(r'<link[^>]*rel="(?:stylesheet|preload|icon)"[^>]*href="((?:https?:)?//[^"]*)"', text)
+        for script in re.findall(r"<script\b[^>]*>(.*?)</script>", text, flags=re.DOTALL):
+            asked += re.findall(r"""["'](https?://[^"']*)["']""", script)
+    assert asked == []
+
+
 def test_docstrings_and_equations_are_shown(site: Path) -> None:
     runs = (site / "docs/site/api/run.html").read_text(encoding="utf-8")
     assert "All agents of one moment" in runs
