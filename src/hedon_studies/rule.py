@@ -46,6 +46,14 @@ class Test:
     high: float = np.nan
     p: float = np.nan
 
+    @property
+    def said(self) -> str:
+        """The effect with its interval, in words."""
+        if np.isnan(self.effect):
+            return f"not known from {self.worlds} {'world' if self.worlds == 1 else 'worlds'}"
+        bounds = "" if np.isnan(self.low) else f" ({self.low:.3g} to {self.high:.3g})"
+        return f"{self.effect:.3g}{bounds}"
+
 
 def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bool) -> Test:
     """The slope of y over x by least squares, with Student's interval.

@@ -92,5 +92,5 @@ def _layout(
             stack += young.get(agent, [])
     for i in kept[::-1].tolist():  # children come after their parents
         if not is_tip[i]:
-            place[i] = np.mean([place[child] for child in young[i]])
+            place[i] = min(place[child] for child in young[i])  # it ends where its last child begins
     return place, until

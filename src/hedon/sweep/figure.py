@@ -7,6 +7,7 @@ import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.statistic.interval import Interval
@@ -15,6 +16,12 @@ from hedon.sweep.response import Point, binned, points
 WIDE = 30.0
 """Ratio of the largest value of a factor to the smallest from which its axis is logarithmic."""
 _COLUMNS = 3
+_TICKS = 6
+"""Most numbers below a panel."""
+_FEW_DECADES = 1000.0
+"""Ratio of the ends of a logarithmic axis below which it has numbers between the powers of ten."""
+_LEVEL, _ASLANT = 30, 8
+"""Most letters of names side by side below a panel, and most names aslant."""
 _CELL_DIGITS = 3
 
 
@@ -100,9 +107,28 @@ def _draw_curve(axes: Axes, table: pl.DataFrame, factor: str, name: str, made: S
         if mean.low is not None and mean.high is not None:
             axes.plot([x, x], [mean.low, mean.high], color=BLUE, linewidth=1.4, zorder=2)
     if not numbers:
-        axes.set_xticks(range(len(place)), [str(value) for value in place], rotation=20)
+        _name_values(axes, [str(value) for value in place])
     elif min(at) > 0 and max(at) > WIDE * min(at):
         axes.set_xscale("log")
+        within = (1.0, 3.0) if max(at) < _FEW_DECADES * min(at) else (1.0,)
+        axes.xaxis.set_major_locator(LogLocator(subs=within, numticks=_TICKS))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(_TICKS - 1))
+        axes.xaxis.set_major_formatter("{x:g}")
+
+
+def _name_values(axes: Axes, names: Sequence[str]) -> None:
+    """Writes values that are no numbers below an axis, the more aslant the more of them there are."""
+    level = sum(map(len, names)) <= _LEVEL
+    slope = 0 if level else 30 if len(names) <= _ASLANT else 90
+    end = (
+        {}
+        if level
+        else {"ha": "right" if slope == 30 else "center", "rotation_mode": "anchor" if slope == 30 else None}
+    )
+    axes.set_xticks(range(len(names)), names, rotation=slope, **end)
 
 
 def _remark(means: Iterable[Interval]) -> str:

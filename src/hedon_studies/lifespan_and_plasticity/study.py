@@ -104,7 +104,7 @@ def _figure(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> Named
         axes.legend(loc="best")
     caption = (
         "A world each; a cross: died out. 0: the setting. Slope over constant worlds, per decade of lifetime: "
-        f"{slope.effect:.3g} ({slope.low:.3g} to {slope.high:.3g})."
+        f"{slope.said}."
     )
     return NamedFigure("lifespan-and-plasticity", question, figure, caption)
 

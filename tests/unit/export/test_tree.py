@@ -84,6 +84,31 @@ def test_the_picture_of_a_family() -> None:
     assert bar.get_ylabel() == "weight of normal food"
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_no_birth_is_drawn_across_a_life(seed: int) -> None:
+    """Random families: a line from parent to child meets no life between them."""
+    rng = np.random.default_rng(seed)
+    parents, births = [None] * 4, [0] * 4
+    for step in range(10, 400, 10):
+        parents.append(int(rng.integers(0, len(parents))))
+        births.append(step)
+    last = [
+        max([birth, *(b for p, b in zip(parents, births, strict=True) if p == i)]) for i, birth in enumerate(births)
+    ]
+    deaths = [None if rng.random() < 0.4 else step + 1 for step in last]
+    agents = pl.DataFrame(
+        {"agent_id": range(len(births)), "parent_id": parents, "birth_step": births, "death_step": deaths},
+        schema_overrides={"parent_id": pl.Int64, "death_step": pl.Int64},
+    )
+    figure = draw_tree(genealogy(agents), np.zeros(len(births)), "w_normal", 400)
+    edges, lives = (each.get_segments() for each in figure.axes[0].collections if isinstance(each, LineCollection))
+    assert len(edges) > 5
+    for edge in edges:
+        (at, one), (_, other) = edge
+        for (begin, height), (end, _) in lives:
+            assert not (begin < at < end and min(one, other) < height < max(one, other))
+
+
 def test_of_many_some_are_drawn_and_of_nobody_nothing() -> None:
     many = pl.DataFrame(
         {"agent_id": range(1000), "parent_id": [None] * 1000, "birth_step": [0] * 1000, "death_step": [None] * 1000},

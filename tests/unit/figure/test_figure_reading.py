@@ -1,5 +1,7 @@
 """Whether figures can be read: nothing printed over the data, plain numbers, panels that are filled."""
 
+from itertools import pairwise
+
 import numpy as np
 import polars as pl
 import pytest
@@ -14,6 +16,7 @@ from hedon.figure.population import draw_population
 from hedon.figure.survival import draw_survival
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze
+from hedon.sweep.figure import draw_curves
 
 BASELINE = load_config("baseline")
 
@@ -73,6 +76,39 @@ def test_numbers_of_lines_are_written_in_full(counts: tuple[int, int]) -> None:
     shown = numbers(draw_lineages(lines, {"w_normal": "weight"}, {"w_normal": "green"}))
     assert len(shown) >= 2
     assert all(text.replace(",", "").replace(".", "").isdigit() for text in shown)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [0.0005, 0.001, 0.0015, 0.002],
+        [0.001, 0.002, 0.005, 0.1],
+        [1e-6, 1e-3, 1.0],
+        [0.02, 0.05, 0.1, 0.7],
+        [100_000.0, 200_000.0, 5_000_000.0],
+        ["uniform", "gaussian", "switching", "mixture", "rectangle"],
+        ["on", "off"],
+        [f"value {i}" for i in range(14)],
+    ],
+)
+def test_what_stands_below_the_curves_of_a_sweep_can_be_read(values: list) -> None:
+    table = pl.DataFrame({"factor": values * 2, "alive": np.linspace(10, 90, 2 * len(values))})
+    shown = {"alive": "agents alive", "again": "the same", "third": "again"}
+    table = table.with_columns(again=pl.col("alive"), third=pl.col("alive"))
+    figure = draw_curves(table, "factor", shown, ranged=False)
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    low, high = axes.get_xlim()
+    ticks = [*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks()]
+    written = [t.label1 for t in ticks if low <= t.get_loc() <= high and t.label1.get_text()]
+    assert len(written) >= 2
+    assert not any("$" in label.get_text() for label in written)
+    upright = [label for label in written if label.get_rotation() != 30]
+    spans = sorted((box.x0, box.x1) for box in (label.get_window_extent() for label in upright))
+    assert all(left[1] < right[0] for left, right in pairwise(spans))
+    if len(upright) < len(written):  # aslant ones have the height of a line between them
+        ends = sorted(label.get_window_extent().x1 for label in written)
+        assert min(np.diff(ends)) > 1.2 * written[0].get_fontsize() * figure.dpi / 72
 
 
 def survival(analysis: Analysis) -> Figure:

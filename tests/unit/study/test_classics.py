@@ -38,6 +38,13 @@ def test_few_worlds_and_chance_leave_it_open() -> None:
     assert answers(few, none, empty) == [OPEN, OPEN, OPEN]
 
 
+def test_an_effect_that_two_worlds_cannot_tell_is_said_in_words() -> None:
+    assert slope_test("few", [1.0, 2.0], [0.1, 0.2], 0, above=True).said == "not known from 2 worlds"
+    assert slope_test("one", [1.0], [0.1], 0, above=True).said == "not known from 1 world"
+    known = slope_test("known", [1.0, 2.0, 3.0], [0.1, 0.2, 0.3], 0, above=True)
+    assert known.said.startswith("0.1 (0.1 to 0.1")
+
+
 def test_tests_of_a_study_are_corrected_for_each_other() -> None:
     x = np.arange(WORLDS, dtype=float)
     weak = next(

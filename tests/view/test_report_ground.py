@@ -1,0 +1,31 @@
+"""The report of a run can be read on a light and on a dark screen."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from synthetic_run import write_run
+from view_page import GROUNDS
+
+from hedon.record.reader import open_run
+from hedon.report.run import write_report
+
+pytest_plugins = ("view_fixture",)
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = write_run(tmp_path_factory.mktemp("report") / "run", intervals=6, worlds=3)
+    write_report(open_run(folder))
+    return folder / "report.html"
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_the_report_has_the_ground_of_the_screen(ground, report, browser):
+    page = browser.new_context(color_scheme=ground).new_page()
+    page.goto(report.as_uri())
+    page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
+    channels = page.evaluate("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)")
+    assert (sum(channels) < 150) == (ground == "dark")
+    found = Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"]
+    assert [node["target"] for each in found for node in each["nodes"]] == []
+    # Figures have dark letters, so they keep their white ground.
+    assert page.evaluate("getComputedStyle(document.querySelector('figure img')).backgroundColor") == "rgb(255, 255, 255)"
