@@ -53,6 +53,7 @@ def bench(
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step
+      value     one world as bytes, and back
       rule      rules in Python, beside the formulas of a config; needs hedon[rules]
       device    whole worlds on a device, by numbers of worlds; needs --device, and is then the only part by default
       growth    one world without learning, up to 500 times as large; takes minutes and 21 GB

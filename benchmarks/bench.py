@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks import device, growth, network, physics, rays, records, rule, startup, world
+from benchmarks import device, growth, network, physics, rays, records, rule, startup, value, world
 from benchmarks.machine import Calibration, calibrate, describe
 from benchmarks.measure import Row, Table
 from benchmarks.plan import Plan, PlanError
@@ -39,6 +39,7 @@ PARTS = {
     "world": Part("whole worlds with learning, by threads, worlds and instruction sets", world.measure, world.table),
     "records": Part("writing a run's tables", records.measure, records.table),
     "startup": Part("from the start of a process to its first step", startup.measure, startup.table),
+    "value": Part("one world as bytes, and back", value.measure, value.table),
     "rule": Part("rules in Python, beside the formulas of a config", rule.measure, rule.table),
     "device": Part("whole worlds on a device, by numbers of worlds; needs --device", device.measure, device.table),
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),

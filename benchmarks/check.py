@@ -5,7 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hedon.experiment.simulation import Simulation, World
+from hedon.experiment.simulation import Simulation
+from hedon.experiment.world import World
 
 
 class CheckError(Exception):

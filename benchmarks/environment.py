@@ -1,4 +1,4 @@
-"""Agent-steps per second of `hedon.env.vector_env` beside JaxMARL's simple spread, in turns, each on one core.
+"""Agent-steps per second of `hedon.make` beside JaxMARL's simple spread, in turns, each on one core.
 
     python -m venv /tmp/jaxmarl && /tmp/jaxmarl/bin/pip install "jax[cpu]" jaxmarl
     uv run python benchmarks/environment.py /tmp/jaxmarl/bin/python
@@ -55,20 +55,19 @@ def spread(python: str) -> float:
 
 
 def hedon_batch(worlds: int = 4) -> float:
-    """Agent-steps per second of `vector_env`, in worlds of 50 agents that neither die nor breed."""
+    """Agent-steps per second of `hedon.make`, in worlds of 50 agents that neither die nor breed."""
     import numpy as np
 
     import hedon
-    import hedon.env
 
     settings = ("hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0", "population.capacity=50")
-    worlds_driven = hedon.env.vector_env(hedon.load_config("baseline", overrides=settings), range(worlds), threads=1)
-    group, rng, count = worlds_driven.groups["agent"], np.random.default_rng(1), 0
+    driven = hedon.make(hedon.load_config("baseline", overrides=settings), worlds, actions="logit", threads=1)
+    rng, count = np.random.default_rng(1), 0
     begun = time.perf_counter()
     while time.perf_counter() - begun < SECONDS:
-        group.actions[...] = rng.standard_normal(group.actions.shape, np.float32)
-        worlds_driven.step()
-        count += int(group.alive.sum())
+        driven.actions[...] = rng.standard_normal(driven.actions.shape, np.float32)
+        driven.step(driven.actions)
+        count += int(driven.alive.sum())
     return count / (time.perf_counter() - begun)
 
 
@@ -78,9 +77,9 @@ def main() -> None:
     parser.add_argument("python", help="an interpreter that has jaxmarl and jax[cpu]")
     python = parser.parse_args().python
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})  # the processes that it starts inherit it
-    rates: dict[str, list[float]] = {"hedon.env.vector_env": [], "simple spread": []}
+    rates: dict[str, list[float]] = {"hedon.make": [], "simple spread": []}
     for turn in range(TURNS):
-        rates["hedon.env.vector_env"].append(hedon_batch())
+        rates["hedon.make"].append(hedon_batch())
         rates["simple spread"].append(spread(python))
         print(f"turn {turn + 1} of {TURNS}: {', '.join(f'{each[-1]:,.0f}' for each in rates.values())}", flush=True)
     for name, values in rates.items():

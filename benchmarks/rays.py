@@ -11,7 +11,7 @@ from benchmarks.scene import peopled
 from hedon import _engine
 from hedon.config.arena import walls
 from hedon.config.species import ONLY
-from hedon.experiment.simulation import World
+from hedon.experiment.world import World
 
 AGENTS = 8
 CASTS = 500

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from benchmarks.check import check_world
 from benchmarks.plan import Plan
-from hedon.experiment.simulation import Simulation, World
+from hedon.experiment.simulation import Simulation
+from hedon.experiment.world import World
 
 WARM_UP_WINDOWS = 20
 """After these, the baseline has grown from its 50 founders to about 150 agents."""

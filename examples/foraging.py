@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hedon
-import hedon.env
 
 CANDIDATES = 32
 STEPS = 300
@@ -29,7 +28,7 @@ def eaten(worlds: hedon.env.VectorEnv) -> NDArray[np.float64]:
 
 def forage(worlds: hedon.env.VectorEnv, weights: NDArray[np.float64], seeds: range) -> NDArray[np.float64]:
     """Lets the agents of each world act by the weights of its row, (worlds, rays + 1); returns `eaten`."""
-    worlds.reset(seeds)
+    worlds.reset(seed=seeds)
     agents = worlds.groups["agent"]
     food = [i for i, name in enumerate(agents.columns) if name.startswith("ray_normal_")]
     motors = np.stack([weights[:, :-1], weights[:, -2::-1]], axis=2).astype(np.float32)  # (worlds, rays, 2)
@@ -38,7 +37,7 @@ def forage(worlds: hedon.env.VectorEnv, weights: NDArray[np.float64], seeds: ran
         seen = np.maximum(agents.observations[:, :, food], 0.0)  # (worlds, slots, rays), 0 where there is no food
         np.matmul(seen, motors, out=agents.actions)
         agents.actions += bias
-        worlds.step()
+        worlds.step(agents.actions)
     return eaten(worlds)
 
 
@@ -58,7 +57,7 @@ def train(worlds: hedon.env.VectorEnv, generations: int, rng: np.random.Generato
 def compare(generations: int, threads: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Foods per agent in worlds that training did not see: with the trained policy, and with random actions."""
     config = hedon.load_config("baseline", overrides=SETTINGS)
-    worlds = hedon.env.vector_env(config, range(CANDIDATES), threads=threads)
+    worlds = hedon.make(config, CANDIDATES, actions="logit", threads=threads)
     weights = train(worlds, generations, np.random.default_rng(1))
     fresh = range(1_000_000, 1_000_000 + CANDIDATES)
     trained = forage(worlds, np.tile(weights, (CANDIDATES, 1)), fresh)

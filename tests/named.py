@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ppo_reference import split
 
 from hedon.config.layout import layouts, observation_columns, store_columns
-from hedon.experiment.simulation import World
+from hedon.experiment.world import World
 from hedon.record.schema import columns_of
 
 LIFE = {

@@ -22,7 +22,7 @@ from hedon.check.run import check_run
 from hedon.config.config import Config
 from hedon.config.dump import digest, dump_toml
 from hedon.config.load import load_config
-from hedon.env.vector import vector_env
+from hedon.env.make import make
 from hedon.error import ArgumentError
 from hedon.experiment.plan import Moment, RunPlan
 from hedon.experiment.replay import replay_run
@@ -120,7 +120,31 @@ def _piece(trial: Trial) -> None:
     _close(whole.worlds[0])
 
 
-CHEAP: dict[str, Callable[[Trial], None]] = {"config": _config, "simulation": _piece}
+def _value(trial: Trial) -> None:
+    """Worlds that are kept, copied or begun again go on as they would have, in the slots in which they were."""
+    config = trial.config()
+    one = begin(trial.world, config, SEEDS, 1)
+    _drive(one)
+    one.run(trial.draw.randrange(1, STEPS))
+    kept, copied = one.save(), one.clone()
+    one.run(STEPS)
+    copied.run(STEPS)
+    _same(one, copied, "a clone differs")
+    copied.restore(kept)
+    copied.run(STEPS)
+    _same(one, copied, "a restored world differs")
+    for mine, theirs in zip(one.worlds, copied.worlds, strict=True):
+        np.testing.assert_array_equal(mine.living, theirs.living)
+    if not (trial.world.any("founders") or trial.world.any("networks")):  # those are given to new worlds by hand
+        copied.reset(SEEDS)
+        fresh = begin(trial.world, config, SEEDS, 1)
+        for each in (copied, fresh):
+            _drive(each)
+            each.run(STEPS)
+        _same(copied, fresh, "a world that was begun again differs")
+
+
+CHEAP: dict[str, Callable[[Trial], None]] = {"config": _config, "simulation": _piece, "value": _value}
 
 
 def _drive(simulation: Simulation) -> None:
@@ -297,12 +321,14 @@ RECORDED: dict[str, Callable[[Trial], None]] = {
 def _driven(trial: Trial) -> None:
     """Who drives agents from outside gets the same worlds on any number of threads; a run refuses them."""
     config, repeat = trial.config(), trial.draw.randrange(1, 7)
-    pair = [vector_env(config, SEEDS, threads=threads) for threads in (1, 2)]
+    pair = [make(config, len(SEEDS), SEEDS, repeat=repeat, threads=threads) for threads in (1, 2)]
     for each in pair:
         for _ in range(STEPS // repeat):
             for group in each.groups.values():
                 group.actions[...] = 0.4
-            each.step(repeat)
+            each.step(each.actions)
+            if each is pair[1] and trial.draw.random() < 0.2:
+                each.restore(each.clone().save())
     _same(pair[0].simulation, pair[1].simulation, "two threads differ")
     for name, group in pair[0].groups.items():
         np.testing.assert_array_equal(group.observations, pair[1].groups[name].observations)

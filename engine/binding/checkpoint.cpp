@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "simulation/pack.h"
+
 namespace nb = nanobind;
 
 namespace hedon {
@@ -33,7 +35,7 @@ nb::dict to_arrays(Checkpoint checkpoint) {
     const std::vector<size_t> shape(held->shape.begin(), held->shape.end());
     const nb::dlpack::dtype type{static_cast<uint8_t>(CODES[static_cast<int>(held->kind)]),
                                  static_cast<uint8_t>(8 * held->size), 1};
-    const nb::ndarray<nb::numpy> view(held->bytes.data(), shape.size(), shape.data(), owner, nullptr, type);
+    const nb::ndarray<nb::numpy> view(held->held.get(), shape.size(), shape.data(), owner, nullptr, type);
     out[held->name.c_str()] = nb::cast(view);
   }
   return out;
@@ -45,13 +47,38 @@ Checkpoint from_arrays(const nb::dict& arrays) {
     const std::string name = nb::str(key).c_str();
     AnyArray array;
     if (!nb::try_cast(value, array)) throw nb::value_error((name + " is not an array of numbers in C order").c_str());
-    SavedArray saved{name, kind_of(array.dtype(), name), array.dtype().bits / 8, {}, {}};
+    SavedArray saved{name, kind_of(array.dtype(), name), array.dtype().bits / 8, {}, {}, nullptr};
     for (size_t d = 0; d < array.ndim(); ++d) saved.shape.push_back(static_cast<int64_t>(array.shape(d)));
-    saved.bytes.resize(array.nbytes());
-    if (!saved.bytes.empty()) memcpy(saved.bytes.data(), array.data(), saved.bytes.size());
+    saved.held.reset(new char[array.nbytes()]);  // the array may be a copy that was made for this call
+    saved.bytes = {saved.held.get(), array.nbytes()};
+    if (array.nbytes() > 0) memcpy(saved.held.get(), array.data(), array.nbytes());
     out.push_back(std::move(saved));
   }
   return out;
+}
+
+nb::bytes pack(PythonSimulation& self, const nb::bytes& head) {
+  for (int i = 0; i < self.get().world_count(); ++i) {
+    self.slotted(i);
+    self.need_whole(i);
+  }
+  const std::string_view text(head.c_str(), head.size());
+  const size_t size = self.get().pack(text, nullptr);
+  PyObject* const out = PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(size));
+  if (out == nullptr) throw nb::python_error();
+  self.get().pack(text, PyBytes_AS_STRING(out));
+  return nb::steal<nb::bytes>(out);
+}
+
+nb::bytes packed_head(const nb::bytes& bytes) {
+  const Packed packed = unpack({bytes.c_str(), bytes.size()}, true);
+  if (!packed.complaint.empty()) throw nb::value_error(packed.complaint.c_str());
+  return nb::bytes(packed.head.data(), packed.head.size());
+}
+
+void unpack_into(PythonSimulation& self, const nb::bytes& bytes) {
+  const std::string complaint = self.unpack({bytes.c_str(), bytes.size()});
+  if (!complaint.empty()) throw nb::value_error(complaint.c_str());
 }
 
 }  // namespace hedon

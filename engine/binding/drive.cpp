@@ -23,10 +23,13 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
 
 }  // namespace
 
-void set_actions(PythonSimulation& self, int32_t species, TableIn actions) {
+int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form) {
   need_rows(self, species, actions);
   if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
-  self.get().set_actions(species, actions.data());
+  for (int32_t f = 0; f < 3; ++f) {
+    if (form == ACTION_FORMS[f]) return self.get().set_actions(species, actions.data(), static_cast<ActionForm>(f));
+  }
+  throw nb::value_error("actions are unit, force or logit");
 }
 
 void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {

@@ -15,8 +15,12 @@ using TableOut = nanobind::ndarray<float, nanobind::ndim<3>, nanobind::c_contig,
 using RowsOut = nanobind::ndarray<float, nanobind::ndim<2>, nanobind::c_contig, nanobind::device::cpu>;
 using IdsOut = nanobind::ndarray<int32_t, nanobind::ndim<2>, nanobind::c_contig, nanobind::device::cpu>;
 
-/// Tells the agents of an external species what to do: (worlds, slots, 2). ValueError: an array has another shape.
-void set_actions(PythonSimulation& self, int32_t species, TableIn actions);
+/// Names of the forms of actions, in the order of `ActionForm`.
+inline constexpr const char* ACTION_FORMS[] = {"unit", "force", "logit"};
+
+/// Tells the agents of an external species what to do: (worlds, slots, 2). Returns -1, or which number of an agent is
+/// out of bounds. ValueError: an array has another shape.
+int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);
 
 /// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …).
 void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);

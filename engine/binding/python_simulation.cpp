@@ -13,6 +13,7 @@
 #include "binding/error.h"
 #include "binding/released.h"
 #include "simulation/config_check.h"
+#include "simulation/pack.h"
 
 namespace nb = nanobind;
 
@@ -157,6 +158,17 @@ void PythonSimulation::run(int64_t steps) {
     const double next = static_cast<double>(count) * PIECE_SECONDS / std::max(seconds, 1e-9);
     if (count == piece_) piece_ = static_cast<int64_t>(std::clamp(next, 1.0, 4.0 * static_cast<double>(piece_)));
   }
+}
+
+std::string PythonSimulation::unpack(std::string_view bytes) {
+  const Packed packed = hedon::unpack(bytes, false);
+  return packed.complaint.empty() ? get().restore(packed.worlds) : packed.complaint;
+}
+
+void PythonSimulation::reset(int index, uint64_t seed) {
+  world(index);
+  get().reset(index, seed);
+  raise_faults();
 }
 
 void PythonSimulation::read_observations(int32_t species, const ObservationOut& out) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "simulation/simulation.h"
@@ -40,6 +41,12 @@ class PythonSimulation {
 
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
+
+  /// Replaces all worlds by those of a string of `Simulation::pack`. Returns "", or why none was replaced.
+  std::string unpack(std::string_view bytes);
+
+  /// Begins a world again with this seed. EngineError: there is no place for its initial agents or foods.
+  void reset(int index, uint64_t seed);
 
   /// `Simulation::read_observations`, or `read_rewards` if there is no array of observations, with the interpreter lock
   /// released.

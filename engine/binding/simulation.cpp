@@ -290,12 +290,24 @@ void bind_simulation(nb::module_& module) {
       .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
+      .def("pack", &pack, nb::arg("head"),
+           "All worlds with their seeds, and a text of the caller's, as one string of bytes.")
+      .def_static("packed_head", &packed_head, nb::arg("packed"),
+                  "The caller's text in what `pack` gave. ValueError: it is damaged, or something else.")
+      .def("unpack", &unpack_into, nb::arg("packed"),
+           "Replaces all worlds, and their seeds, by those in what `pack` gave, in which `packed_head` has found no "
+           "damage. ValueError: what is wrong; all worlds are then unchanged.")
+      .def("reset", &S::reset, nb::arg("world"), nb::arg("seed"), "Begins a world again with this seed.")
+      .def(
+          "seed", [](S& s, int world) { return s.world(world).seed; }, nb::arg("world"))
       .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"),
            "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
            "*records, double *answers).")
-      .def("set_actions", &set_actions, nb::arg("species"), nb::arg("actions"),
-           nb::sig("def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None"),
-           "Tells the agents of an external species what to do from now on: (worlds, slots, 2).")
+      .def("set_actions", &set_actions, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
+           nb::sig("def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
+                   "'logit') -> int"),
+           "Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or "
+           "`logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.")
       .def(
           "read_observations", &read_observations, nb::arg("species"), nb::arg("observation"), nb::arg("reward"),
           nb::arg("agent_id"),

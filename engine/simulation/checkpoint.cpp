@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
+#include "base/hash.h"
+#include "simulation/pack.h"
 #include "simulation/saved.h"
 #include "simulation/simulation.h"
 
@@ -30,7 +33,7 @@ SavedExtent extent_of(const World& world) {
 template <class T>
 SavedArray save_list(const std::string& name, const std::vector<T>& values, std::vector<int64_t> shape) {
   SavedArray array = make_saved<T>(name, std::move(shape));
-  if (!values.empty()) memcpy(array.bytes.data(), values.data(), array.bytes.size());
+  if (!values.empty()) memcpy(array.held.get(), values.data(), array.bytes.size());
   return array;
 }
 
@@ -83,17 +86,9 @@ std::vector<int32_t> listed_ranks(const World& world, const SavedExtent& extent)
   return rank;
 }
 
-/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for only one.
+/// Calls take(SavedArray) for what a checkpoint has beside `for_each_saved`: the places of foods, and the impulses.
 template <class Take>
-void save_each(const World& world, Take&& take) {
-  const SavedExtent extent = extent_of(world);
-  for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
-    SavedArray array = make_saved<T>(name, rows.shape());
-    const size_t bytes = rows.row_bytes();
-    for (int64_t i = 0; i < rows.count; ++i)
-      memcpy(array.bytes.data() + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
-    take(std::move(array));
-  });
+void save_lists(const World& world, const SavedExtent& extent, Take&& take) {
   take(save_list("food.slot", extent.foods, {static_cast<int64_t>(extent.foods.size())}));
 
   const NeighborList& list = world.state.physics.neighbors;
@@ -115,28 +110,79 @@ void save_each(const World& world, Take&& take) {
   save_pairs(world, rank, list.walls, 2, wall, take);
 }
 
-/// Multiply and shift, eight bytes at a time: it only has to distinguish states, not to resist an attacker.
-class Hash {
+/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for only one.
+template <class Take>
+void save_each(const World& world, Take&& take) {
+  const SavedExtent extent = extent_of(world);
+  for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
+    SavedArray array = make_saved<T>(name, rows.shape());
+    const size_t bytes = rows.row_bytes();
+    for (int64_t i = 0; i < rows.count; ++i)
+      memcpy(array.held.get() + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
+    take(std::move(array));
+  });
+  save_lists(world, extent, take);
+}
+
+/// Counts the bytes of packed worlds, or writes them where there is room for them.
+class Packer {
  public:
-  void add(const SavedArray& array) {
-    const size_t bytes = array.bytes.size();
-    mix(bytes);
-    for (size_t at = 0; at < bytes; at += 8) {
-      uint64_t word = 0;
-      memcpy(&word, array.bytes.data() + at, bytes - at < 8 ? bytes - at : 8);
-      mix(word);
-    }
+  explicit Packer(char* at) : at_(at) {}
+
+  size_t size() const { return size_; }
+  void put(const void* from, size_t bytes) {
+    if (at_ != nullptr) memcpy(at_ + size_, from, bytes);
+    size_ += bytes;
   }
-  uint64_t value() const { return value_; }
+  void put(uint64_t number) { put(&number, sizeof number); }
+  void text(std::string_view text) {
+    put(text.size());
+    put(text.data(), text.size());
+    pad();
+  }
+  void head(const std::string& name, NumberKind kind, size_t size, const std::vector<int64_t>& shape) {
+    text(name);
+    put(static_cast<uint64_t>(kind));
+    put(size);
+    put(shape.size());
+    put(shape.data(), shape.size() * sizeof(int64_t));
+  }
+  /// Rows, directly from the memory of the world.
+  template <class T>
+  void rows(const SavedRows<T>& rows) {
+    const size_t bytes = rows.row_bytes();
+    for (int64_t i = 0; i < rows.count && at_ != nullptr; ++i)
+      memcpy(at_ + size_ + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
+    size_ += static_cast<size_t>(rows.count) * bytes;
+    pad();
+  }
+  void pad() {
+    const uint64_t zero = 0;
+    put(&zero, (8 - size_ % 8) % 8);
+  }
 
  private:
-  void mix(uint64_t word) {
-    value_ = (value_ ^ word) * 0xD6E8FEB86659FD93u;
-    value_ ^= value_ >> 32;
-  }
-
-  uint64_t value_ = 0x9E3779B97F4A7C15u;
+  char* at_;
+  size_t size_ = 0;
 };
+
+void pack_world(const World& world, Packer& out) {
+  const SavedExtent extent = extent_of(world);
+  out.put(world.seed);
+  std::vector<int32_t> slots = extent.slots;
+  slots.insert(slots.end(), extent.free.begin(), extent.free.end());
+  out.text({reinterpret_cast<const char*>(slots.data()), slots.size() * sizeof(int32_t)});
+  for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
+    out.head(name, kind_of<T>(), sizeof(T), rows.shape());
+    out.rows(rows);
+  });
+  save_lists(world, extent, [&](const SavedArray& array) {
+    out.head(array.name, array.kind, static_cast<size_t>(array.size), array.shape);
+    out.put(array.bytes.data(), array.bytes.size());
+    out.pad();
+  });
+  out.text("");  // no more arrays
+}
 
 }  // namespace
 
@@ -148,8 +194,22 @@ Checkpoint Simulation::save(int index) {
 
 uint64_t Simulation::digest(int index) {
   Hash hash;
-  save_each(complete(index), [&](const SavedArray& array) { hash.add(array); });
+  save_each(complete(index), [&](const SavedArray& array) { hash.add(array.bytes.data(), array.bytes.size()); });
   return hash.value();
+}
+
+size_t Simulation::pack(std::string_view head, char* out) {
+  Packer packer(out);
+  packer.put(PACK_MARK, sizeof PACK_MARK);
+  packer.put(uint64_t{0});  // the hash of what follows
+  const size_t hashed = packer.size();
+  packer.text(head);
+  packer.put(worlds_.size());
+  for (int i = 0; i < world_count(); ++i) pack_world(complete(i), packer);
+  if (out == nullptr) return packer.size();
+  const uint64_t hash = hash_bytes(out + hashed, packer.size() - hashed);
+  memcpy(out + hashed - sizeof hash, &hash, sizeof hash);
+  return packer.size();
 }
 
 }  // namespace hedon

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,9 +22,18 @@ struct SavedArray {
   NumberKind kind;
   int32_t size;  ///< bytes of one number
   std::vector<int64_t> shape;
-  std::vector<char> bytes;
+  std::span<const char> bytes;   ///< in `held`, or in memory of the caller
+  std::unique_ptr<char[]> held;  ///< null if the memory is the caller's
 };
 
 using Checkpoint = std::vector<SavedArray>;
+
+/// A checkpoint with what a world's future does not depend on, but its reader does: its seed, and who is in which slot.
+struct SavedWorld {
+  uint64_t seed;
+  std::span<const char>
+      slots;  ///< int32_t each: of the living in the order of their ids, then free ones as `free_slots`
+  Checkpoint arrays;
+};
 
 }  // namespace hedon

@@ -1,12 +1,35 @@
 /// What a caller adds to worlds: rules, what agents are told, and what they sense and earn.
 #include <atomic>
 #include <cstring>
+#include <limits>
 
 #include "base/float_mode.h"
+#include "base/math.h"
 #include "simulation/simulation.h"
 
 namespace hedon {
 namespace {
+
+/// What an action may be.
+struct ActionBounds {
+  float low, high;
+};
+
+ActionBounds action_bounds(const SpeciesLayout& layout, ActionForm form) {
+  constexpr float LARGEST = std::numeric_limits<float>::max();
+  if (form == ActionForm::unit) return {-1.0f, 1.0f};
+  if (form == ActionForm::force) return {layout.min_force, layout.max_force};
+  return {-LARGEST, LARGEST};
+}
+
+/// The number whose sigmoid is the share of the way from `low` to `high` at which an action is.
+float logit(float action, ActionBounds bounds) {
+  constexpr float END = 80.0f;  // from here on the sigmoid is 1 as float32; at -80 it is 2e-35, which no force feels
+  const double way = static_cast<double>(action) - static_cast<double>(bounds.low);
+  const double rest = static_cast<double>(bounds.high) - static_cast<double>(action);
+  if (way <= 0.0) return -END;
+  return rest <= 0.0 ? END : static_cast<float>(log_double(way) - log_double(rest));
+}
 
 /// Slots that a thread takes at once.
 constexpr int32_t SLOTS_AT_ONCE = 16;
@@ -52,14 +75,27 @@ std::string Simulation::missing_rule() const {
   return "";
 }
 
-void Simulation::set_actions(int32_t species, const float* actions) {
+int64_t Simulation::set_actions(int32_t species, const float* actions, ActionForm form) {
   const Species& own = shape_.of[species];
-  const int64_t numbers = int64_t{own.capacity()} * ACTIONS;
-  for (World& world : worlds_) {
-    memcpy(&world.state.external_action[int64_t{own.first_slot} * ACTIONS], actions,
-           static_cast<size_t>(numbers) * sizeof(float));
-    actions += numbers;
-  }
+  const ActionBounds bounds = action_bounds(*own.layout, form);
+  const auto for_each = [&](auto&& visit) {
+    int64_t at = 0;
+    for (World& world : worlds_) {
+      for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot, at += ACTIONS) {
+        for (int64_t a = 0; a < ACTIONS && world.state.alive[slot] != 0; ++a)
+          visit(world, slot * int64_t{ACTIONS} + a, at + a);
+      }
+    }
+  };
+  int64_t bad = -1;
+  for_each([&](World&, int64_t, int64_t at) {
+    if (bad < 0 && !(actions[at] >= bounds.low && actions[at] <= bounds.high)) bad = at;
+  });
+  if (bad >= 0) return bad;
+  for_each([&](World& world, int64_t row, int64_t at) {
+    world.state.external_action[row] = form == ActionForm::logit ? actions[at] : logit(actions[at], bounds);
+  });
+  return -1;
 }
 
 void Simulation::read_rewards(int32_t species, const ObservationOut& out) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,12 @@ class Inspector {
 
   std::string complaint;
 
+  /// Looks first behind what was found last: most arrays are asked for in their order.
   const SavedArray* find(const std::string& name) const {
-    for (const SavedArray& array : checkpoint_) {
-      if (array.name == name) return &array;
+    const size_t count = checkpoint_.size();
+    for (size_t i = 0; i < count; ++i, ++next_) {
+      if (next_ >= count) next_ = 0;
+      if (checkpoint_[next_].name == name) return &checkpoint_[next_];
     }
     return nullptr;
   }
@@ -43,8 +47,8 @@ class Inspector {
   bool has(const std::string& name, const std::vector<int64_t>& shape) {
     const SavedArray* array = find(name);
     if (array == nullptr) return refuse(name + " is missing");
-    const SavedArray wanted = make_saved<T>(name, {0});
-    if (array->kind != wanted.kind || array->size != wanted.size) return refuse(name + " has numbers of another type");
+    if (array->kind != kind_of<T>() || array->size != static_cast<int32_t>(sizeof(T)))
+      return refuse(name + " has numbers of another type");
     bool same = array->shape.size() == shape.size();
     for (size_t d = 0; same && d < shape.size(); ++d) same = shape[d] == -1 || shape[d] == array->shape[d];
     if (!same) return refuse(name + " has shape " + text(array->shape) + ", here it is " + text(shape));
@@ -54,19 +58,43 @@ class Inspector {
   /// Whether all numbers of an array are within bounds; NaN is not.
   template <class T>
   bool within(const std::string& name, double low, double high) {
-    for (const T value : numbers<T>(name)) {
+    return all_of<T>(name, low, high, [=](T value) {
       const double number = static_cast<double>(value);
-      if (!(number >= low && number <= high)) {
-        return refuse(name + " holds " + std::to_string(number) + ", allowed is " + std::to_string(low) + " to " +
-                      std::to_string(high));
-      }
-    }
-    return true;
+      return number >= low && number <= high;
+    });
+  }
+
+  /// Whether all numbers of an array of floats are finite.
+  template <class T>
+  bool finite(const std::string& name) {
+    constexpr T LARGEST = std::numeric_limits<T>::max();
+    return all_of<T>(name, static_cast<double>(-LARGEST), static_cast<double>(LARGEST),
+                     [](T value) { return std::fabs(value) <= LARGEST; });
   }
 
   const World& world_;
 
  private:
+  /// Large arrays have millions of numbers, of which hardly ever one is bad: the first loop has no branch.
+  template <class T, class Good>
+  bool all_of(const std::string& name, double low, double high, Good&& good) {
+    const SavedArray& array = *find(name);
+    const size_t count = array.bytes.size() / sizeof(T);
+    const auto value = [&](size_t i) {
+      T number;
+      memcpy(&number, array.bytes.data() + i * sizeof(T), sizeof number);
+      return number;
+    };
+    bool all = true;
+    for (size_t i = 0; i < count; ++i) all &= good(value(i));
+    for (size_t i = 0; i < count && !all; ++i) {
+      if (!good(value(i)))
+        return refuse(name + " holds " + std::to_string(value(i)) + ", allowed is " + std::to_string(low) + " to " +
+                      std::to_string(high));
+    }
+    return true;
+  }
+
   static std::string text(const std::vector<int64_t>& shape) {
     std::string out = "(";
     for (const int64_t length : shape)
@@ -75,6 +103,7 @@ class Inspector {
   }
 
   const Checkpoint& checkpoint_;
+  mutable size_t next_ = 0;  ///< where `find` looks first
 };
 
 }  // namespace hedon

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -88,10 +89,7 @@ bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& ch
   for_each_saved(in.world_, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
     ++known;
     good = good && in.has<T>(name, rows.shape());
-    if constexpr (std::is_floating_point_v<T>) {
-      const double largest = static_cast<double>(std::numeric_limits<T>::max());
-      good = good && in.within<T>(name, -largest, largest);
-    }
+    if constexpr (std::is_floating_point_v<T>) good = good && in.finite<T>(name);
   });
   for (int kind = 0; kind < 3; ++kind, known += 2) {
     good = good && in.has<int32_t>(PAIR_NAMES[kind], {-1, 2});
@@ -212,7 +210,7 @@ bool check_newborns(Inspector& in) {
 }
 
 /// Whether the last line of a wide observation can be.
-bool is_possible(const ObservationShape& sizes, const uint8_t* bytes) {
+bool is_possible(const ObservationShape& sizes, const char* bytes) {
   ObservationExtra extra;
   memcpy(&extra, bytes, sizeof extra);
   const int32_t bits = sizes.touches - 64;
@@ -227,7 +225,7 @@ bool check_observations(Inspector& in, const SavedExtent& extent) {
   if (extent.filled == 0 || !in.world_.shape->learning) return true;
   std::vector<int32_t> species = saved_species(in, extent.slots.size());
   std::erase_if(species, [&](int32_t s) { return !in.world_.shape->of[s].learns; });
-  const std::vector<uint8_t> bytes = in.numbers<uint8_t>("observation");
+  const std::span<const char> bytes = in.find("observation")->bytes;
   const size_t size = static_cast<size_t>(in.world_.shape->lines) * sizeof(ObservationLine);
   for (size_t at = 0; at < bytes.size(); at += size) {
     const Species& own = in.world_.shape->of[species[at / (static_cast<size_t>(extent.filled) * size)]];
@@ -298,26 +296,50 @@ void restore_pairs(const Inspector& in, const World& world, const SavedExtent& e
   }
 }
 
-}  // namespace
+/// Checks everything that a step relies on, and reads how many rows there are.
+bool check_all(Inspector& in, SavedExtent& extent, const Checkpoint& checkpoint) {
+  return read_extent(in, extent) && check_arrays(in, extent, checkpoint) && check_species(in, extent.slots.size()) &&
+         check_life(in) && check_touch(in, extent.slots.size()) && check_food(in, extent) && check_newborns(in) &&
+         check_observations(in, extent) && check_pairs(in, extent);
+}
 
-std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
-  const FloatMode mode(flush_);
-  World& target = world(index);
-  const WorldState& state = target.state;
-  Inspector in(target, checkpoint);
-  SavedExtent extent{};
-  if (!read_extent(in, extent) || !check_arrays(in, extent, checkpoint) || !check_species(in, extent.slots.size()) ||
-      !check_life(in) || !check_touch(in, extent.slots.size()) || !check_food(in, extent) || !check_newborns(in) ||
-      !check_observations(in, extent) || !check_pairs(in, extent)) {
-    return in.complaint;
+/// Reads who is in which slot: every slot once, and all of them of their species.
+bool read_slots(Inspector& in, std::span<const char> saved, const SavedExtent& extent, std::vector<int32_t>& slots) {
+  const WorldShape& shape = *in.world_.shape;
+  const auto refuse = [&] { return in.refuse("the slots are not those of such a world"); };
+  slots.resize(saved.size() / sizeof(int32_t));
+  if (saved.size() != static_cast<size_t>(shape.capacity) * sizeof(int32_t)) return refuse();
+  memcpy(slots.data(), saved.data(), saved.size());
+  std::vector<int32_t> species = saved_species(in, extent.slots.size());
+  std::vector<int32_t> left(static_cast<size_t>(shape.species));
+  for (int32_t s = 0; s < shape.species; ++s) left[static_cast<size_t>(s)] = shape.of[s].capacity();
+  for (const int32_t s : species) --left[static_cast<size_t>(s)];
+  for (int32_t s = 0; s < shape.species; ++s)
+    species.insert(species.end(), static_cast<size_t>(left[static_cast<size_t>(s)]), s);
+  std::vector<bool> seen(slots.size());
+  for (size_t i = 0; i < slots.size(); ++i) {
+    const int32_t slot = slots[i];
+    if (slot < 0 || slot >= shape.capacity || shape.species_of(slot) != species[i] || seen[static_cast<size_t>(slot)])
+      return refuse();
+    seen[static_cast<size_t>(slot)] = true;
   }
-  empty(target);
+  return true;
+}
+
+/// Fills an empty world; `slots` as `read_slots` gives them, or empty for any slots.
+void fill(const Inspector& in, World& target, SavedExtent& extent, const std::vector<int32_t>& slots = {}) {
+  const WorldState& state = target.state;
   const std::vector<int32_t> species = saved_species(in, extent.slots.size());
   for (size_t i = 0; i < extent.slots.size(); ++i) {
-    const int32_t slot = take_free_slot(target, species[i]);
+    const int32_t free = take_free_slot(target, species[i]);
+    const int32_t slot = slots.empty() ? free : slots[i];
     extent.slots[i] = slot;
     state.living[static_cast<int64_t>(i)] = slot;
     state.alive[slot] = 1;
+  }
+  size_t next = extent.slots.size();
+  for (int32_t s = 0; s < target.shape->species && !slots.empty(); ++s) {
+    for (int32_t i = 0; i < state.free_count[s]; ++i) state.free[target.shape->of[s].first_slot + i] = slots[next++];
   }
   extent.free = free_slots(target);
   list_networks(target, extent);
@@ -333,6 +355,41 @@ std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
       target.kernel->network.pack_weights(target.species(slot).network, target.network(slot));
   }
   restore_pairs(in, target, extent);
+}
+
+}  // namespace
+
+std::string Simulation::restore(int index, const Checkpoint& checkpoint) {
+  const FloatMode mode(flush_);
+  World& target = world(index);
+  Inspector in(target, checkpoint);
+  SavedExtent extent{};
+  if (!check_all(in, extent, checkpoint)) return in.complaint;
+  empty(target);
+  fill(in, target, extent);
+  return "";
+}
+
+std::string Simulation::restore(const std::vector<SavedWorld>& saved) {
+  const FloatMode mode(flush_);
+  if (saved.size() != worlds_.size())
+    return "there are " + std::to_string(saved.size()) + " worlds, here " + std::to_string(worlds_.size());
+  std::vector<Inspector> inspectors;
+  std::vector<SavedExtent> extents(saved.size());
+  std::vector<std::vector<int32_t>> slots(saved.size());
+  for (int i = 0; i < world_count(); ++i) {
+    const size_t at = static_cast<size_t>(i);
+    Inspector& in = inspectors.emplace_back(numbers(i), saved[at].arrays);
+    if (!check_all(in, extents[at], saved[at].arrays) || !read_slots(in, saved[at].slots, extents[at], slots[at]))
+      return "world " + std::to_string(i) + ": " + in.complaint;
+  }
+  for (int i = 0; i < world_count(); ++i) {
+    const size_t at = static_cast<size_t>(i);
+    World& target = world(i);
+    target.seed = saved[at].seed;
+    empty(target);
+    fill(inspectors[at], target, extents[at], slots[at]);
+  }
   return "";
 }
 

@@ -179,16 +179,22 @@ void for_each_saved(const World& world, const SavedExtent& extent, Visit&& visit
   SavedArrays<Visit>(world, extent, visit).all();
 }
 
+/// The type of an array's numbers.
+template <class T>
+constexpr NumberKind kind_of() {
+  if (std::is_floating_point_v<T>) return NumberKind::real;
+  return std::is_signed_v<T> ? NumberKind::integer : NumberKind::natural;
+}
+
 /// An array of a checkpoint, without values.
 template <class T>
 SavedArray make_saved(const std::string& name, std::vector<int64_t> shape) {
-  const NumberKind kind = std::is_floating_point_v<T>
-                              ? NumberKind::real
-                              : (std::is_signed_v<T> ? NumberKind::integer : NumberKind::natural);
   int64_t count = 1;
   for (const int64_t length : shape) count *= length;
   const size_t bytes = static_cast<size_t>(count) * sizeof(T);
-  return {name, kind, static_cast<int32_t>(sizeof(T)), std::move(shape), std::vector<char>(bytes)};
+  std::unique_ptr<char[]> held(new char[bytes]);  // written by the caller
+  const std::span<const char> all(held.get(), bytes);
+  return {name, kind_of<T>(), static_cast<int32_t>(sizeof(T)), std::move(shape), all, std::move(held)};
 }
 
 /// Names of the pairs of the three kinds, and of their impulses.

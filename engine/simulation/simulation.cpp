@@ -148,10 +148,26 @@ void Simulation::begin(World& world) {
 
 /// Removes everything from a world.
 void Simulation::empty(World& world) {
-  for_each_array(world.state, "", []<class T>(const std::string&, Array<T>& array) {
+  const auto clear = []<class T>(const std::string&, Array<T>& array) {
     memset(static_cast<void*>(array.data), 0, static_cast<size_t>(array.count) * sizeof(T));
+  };
+  WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
+    auto& field = world.state.*member;
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, PhysicsState>) {
+      for_each_array(field, "", clear);
+    } else if (!Device::is_large(size)) {  // who takes a slot gets networks and rollouts of its own
+      clear(name, field);
+    }
   });
   begin(world);
+}
+
+void Simulation::reset(int index, uint64_t seed) {
+  const FloatMode mode(flush_);
+  World& target = world(index);
+  target.seed = seed;
+  empty(target);
+  if (!target.over()) init_population(target);
 }
 
 bool Simulation::set_scene(int index, const SceneInput& scene) {

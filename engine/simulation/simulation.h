@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/parallel.h"
@@ -33,6 +34,13 @@ struct ObservationOut {
   float* observation;  ///< (…, entries); zeros where nobody lives; null for `read_rewards`
   float* reward;       ///< of the last step, for the agent whose id was there before it; else 0
   int32_t* agent_id;   ///< -1 where nobody lives; holds the ids of before the step on entry
+};
+
+/// What the numbers are by which a caller tells agents what to do.
+enum class ActionForm : int32_t {
+  unit,   ///< from -1, the least force of a motor, to 1, the greatest
+  force,  ///< the force itself
+  logit   ///< before the sigmoid, as a network gives them: any finite number
 };
 
 /// Bytes that a simulation reserves, by purpose. Memory that is never touched costs nothing.
@@ -74,6 +82,15 @@ class Simulation {
   /// checkpoint; then the world is unchanged.
   std::string restore(int index, const Checkpoint& checkpoint);
 
+  /// Replaces all worlds by saved ones, and their seeds; none of them if one of the checkpoints is wrong.
+  std::string restore(const std::vector<SavedWorld>& saved);
+
+  /// Writes all worlds as one string of bytes with a text of the caller's, unless `out` is null; returns its length.
+  size_t pack(std::string_view head, char* out);
+
+  /// Begins a world again with this seed.
+  void reset(int index, uint64_t seed);
+
   /// A hash of everything that decides a world's future: equal for equal bits.
   uint64_t digest(int index);
 
@@ -86,9 +103,9 @@ class Simulation {
   /// "", or which rule the config names and is not there.
   std::string missing_rule() const;
 
-  /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2), before the
-  /// sigmoid.
-  void set_actions(int32_t species, const float* actions);
+  /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2). Rows without an
+  /// agent are not read. Returns -1, or which number of an agent is out of bounds; then nobody is told anything.
+  int64_t set_actions(int32_t species, const float* actions, ActionForm form);
 
   /// Writes what the agents of an external species sense now, and what they earned in the last step.
   void read_observations(int32_t species, const ObservationOut& out);

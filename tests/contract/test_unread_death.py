@@ -7,8 +7,8 @@ import pytest
 from cuda_emulation import emulated as emulated
 from worlds import QUICK
 
+import hedon
 from hedon import EngineError, Simulation, load_config
-from hedon.env import vector_env
 
 SLOTS = 4
 ROOM = 16 * SLOTS
@@ -92,13 +92,14 @@ def test_a_checkpoint_holds_nothing_of_what_was_lost():
 
 
 def test_driven_worlds_never_end():
-    worlds = vector_env(CONFIG, [1, 2], threads=1)
+    worlds = hedon.make(CONFIG, 2, seed=1, threads=1)
     group = worlds.groups["agent"]
     died = 0
     while died <= 4 * ROOM:
-        worlds.step()
+        worlds.step(worlds.actions)
         died += int(group.deaths.min())
-    worlds.step(repeat=500)
+    worlds.repeat = 500
+    worlds.step(worlds.actions)
     for world in worlds.simulation.worlds:
         assert world.lost_deaths > 0
         assert len(world.deaths(partial=True)["agent_id"]) == ROOM
@@ -106,9 +107,9 @@ def test_driven_worlds_never_end():
 
 def test_a_world_of_pettingzoo_never_ends():
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
-    from hedon.env import parallel_env
+    from hedon.env import ParallelEnv
 
-    world = parallel_env(CONFIG)
+    world = ParallelEnv(CONFIG)
     world.reset(seed=1)
     died = 0
     while died <= 2 * ROOM:

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from worlds import QUICK
 
+import hedon
 from hedon import ArgumentError, load_config
-from hedon.env import vector_env
 
 CONFIG = load_config("baseline", overrides=[*QUICK, "population.capacity=6", "population.initial_count=4"])
 SHAPE = (1, 6, 2)
-make: Any = vector_env
+make: Any = hedon.make
 
 
 def put(name: str, value: Any) -> Callable[[Any], None]:
@@ -25,20 +25,38 @@ def freeze(name: str) -> Callable[[Any], None]:
 
 ARRAY = r"actions: must be the array of \(1, 6, 2\) float32 that was there: write into it, actions\[\.\.\.\] = …"
 WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
-    "one seed": (lambda w: w.reset(5), r"seeds = 5: must be a list of whole numbers"),
-    "seeds as a text": (lambda w: w.reset("1"), r"seeds = '1': must be a list"),
-    "half a seed": (lambda w: w.reset([0.5]), r"seeds = 0\.5: must be a whole number"),
-    "a seed too many": (lambda w: w.reset([1, 2]), "there must be 1, one per world, not 2"),
-    "no repeat": (lambda w: w.step(None), "repeat = None: must be a whole number from 1"),
-    "half a repeat": (lambda w: w.step(1.5), r"repeat = 1\.5: must be"),
-    "repeat as a truth": (lambda w: w.step(True), "repeat = True: must be"),
-    "species as a number": (
-        lambda w: make(CONFIG, [1], species=5),
-        "species: must be a name, or a list of them, not 5",
+    "half a seed": (lambda w: w.reset(seed=0.5), r"seed = 0\.5: must be a whole number"),
+    "a seed as a text": (lambda w: w.reset(seed="1"), r"seed = '1': must be a whole number"),
+    "half a seed in a list": (lambda w: w.reset(seed=[0.5]), r"seeds = 0\.5: must be a whole number"),
+    "a seed too many": (lambda w: w.reset(seed=[1, 2]), "there must be 1, one per world, not 2"),
+    "an unknown option": (
+        lambda w: w.reset(options={"mask": [True]}),
+        "options: there is no 'mask'; there is 'reset_m",
     ),
-    "species of numbers": (lambda w: make(CONFIG, [1], species=[5]), "species '5': there is no such species"),
-    "seeds as a number": (lambda w: make(CONFIG, 3), "seeds = 3: must be a list"),
-    "threads": (lambda w: make(CONFIG, [1], threads="two"), "threads = 'two': must be a whole number"),
+    "a short mask": (lambda w: w.reset(options={"reset_mask": []}), r"options\['reset_mask'\]: must be \(1,\) bool"),
+    "an empty mask": (lambda w: w.reset(options={"reset_mask": np.array([False])}), "true for at least one world"),
+    "no repeat": (lambda w: make(CONFIG, repeat=None), "repeat = None: must be a whole number from 1"),
+    "half a repeat": (lambda w: make(CONFIG, repeat=1.5), r"repeat = 1\.5: must be"),
+    "repeat as a truth": (lambda w: make(CONFIG, repeat=True), "repeat = True: must be"),
+    "no world": (lambda w: make(CONFIG, 0), "worlds = 0: must be a whole number from 1"),
+    "half a life": (lambda w: make(CONFIG, max_steps=0.5), r"max_steps = 0\.5: must be"),
+    "other actions": (lambda w: make(CONFIG, actions="units"), "actions = 'units': must be .*; did you mean unit"),
+    "another picture": (lambda w: make(CONFIG, render_mode="ansi"), "render_mode = 'ansi': must be rgb_array"),
+    "species as a number": (lambda w: make(CONFIG, species=5), "species: must be a name, or a list of them, not 5"),
+    "species of numbers": (lambda w: make(CONFIG, species=[5]), "species '5': there is no such species"),
+    "a config of numbers": (lambda w: make(3), "config: must be a Config, as load_config gives it, a preset or a file"),
+    "threads": (lambda w: make(CONFIG, threads="two"), "threads = 'two': must be a whole number"),
+    "given shape": (
+        lambda w: w.step(np.zeros((1, 5, 2))),
+        r"actions: must be numbers of shape \(1, 6, 2\), not \(1, 5",
+    ),
+    "given nothing": (lambda w: w.step(None), "actions: must be numbers of shape .*, not None"),
+    "given text": (lambda w: w.step("left"), "actions: must be numbers of shape .*, not 'left'"),
+    "given masks": (lambda w: w.step(np.ma.masked_array(np.zeros(SHAPE), True)), "must be numbers of shape"),
+    "given too much": (
+        lambda w: w.step(np.full(SHAPE, 1.5)),
+        r"actions\[0, 0, 0\] \(left\) = 1\.5: must be from -1 to 1",
+    ),
     "masked": (put("actions", np.ma.masked_array(np.zeros(SHAPE, np.float32), True)), ARRAY),
     "shape": (put("actions", np.zeros((1, 6), np.float32)), ARRAY),
     "type": (put("actions", np.zeros(SHAPE)), ARRAY),
@@ -51,19 +69,19 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "frozen": (freeze("observations"), "observations: must be as it was made, writeable and contiguous"),
     "not a number": (
         lambda w: w.groups["agent"].actions.__setitem__((0, 3, 1), np.nan),
-        r"actions\[0, 3, 1\] \(right\) = nan: must be a finite number",
+        r"actions\[0, 3, 1\] \(right\) = nan: must be from -1 to 1",
     ),
 }
 
 
 @pytest.mark.parametrize(("wrong", "says"), WRONG.values(), ids=WRONG)
 def test_what_is_wrong_is_named_and_changes_nothing(wrong, says):
-    worlds = vector_env(CONFIG, seeds=[1], threads=1)
+    worlds = make(CONFIG, seed=1, threads=1)
     held = worlds.groups["agent"].actions
 
     def go_on():
         wrong(worlds)
-        worlds.step()
+        worlds.step(worlds.actions)
 
     with pytest.raises(ArgumentError, match=says) as caught:
         go_on()
@@ -73,14 +91,16 @@ def test_what_is_wrong_is_named_and_changes_nothing(wrong, says):
 
 
 def test_actions_can_be_written_in_every_way():
-    worlds = vector_env(CONFIG, seeds=[1], threads=1)
+    worlds = make(CONFIG, seed=1, threads=1)
     group = worlds.groups["agent"]
     group.actions += 0.5
     group.actions[...] = np.ones(SHAPE)
-    group.actions.fill(2)
+    group.actions.fill(0.25)
     group.actions = group.actions
-    worlds.step()
-    assert (group.actions[group.alive & ~group.born] == 2).all()
+    worlds.step(worlds.actions)
+    assert (group.actions[group.alive & ~group.born] == 0.25).all()
+    worlds.step(np.full(SHAPE, -0.5, np.float64))
+    assert (group.actions[group.alive & ~group.born] == -0.5).all()
 
 
 MASKED = np.ma.masked_array([0.0, 1.0], [False, True])
@@ -97,35 +117,36 @@ ACTIONS = {
     "a column": ({"agent_0": np.zeros((2, 1))}, "two finite numbers"),
     "too large": ({"agent_0": [1e300, 0.0]}, "two finite numbers"),
     "a number as name": ({0: [0.0, 0.0]}, "no agent '0' is alive"),
-    "the second": ({"agent_0": [9.0, 9.0], "agent_1": [np.nan, 0.0]}, r"actions\['agent_1'\] = \[nan, 0\.0\]"),
+    "too far": ({"agent_0": [0.0, 1.5]}, "left and right, from -1 to 1"),
+    "the second": ({"agent_0": [0.9, 0.9], "agent_1": [np.nan, 0.0]}, r"actions\['agent_1'\] = \[nan, 0\.0\]"),
 }
 
 
 @pytest.mark.parametrize(("actions", "says"), ACTIONS.values(), ids=ACTIONS)
 def test_wrong_actions_of_pettingzoo_are_named_and_none_is_told(actions, says):
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
-    from hedon.env import parallel_env
+    from hedon.env import ParallelEnv
 
-    world, other = parallel_env(CONFIG), parallel_env(CONFIG)
+    world, other = ParallelEnv(CONFIG), ParallelEnv(CONFIG)
     for each in (world, other):
         each.reset(seed=1)
     with pytest.raises(ArgumentError, match=says) as caught:
         world.step(actions)
     assert "\n" not in str(caught.value)
     for each in (world, other):
-        each.step({"agent_2": np.array([1, 2]), "agent_3": np.array((0.5, -0.5))})
+        each.step({"agent_2": np.array([1, 0]), "agent_3": np.array((0.5, -0.5))})
     assert world.simulation.worlds[0].digest() == other.simulation.worlds[0].digest()
 
 
 def test_other_arguments_of_pettingzoo_are_named():
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
-    from hedon.env import parallel_env
+    from hedon.env import ParallelEnv
 
-    new: Any = parallel_env
-    world: Any = parallel_env(CONFIG)
+    new: Any = ParallelEnv
+    world: Any = ParallelEnv(CONFIG)
     wrong = {
         "seeds = 'x'": lambda: world.reset(seed="x"),
-        "seeds = None": lambda: new(CONFIG, seed=None),
+        "seed = None": lambda: new(CONFIG, seed=None),
         "max_steps = -1": lambda: new(CONFIG, max_steps=-1),
         "agent '5': there is no such agent": lambda: world.action_space(5),
         "agent 'agent_²'": lambda: world.action_space("agent_²"),

@@ -11,7 +11,7 @@ from hedon import ArgumentError, load_config
 pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
-from hedon.env import parallel_env
+from hedon.env import ParallelEnv
 
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=30", "population.initial_count=20")
 CONFIG = load_config("baseline", overrides=LIVELY)
@@ -30,22 +30,22 @@ def play(world, steps, seed=7):
 def test_it_passes_pettingzoos_tests():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # there is no list of possible agents, and newborns are news
-        parallel_api_test(parallel_env(CONFIG), num_cycles=200)
-    parallel_seed_test(lambda: parallel_env(CONFIG), num_cycles=100)
+        parallel_api_test(ParallelEnv(CONFIG), num_cycles=200)
+    parallel_seed_test(lambda: ParallelEnv(CONFIG), num_cycles=100)
 
 
 def test_a_seed_gives_the_same_world_with_its_newborns():
-    first, second = play(parallel_env(CONFIG), 120), play(parallel_env(CONFIG), 120)
+    first, second = play(ParallelEnv(CONFIG), 120), play(ParallelEnv(CONFIG), 120)
     for one, other in zip(first, second, strict=True):
         for mine, theirs in zip(one, other, strict=True):
             assert mine.keys() == theirs.keys()
             for name in mine:
                 np.testing.assert_array_equal(mine[name], theirs[name])
-    assert first[-1][0].keys() != play(parallel_env(CONFIG), 120, seed=8)[-1][0].keys()
+    assert first[-1][0].keys() != play(ParallelEnv(CONFIG), 120, seed=8)[-1][0].keys()
 
 
 def test_agents_appear_and_vanish():
-    world = parallel_env(CONFIG)
+    world = ParallelEnv(CONFIG)
     observations, _ = world.reset(seed=3)
     gone, seen = set(), set(world.agents)
     for _ in range(100):
@@ -69,7 +69,7 @@ def test_agents_appear_and_vanish():
 
 
 def test_time_may_end():
-    world = parallel_env(CONFIG, max_steps=5)
+    world = ParallelEnv(CONFIG, max_steps=5)
     said = play(world, 5)
     assert all(said[-1][3].values())
     assert world.agents == []
@@ -87,7 +87,7 @@ def test_time_may_end():
     ],
 )
 def test_bad_actions_are_named(actions, says):
-    world = parallel_env(CONFIG)
+    world = ParallelEnv(CONFIG)
     world.reset()
     with pytest.raises(ArgumentError, match=says):
         world.step(actions)

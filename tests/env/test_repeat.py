@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from worlds import QUICK
 
-from hedon import load_config
-from hedon.env import VectorEnv, vector_env
+from hedon import load_config, make
+from hedon.env import VectorEnv
 
 CROWD = (
     *QUICK,
@@ -48,7 +48,7 @@ class Told:
         group = self.group
         for w, slot in np.argwhere(group.ids_before >= 0).tolist():
             self.paid[w, int(group.ids_before[w, slot])] += group.rewards[w, slot]
-        for w, slot in np.argwhere(group.died).tolist():
+        for w, slot in np.argwhere(group.terminated).tolist():
             self.dead.add((w, int(group.ids_before[w, slot])))
         for w, slot in np.argwhere(group.born).tolist():
             self.born[w, int(group.ids[w, slot])] = slot
@@ -61,7 +61,7 @@ def compare(told: Told, group: Any) -> None:
     np.testing.assert_array_equal(group.ids_before, told.before)
     for (w, slot), identity in np.ndenumerate(told.before):
         assert group.rewards[w, slot] == told.paid.get((w, int(identity)), 0)
-        assert group.died[w, slot] == ((w, int(identity)) in told.dead)
+        assert group.terminated[w, slot] == ((w, int(identity)) in told.dead)
     rows = group.newborns
     assert {(int(row["world"]), int(row["agent_id"])): int(row["slot"]) for row in rows} == told.born
     for row in rows:
@@ -78,7 +78,8 @@ def compare(told: Told, group: Any) -> None:
 @pytest.mark.parametrize("settings", [CROWD, HUNT], ids=["crowd", "hunt"])
 @pytest.mark.parametrize("repeat", [1, 2, 7, 70])
 def test_a_repeat_is_as_many_single_steps(settings, repeat):
-    single, held = (vector_env(load_config("baseline", overrides=settings), [1, 2], threads=1) for _ in range(2))
+    config = load_config("baseline", overrides=settings)
+    single, held = (make(config, 2, seed=1, repeat=each, actions="logit", threads=1) for each in (1, repeat))
     rng = np.random.default_rng(repeat)
     short = 0
     for _ in range(max(3, 70 // repeat)):
@@ -88,10 +89,10 @@ def test_a_repeat_is_as_many_single_steps(settings, repeat):
             held.groups[name].actions[...] = group.actions
             said[name] = Told(group)
         for _ in range(repeat):
-            single.step()
+            single.step(single.actions)
             for told in said.values():
                 told.note()
-        held.step(repeat)
+        held.step(held.actions)
         for name, group in held.groups.items():
             compare(said[name], group)
             for array in ("ids", "observations"):
@@ -108,12 +109,12 @@ def digests(worlds: VectorEnv) -> list[str]:
 
 def test_what_is_told_of_repeats_agrees_with_the_worlds():
     """Over many repeats: all births, deaths, meals, and the rewards of whole lives."""
-    worlds = vector_env(load_config("baseline", overrides=CROWD), [3], threads=1)
+    worlds = make(load_config("baseline", overrides=CROWD), seed=3, repeat=10, threads=1)
     group, world = worlds.groups["agent"], worlds.simulation.worlds[0]
     births = deaths = 0
     meals, paid = np.zeros_like(group.meals), 0.0
     for _ in range(12):
-        worlds.step(repeat=10)
+        worlds.step(worlds.actions)
         births, deaths = births + group.births.sum(), deaths + group.deaths.sum()
         meals += group.meals
         paid += group.rewards.sum(dtype=np.float64) + group.newborns["reward"].sum(dtype=np.float64)

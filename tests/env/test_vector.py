@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
-from hedon import ArgumentError, load_config
+from hedon import ArgumentError, load_config, make
 from hedon.config.layout import observation_columns
-from hedon.env import vector_env
 
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
 PAIR = (
@@ -26,17 +25,20 @@ def config(*settings, preset="baseline"):
     return load_config(preset, overrides=settings)
 
 
+LOGIT: Any = "logit"
+
+
 def act(group, rng):
     group.actions[...] = rng.standard_normal(group.actions.shape)
 
 
 def test_observations_are_those_of_the_world():
-    worlds = vector_env(config(*LIVELY), seeds=[1, 2], threads=2)
+    worlds = make(config(*LIVELY), 2, seed=1, actions=LOGIT, threads=2)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
     for _ in range(80):
         act(agents, rng)
-        worlds.step()
+        worlds.step(agents.actions)
     for w, world in enumerate(worlds.simulation.worlds):
         living = world.living
         np.testing.assert_array_equal(agents.ids[w, living], world.agents()["agent_id"])
@@ -49,13 +51,13 @@ def test_agents_do_what_they_are_told():
     """Told what a learning world did, a driven one goes the same way."""
     settings = (*QUICK, *DEATHLESS, *CHILDLESS)
     learner = make_simulation(*settings, seeds=(5,))
-    worlds = vector_env(config(*settings), seeds=[5], threads=1)
+    worlds = make(config(*settings), seed=5, actions=LOGIT, threads=1)
     agents, world = worlds.groups["agent"], worlds.simulation.worlds[0]
     rewards = np.zeros(agents.rewards.shape)
     for step in range(63):
         learner.run(1)
         agents.actions[0] = learner.worlds[0].view("action").reshape(len(agents.actions[0]), -1, 2)[:, step]
-        worlds.step()
+        worlds.step(agents.actions)
         rewards += agents.rewards
     for name, values in learner.worlds[0].agents().items():
         np.testing.assert_array_equal(values, world.agents()[name], err_msg=name)
@@ -63,15 +65,15 @@ def test_agents_do_what_they_are_told():
 
 
 def test_births_and_deaths_come_and_go():
-    worlds = vector_env(config(*LIVELY), seeds=[3], threads=1)
+    worlds = make(config(*LIVELY), seed=3, actions=LOGIT, threads=1)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
     born, died, paid = set(), set(), 0.0
     for _ in range(150):
         act(agents, rng)
         before, old = agents.ids.copy(), agents.actions.copy()
-        worlds.step()
-        fresh, gone = agents.ids[agents.born], before[agents.died]
+        worlds.step(agents.actions)
+        fresh, gone = agents.ids[agents.born], before[agents.terminated]
         assert not died & set(agents.ids[agents.alive].tolist())
         assert (agents.actions[agents.born] == 0).all()
         kept = agents.alive & ~agents.born
@@ -89,13 +91,15 @@ def test_births_and_deaths_come_and_go():
 
 def test_threads_change_nothing_and_a_reset_begins_again():
     ends = []
-    worlds = vector_env(config(*PAIR), seeds=[1, 2, 3], species="led", threads=1)
-    for driven in (worlds, worlds, vector_env(config(*PAIR), seeds=[1, 2, 3], species="led", threads=2)):
-        driven.reset()
+    worlds, other = (
+        make(config(*PAIR), 3, seed=1, species="led", actions=LOGIT, threads=threads) for threads in (1, 2)
+    )
+    for driven in (worlds, worlds, other):
+        driven.reset(seed=1)
         rng = np.random.default_rng(1)
         for _ in range(70):
             act(driven.groups["led"], rng)
-            driven.step()
+            driven.step(driven.actions)
         group = driven.groups["led"]
         ends.append([world.digest() for world in driven.simulation.worlds])
         ends[-1] += [group.observations.tobytes(), group.rewards.tobytes(), group.ids.tobytes()]
@@ -103,10 +107,10 @@ def test_threads_change_nothing_and_a_reset_begins_again():
 
 
 def test_others_learn_beside_those_that_are_driven():
-    worlds = vector_env(config(*PAIR), seeds=[1], species=["led"])
+    worlds = make(config(*PAIR), seed=1, species=["led"], repeat=128)
     group = worlds.groups["led"]
     assert list(worlds.groups) == ["led"]
-    worlds.step(repeat=128)
+    worlds.step(worlds.actions)
     world = worlds.simulation.worlds[0]
     assert world.counters_of(0)["learners"] > 0 == world.counters_of(1)["learners"]
     living = worlds.config.species["wise"].population.capacity
@@ -116,7 +120,7 @@ def test_others_learn_beside_those_that_are_driven():
 
 
 def test_columns_say_what_is_where():
-    worlds = vector_env(config(*QUICK, preset="poison"), seeds=[1])
+    worlds = make(config(*QUICK, preset="poison"), seed=1)
     world, group = worlds.simulation.worlds[0], worlds.groups["agent"]
     column = {name: group.observations[0, world.living, i] for i, name in enumerate(group.columns)}
     assert len(group.columns) == 125
@@ -128,38 +132,37 @@ def test_columns_say_what_is_where():
 
 
 def test_sight_is_rewarded():
-    worlds = vector_env(config(*PAIR, "species.led.reward.action_coef=0"), seeds=[1], species="led")
-    worlds.step(repeat=20)
+    worlds = make(config(*PAIR, "species.led.reward.action_coef=0"), seed=1, species="led", repeat=20)
+    worlds.step(worlds.actions)
     assert (worlds.groups["led"].rewards != 0).any()
 
 
-NOT_A_CONFIG: Any = "baseline"
+NOT_A_CONFIG: Any = 5
 
 
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
         (lambda w: w.groups["agent"].actions.__setitem__((0, 3, 1), np.nan), r"actions\[0, 3, 1\] \(right\) = nan"),
-        (lambda w: w.reset([1, 2]), "there must be 1, one per world, not 2"),
-        (lambda w: w.step(0), "repeat = 0"),
-        (lambda w: vector_env(w.config, [1], species="agnt"), "did you mean agent"),
-        (lambda w: vector_env(NOT_A_CONFIG, [1]), "must be a Config"),
-        (lambda w: vector_env(w.config, [1], species=[]), "at least one"),
+        (lambda w: w.reset(seed=[1, 2]), "there must be 1, one per world, not 2"),
+        (lambda w: make(w.config, species="agnt"), "did you mean agent"),
+        (lambda w: make(NOT_A_CONFIG), "must be a Config"),
+        (lambda w: make(w.config, species=[]), "at least one"),
     ],
 )
 def test_bad_input_is_named(wrong, says):
-    worlds = vector_env(config(*QUICK), seeds=[1])
+    worlds = make(config(*QUICK), seed=1)
 
     def go_on():
         wrong(worlds)
-        worlds.step()
+        worlds.step(worlds.actions)
 
     with pytest.raises(ArgumentError, match=says):
         go_on()
 
 
 def test_the_engine_refuses_arrays_of_another_shape():
-    worlds = vector_env(config(*QUICK), seeds=[1])
+    worlds = make(config(*QUICK), seed=1)
     engine, group = worlds.simulation.engine, worlds.groups["agent"]
     with pytest.raises(ValueError, match="a row for each slot"):
         engine.set_actions(0, group.actions[:, 1:].copy())

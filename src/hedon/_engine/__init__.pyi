@@ -71,14 +71,35 @@ class Simulation:
         Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.
         """
 
+    def pack(self, head: bytes) -> bytes:
+        """
+        All worlds with their seeds, and a text of the caller's, as one string of bytes.
+        """
+
+    @staticmethod
+    def packed_head(packed: bytes) -> bytes:
+        """
+        The caller's text in what `pack` gave. ValueError: it is damaged, or something else.
+        """
+
+    def unpack(self, packed: bytes) -> None:
+        """
+        Replaces all worlds, and their seeds, by those in what `pack` gave, in which `packed_head` has found no damage. ValueError: what is wrong; all worlds are then unchanged.
+        """
+
+    def reset(self, world: int, seed: int) -> None:
+        """Begins a world again with this seed."""
+
+    def seed(self, world: int) -> int: ...
+
     def set_rule(self, species: int, use: str, address: int) -> None:
         """
         Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers).
         """
 
-    def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32]) -> None:
+    def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:
         """
-        Tells the agents of an external species what to do from now on: (worlds, slots, 2).
+        Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or `logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.
         """
 
     def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:

@@ -6,6 +6,7 @@ from hedon.config.dump import diff, digest, dump_toml, file_leaves, flatten
 from hedon.config.engine import engine_config
 from hedon.config.food import PlacementConfig
 from hedon.config.gene import gene_of
+from hedon.config.layout import layouts
 from hedon.config.load import FIDELITIES, PAPER_PRESETS, PRESETS, describe_preset, load_config
 from hedon.config.problem import ConfigError, Problem, format_value
 from hedon.config.species import ONLY
@@ -30,6 +31,7 @@ __all__ = [
     "format_value",
     "gene_of",
     "hunters",
+    "layouts",
     "load_config",
     "validated",
     "walls",

@@ -1,27 +1,39 @@
-"""Environments for other programs' agents: `vector_env` for many worlds as arrays, `parallel_env` for PettingZoo.
+"""Environments for other programs' agents: arrays of many worlds, slots as environments of libraries, PettingZoo, JAX.
 
-`parallel_env` needs the optional packages: `pip install "hedon[env]"`.
+`hedon.make` gives the arrays and needs NumPy alone. All else needs optional packages: `pip install "hedon[env]"` for
+Gymnasium and PettingZoo, `"hedon[jax]"` for JAX; Stable-Baselines3 is installed by its own name.
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hedon.env.group import Group
-from hedon.env.vector import VectorEnv, vector_env
+from hedon.env.make import make
+from hedon.env.vector import VectorEnv
 
 if TYPE_CHECKING:
-    from hedon.env.parallel import ParallelEnv, parallel_env
+    from hedon.env.agent import AgentEnv
+    from hedon.env.parallel import ParallelEnv
+    from hedon.env.slot import SlotVecEnv
 
-__all__ = ["Group", "ParallelEnv", "VectorEnv", "parallel_env", "vector_env"]
+__all__ = ["AgentEnv", "Group", "ParallelEnv", "SlotVecEnv", "VectorEnv", "make"]
+
+_PLACES = {
+    "AgentEnv": ("agent", "hedon[env]"),
+    "ParallelEnv": ("parallel", "hedon[env]"),
+    "SlotVecEnv": ("slot", "stable-baselines3"),
+}
+"""Where a name is, and what brings the packages that it needs."""
 
 
 def __getattr__(name: str) -> Any:
-    # Imported on first use: the arrays need neither PettingZoo nor Gymnasium.
-    if name not in ("ParallelEnv", "parallel_env"):
+    # Imported on first use: the arrays need none of these packages.
+    if name not in _PLACES:
         raise AttributeError(f"module 'hedon.env' has no attribute {name!r}")
+    module, package = _PLACES[name]
     try:
-        from hedon.env import parallel
+        return getattr(import_module(f"hedon.env.{module}"), name)
     except ModuleNotFoundError as error:
         from hedon.error import HedonError
 
-        raise HedonError(f'hedon.env.{name} needs {error.name}: pip install "hedon[env]"') from error
-    return getattr(parallel, name)
+        raise HedonError(f'hedon.env.{name} needs {error.name}: pip install "{package}"') from error

@@ -1,11 +1,13 @@
 """The agents of one species that a caller drives, as arrays, and what becomes of them in a call of `VectorEnv.step`."""
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hedon.config.body import MotorConfig
 from hedon.error import ArgumentError
+from hedon.text import brief
 
 ACTIONS = ("left", "right")
 """The two motors, in the order of the columns of `actions`."""
@@ -13,6 +15,9 @@ NOBODY = -1
 """In arrays of ids, where no agent lives."""
 NEWBORN = np.dtype([("world", "i4"), ("slot", "i4"), ("agent_id", "i4"), ("reward", "f4"), ("alive", "?")])
 """A row of `Group.newborns`."""
+Form = Literal["unit", "force", "logit"]
+"""What the numbers of actions are; see `hedon.make`."""
+FORMS: tuple[Form, ...] = ("unit", "force", "logit")
 
 
 class Held:
@@ -36,68 +41,84 @@ class Held:
 class Group:
     """The agents of one species in all worlds: a row for each slot, in which agents live one after another.
 
-    Each array is allocated once. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
-    "The steps" are those of the last call of `VectorEnv.step`, one or `repeat`.
+    Each array is allocated once, and always has what is now, or what was in the steps of the last call of
+    `VectorEnv.step`, one or `repeat`. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
 
     Args:
         index: Of the species in the config's order.
         columns: Names of the entries of an observation.
         meal_names: What can be eaten.
+        motor: Settings of the motors.
+        form: What the numbers of actions are.
         worlds: How many there are.
         slots: Of the species in each world.
 
     Attributes:
         columns: Names of the entries of an observation.
         meal_names: What can be eaten: the kinds of food, then, where agents eat agents, the species.
-        actions: (worlds, slots, 2) float32, before the sigmoid: write here. 0 is the middle of the motors' range,
-            and what a newborn does until told otherwise; rows without an agent change nothing.
+        low: The least that an action can be.
+        high: The greatest.
+        open: Whether any number can be one.
+        actions: (worlds, slots, 2) float32: left and right motor. A newborn has the middle of the motors' range until
+            told otherwise; rows without an agent are not read.
         observations: (worlds, slots, entries) float32, as a network of the engine reads them; zeros where nobody
             lives.
         rewards: (worlds, slots) float32, what the agent that was in the slot before the steps was paid in them, by its
             own genome, up to its death; 0 where there was none. What others earned who came into the slot after it
             is in `newborns`.
+        terminated: (worlds, slots) bool, whether the agent that was there before the steps died in them.
+        truncated: (worlds, slots) bool, whether the agent that lives there now has come to the end of its time.
         ids: (worlds, slots) int32, the agent in each slot; -1 where nobody lives. No id is used again in a world.
         ids_before: the same before the steps.
+        alive: (worlds, slots) bool, whether an agent lives there now.
+        born: (worlds, slots) bool, whether the agent that lives there now was born in the steps.
+        births: (worlds,) int64, how many were born in the steps.
+        deaths: (worlds,) int64, how many died in the steps, with those who were born in them.
         meals: (worlds, meals) int64, what the agents of the species ate in the steps, in the order of `meal_names`.
     """
 
     actions: Any = Held()
     observations: Any = Held()
     rewards: Any = Held()
+    terminated: Any = Held()
+    truncated: Any = Held()
     ids: Any = Held()
     ids_before: Any = Held()
+    alive: Any = Held()
+    born: Any = Held()
+    births: Any = Held()
+    deaths: Any = Held()
     meals: Any = Held()
 
     def __init__(
-        self, index: int, columns: tuple[str, ...], meal_names: tuple[str, ...], worlds: int, slots: int
+        self,
+        index: int,
+        columns: tuple[str, ...],
+        meal_names: tuple[str, ...],
+        motor: MotorConfig,
+        form: Form,
+        worlds: int,
+        slots: int,
     ) -> None:
         self.columns = columns
         self.meal_names = meal_names
-        self.actions = np.zeros((worlds, slots, len(ACTIONS)), np.float32)
+        self.low, self.high = _bounds(motor, form)
+        self.open = form == "logit"
+        self._middle = (self.low + self.high) / 2
+        self.actions = np.full((worlds, slots, len(ACTIONS)), self._middle, np.float32)
         self.observations = np.zeros((worlds, slots, len(columns)), np.float32)
         self.rewards = np.zeros((worlds, slots), np.float32)
+        for name in ("terminated", "truncated", "alive", "born"):
+            setattr(self, name, np.zeros((worlds, slots), np.bool_))
         self.ids = np.full((worlds, slots), NOBODY, np.int32)
         self.ids_before = self.ids.copy()
+        self.births, self.deaths = np.zeros(worlds, np.int64), np.zeros(worlds, np.int64)
         self.meals = np.zeros((worlds, len(meal_names)), np.int64)
-        self._index = index
+        self._index, self._form = index, form
         self._eaten = self.meals.copy()
-        self._late: Any = None  # within a repeat: rewards of who was born in it, by slot
-        self._gone: list[NDArray[Any]] = []  # rows of those who were born and died in the steps
-
-    @property
-    def alive(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether an agent lives there now."""
-        return self.ids != NOBODY
-
-    @property
-    def died(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether the agent that was there before the steps died in them."""
-        return (self.ids_before != NOBODY) & (self.ids_before != self.ids)
-
-    @property
-    def born(self) -> NDArray[np.bool_]:
-        """(worlds, slots) whether the agent that lives there now was born in the steps."""
-        return (self.ids != NOBODY) & (self.ids_before != self.ids)
+        # Within a repeat: rewards of who was born in it, by slot, and rows of those who were born and died in it.
+        self._late = np.zeros_like(self.rewards)
+        self._gone = np.zeros(0, NEWBORN)
 
     @property
     def newborns(self) -> NDArray[Any]:
@@ -107,21 +128,19 @@ class Group:
         newborn that is not alive has come and gone within a repeat: no other array shows it.
         """
         here = np.nonzero(self.born)
-        now = _rows(here, self.ids, self._late, alive=True)
-        rows = np.concatenate([*self._gone, now])
+        rows = np.concatenate([self._gone, _rows(here, self.ids, self._late, alive=True)])
         return rows[np.lexsort((rows["agent_id"], rows["world"]))]
 
-    @property
-    def births(self) -> NDArray[np.int64]:
-        """(worlds,) how many were born in the steps."""
-        return np.bincount(self.newborns["world"], minlength=len(self.ids))
-
-    @property
-    def deaths(self) -> NDArray[np.int64]:
-        """(worlds,) how many died in the steps, with those who were born in them."""
-        newborns = self.newborns
-        short = np.bincount(newborns["world"][~newborns["alive"]], minlength=len(self.ids))
-        return self.died.sum(axis=1) + short
+    def _take(self, given: Any) -> None:
+        """Copies actions into the array that is there, unless they are that array."""
+        if given is self.actions:
+            return
+        array = np.asarray(given)
+        if array.dtype.kind not in "fiu" or array.size != self.actions.size or np.ma.isMaskedArray(given):
+            said = f"{array.shape} {array.dtype}" if array.ndim else brief(repr(given))
+            raise ArgumentError(f"actions: must be numbers of shape {self.actions.shape}, not {said}")
+        with np.errstate(over="ignore"):
+            self.actions[...] = array.reshape(self.actions.shape)
 
     def _tell(self, engine: Any) -> None:
         """Gives the actions to the agents."""
@@ -129,28 +148,30 @@ class Group:
             array = getattr(self, name)
             if not (array.flags.c_contiguous and array.flags.writeable):
                 raise ArgumentError(f"{name}: must be as it was made, writeable and contiguous")
-        if not np.isfinite(self.actions).all():
-            world, slot, motor = np.argwhere(~np.isfinite(self.actions))[0]
-            place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]})"
-            raise ArgumentError(f"{place} = {self.actions[world, slot, motor]}: must be a finite number")
-        engine.set_actions(self._index, self.actions)
+        bad = engine.set_actions(self._index, self.actions, self._form)
+        if bad >= 0:
+            world, slot, motor = (int(i) for i in np.unravel_index(bad, self.actions.shape))
+            place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]}) = {self.actions[world, slot, motor]}"
+            rule = "a finite number" if self._form == "logit" else f"from {self.low:g} to {self.high:g}"
+            raise ArgumentError(f"{place}: must be {rule}")
 
     def _begin(self) -> None:
         """What follows is counted from here."""
         np.copyto(self.ids_before, self.ids)
-        self._late = None
-        self._gone = []
+        self._gone = self._gone[:0]
 
     def _look(self, engine: Any) -> None:
         """Reads what there is after the only step since `_begin`."""
         engine.read_observations(self._index, self.observations, self.rewards, self.ids)
+        if self._late.any():
+            self._late.fill(0)
         self._finish(engine)
 
-    def _count(self, engine: Any, *, last: bool) -> None:
+    def _count(self, engine: Any, *, first: bool, last: bool) -> None:
         """Reads what there is after one of several steps since `_begin`."""
-        if self._late is None:
+        if first:
             self.rewards.fill(0)
-        late = self._late = np.zeros_like(self.rewards) if self._late is None else self._late
+            self._late.fill(0)
         acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
         if last:
             engine.read_observations(self._index, self.observations, paid, self.ids)
@@ -158,36 +179,76 @@ class Group:
             engine.read_rewards(self._index, paid, self.ids)
         old = acting == self.ids_before
         self.rewards[old] += paid[old]
-        late[~old] += paid[~old]
+        self._late[~old] += paid[~old]
         ended = ~old & (acting != NOBODY) & (acting != self.ids)
         if ended.any():
-            self._gone.append(_rows(np.nonzero(ended), acting, late, alive=False))
-            late[ended] = 0
+            self._gone = np.concatenate([self._gone, _rows(np.nonzero(ended), acting, self._late, alive=False)])
+            self._late[ended] = 0
         if last:
-            self.observations[self.died & ~self.alive] = 0
             self._finish(engine)
+            self.observations[self.terminated & ~self.alive] = 0
 
     def _finish(self, engine: Any) -> None:
-        if not np.array_equal(self.ids, self.ids_before):
-            self.actions[self.born] = 0.0
+        """What is derived from the ids of now and of before the steps."""
+        np.not_equal(self.ids, NOBODY, out=self.alive)
+        np.not_equal(self.ids, self.ids_before, out=self.born)
+        np.logical_and(self.born, self.ids_before != NOBODY, out=self.terminated)
+        self.born &= self.alive
+        self.born.sum(axis=1, out=self.births)
+        self.terminated.sum(axis=1, out=self.deaths)
+        if len(self._gone):
+            short = np.bincount(self._gone["world"], minlength=len(self.ids))
+            self.births += short
+            self.deaths += short
+        self.actions[self.born] = self._middle
         eaten = engine.meals(self._index)
         np.subtract(eaten, self._eaten, out=self.meals)
-        self._eaten = eaten
+        self._eaten[...] = eaten
 
-    def _forget(self) -> None:
-        """Begins anew, with new worlds."""
-        for array in (self.actions, self.observations, self.rewards, self._eaten):
-            array.fill(0)
-        self.ids.fill(NOBODY)
+    def _forget(self, worlds: NDArray[np.bool_]) -> None:
+        """Begins anew in some worlds, (worlds,)."""
+        self.actions[worlds] = self._middle
+        for array in (self.observations, self.rewards, self._late, self.births, self.deaths, self.meals):
+            array[worlds] = 0
+        for array in (self.terminated, self.truncated, self.born):
+            array[worlds] = False
+        self._gone = self._gone[~worlds[self._gone["world"]]]
+        self.ids[worlds] = NOBODY
+
+    def _open(self, engine: Any, worlds: NDArray[np.bool_]) -> None:
+        """Reads worlds, (worlds,), that have just begun; of the others nothing changes."""
+        self._forget(worlds)
+        engine.read_observations(self._index, self.observations, np.empty_like(self.rewards), self.ids)
+        np.not_equal(self.ids, NOBODY, out=self.alive)
+        self.ids_before[worlds] = self.ids[worlds]
+        self._eaten[worlds] = engine.meals(self._index)[worlds]
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        """All arrays, by name: what `VectorEnv.save` keeps."""
+        return {name: array for name, array in vars(self).items() if isinstance(array, np.ndarray)}
+
+    def _set(self, arrays: dict[str, NDArray[Any]]) -> None:
+        """Takes over arrays that fit: what `VectorEnv.restore` found."""
+        for name, array in arrays.items():
+            if name == "_gone":
+                self._gone = array
+            else:
+                vars(self)[name][...] = array
 
 
-def _rows(
-    where: tuple[NDArray[Any], ...], ids: NDArray[Any], rewards: NDArray[Any] | None, *, alive: bool
-) -> NDArray[Any]:
+def _bounds(motor: MotorConfig, form: Form) -> tuple[float, float]:
+    """The least and the greatest that an action can be."""
+    if form == "unit":
+        return -1.0, 1.0
+    largest = float(np.finfo(np.float32).max)
+    return (motor.min_force, motor.max_force) if form == "force" else (-largest, largest)
+
+
+def _rows(where: tuple[NDArray[Any], ...], ids: NDArray[Any], rewards: NDArray[Any], *, alive: bool) -> NDArray[Any]:
     """Rows of `Group.newborns` for these worlds and slots."""
     rows = np.zeros(len(where[0]), NEWBORN)
     rows["world"], rows["slot"] = where
     rows["agent_id"] = ids[where]
-    rows["reward"] = 0.0 if rewards is None else rewards[where]
+    rows["reward"] = rewards[where]
     rows["alive"] = alive
     return rows

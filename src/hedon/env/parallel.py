@@ -1,6 +1,7 @@
-"""One world as an environment of PettingZoo's Parallel API, whose agents appear and vanish."""
+"""One world as an environment of PettingZoo's Parallel API, whose agents appear and vanish, or are its slots."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,10 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.env.group import ACTIONS, NOBODY, Group
-from hedon.env.vector import VectorEnv, vector_env
+from hedon.env.group import ACTIONS, Form, Group
+from hedon.env.make import make
+from hedon.env.vector import RENDER_MODES, VectorEnv
 from hedon.error import ArgumentError
-from hedon.experiment.argument import MAX_STEPS, integer
 from hedon.text import brief
 
 Values = dict[str, NDArray[np.float32]]
@@ -26,30 +27,53 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     species that are not driven live in the same world by themselves and are not shown. There is no list of possible
     agents: nobody knows who will be born.
 
+    Libraries that want such a list, as SuperSuit does, get slots for agents: `agent_slot_3` stands for all who live in
+    a slot, is there from the beginning to the end, and observes zeros and earns 0 while nobody lives there. Its info says
+    whether someone lives there now (`alive`), and whether someone has died (`died`) or was born (`born`) there in the
+    step. All terminate when nobody is left.
+
     Args:
-        config: Settings of the world.
-        species: As for `hedon.env.vector_env`.
-        seed: Seed of the world until `reset` is given one.
+        config: Settings of the world, as for `hedon.make`, like all that follow but `slots`.
+        species: Whose agents the caller drives.
+        seed: Of the first world.
+        actions: What their numbers are.
+        repeat: Steps of the world in one step.
         max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
-        threads: As in `hedon.Simulation`; one world of usual size is fastest on one.
+        slots: Whether slots are the agents.
+        render_mode: What `render` gives.
+        threads: One world of usual size is fastest on one.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: Another argument is wrong.
     """
 
     def __init__(
         self,
-        config: Config,
+        config: Config | str | Path,
         species: str | Sequence[str] | None = None,
         seed: int = 0,
+        actions: Form = "unit",
+        repeat: int = 1,
         max_steps: int = 0,
+        slots: bool = False,
+        render_mode: str | None = None,
         threads: int = 1,
     ) -> None:
-        self.metadata = {"name": "hedon_v0", "render_modes": [], "is_parallelizable": True}
-        self.render_mode = None
-        self.max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
-        self._vector: VectorEnv = vector_env(config, [seed], species, threads)
+        self.metadata = {"name": "hedon_v1", "render_modes": list(RENDER_MODES), "is_parallelizable": True}
+        self._vector: VectorEnv = make(config, 1, seed, species, actions, repeat, max_steps, render_mode, threads)
+        self.render_mode = render_mode
         self.agents: list[str] = []
-        self._begun = False
+        self._begun, self._slots = False, slots
         self._row: dict[str, tuple[Group, int]] = {}
         self._spaces: dict[str, tuple[Box, Box]] = {}
+        if slots:
+            self._row = {
+                f"{name}_slot_{row}": (group, row)
+                for name, group in self._vector.groups.items()
+                for row in range(group.ids.shape[1])
+            }
+            self.possible_agents = list(self._row)
 
     @property
     def simulation(self) -> Any:
@@ -57,30 +81,30 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         return self._vector.simulation
 
     def observation_space(self, agent: str) -> Box:
-        """Any numbers, one for each column that `Group.columns` names; the same object for the same agent."""
+        """What an agent can observe, an entry for each column that `Group.columns` names; the same object each time."""
         return self._spaces_of(agent)[0]
 
     def action_space(self, agent: str) -> Box:
-        """Two numbers before the sigmoid, left and right; samples are standard normals, as of a new network."""
+        """What an agent can do: two numbers, left and right; the same object each time."""
         return self._spaces_of(agent)[1]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Values, dict[str, dict[str, Any]]]:
-        """Begins again: with this seed, or with that of the last time.
+        """Begins again.
 
         Args:
-            seed: Of the new world; None for the same world again.
+            seed: Of the new world; None for the first one, and then for the one with the next number.
             options: None are known; PettingZoo has the argument.
 
         Returns:
-            By the names of the founders: observations (entries,), and empty infos.
+            By the names of the founders: observations (entries,), and infos.
         """
         self._vector.reset(None if seed is None else [seed])
         self._spaces.clear()
         self._begun = True
         self._list_agents()
-        return self._observations(), {name: {} for name in self.agents}
+        return self._observations(), {name: self._info(name) for name in self.agents}
 
     def step(
         self, actions: Mapping[str, NDArray[np.float32]]
@@ -95,8 +119,8 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
             terminations, truncations, infos.
 
         Raises:
-            ArgumentError: An action is for nobody alive, or is not two finite numbers, and then none is told; or there
-                was no `reset`.
+            ArgumentError: An action is for nobody alive, or is not two numbers that it can be, and then none is told;
+                or there was no `reset`.
         """
         if not self._begun:
             raise ArgumentError("step: there are no agents yet: call reset first")
@@ -104,26 +128,53 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
             return {}, {}, {}, {}, {}
         self._tell(actions)
         before = dict(self._row)
-        self._vector.step()
+        groups = self._vector.groups
+        self._vector.step(self._vector.actions)
         rewards = {name: float(group.rewards[0, row]) for name, (group, row) in before.items()}
         self._list_agents()
         names = list(dict.fromkeys([*before, *self._row]))
-        done = bool(self.max_steps) and self._vector.simulation.worlds[0].step >= self.max_steps
+        gone = before.keys() - self._row.keys()
+        over = self._slots and not any(group.alive.any() for group in groups.values())
+        done = any(group.truncated.any() for group in groups.values())
         observations = self._observations()
-        for name in before.keys() - self._row.keys():
+        for name in gone:
             observations[name] = np.zeros(len(before[name][0].columns), np.float32)
         result = (
             observations,
             {name: rewards.get(name, 0.0) for name in names},
-            {name: name not in self._row for name in names},
-            {name: done and name in self._row for name in names},
-            {name: {} for name in names},
+            {name: over or name in gone for name in names},
+            {name: done and name not in gone for name in names},
+            {name: self._info(name) for name in names},
         )
-        if done:
+        if done or over:
             self.agents = []
-        for name in before.keys() - self._row.keys():
+        for name in gone:
             self._spaces.pop(name, None)
         return result
+
+    def render(self) -> Any:
+        """A picture of the world: see `VectorEnv.render`."""
+        return self._vector.render()
+
+    def close(self) -> None:
+        """Has nothing to close."""
+        self._vector.close()
+
+    def __deepcopy__(self, memo: Any) -> "ParallelEnv":
+        made = type(self).__new__(type(self))
+        made.__setstate__(self.__getstate__() | {"_vector": self._vector.clone()})
+        return made
+
+    def __getstate__(self) -> dict[str, Any]:
+        rows = {name: (self._species_of(group), row) for name, (group, row) in self._row.items()}
+        return self.__dict__ | {"_row": rows, "agents": list(self.agents), "_spaces": dict(self._spaces)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._row = {name: (self._vector.groups[own], row) for name, (own, row) in state["_row"].items()}
+
+    def _species_of(self, group: Group) -> str:
+        return next(name for name, each in self._vector.groups.items() if each is group)
 
     def _tell(self, actions: Any) -> None:
         """Writes the actions into the arrays: all of them, or none where one is wrong."""
@@ -145,58 +196,45 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
                 given = np.asarray(array, np.float32) if array.dtype.kind in "fiu" else np.empty(0, np.float32)
         except (TypeError, ValueError):
             array = given = np.empty(0, np.float32)
-        if given.shape != (len(ACTIONS),) or not np.isfinite(given).all() or np.ma.is_masked(array):
+        group = self._row[name][0]
+        good = given.shape == (len(ACTIONS),) and np.isfinite(given).all() and not np.ma.is_masked(array)
+        if not good or not ((given >= group.low) & (given <= group.high)).all():
             said = brief(" ".join(str(action).split()))
-            raise ArgumentError(f"actions[{name!r}] = {said}: must be two finite numbers, left and right")
+            within = "" if group.open else f", from {group.low:g} to {group.high:g}"
+            raise ArgumentError(f"actions[{name!r}] = {said}: must be two finite numbers, left and right{within}")
         return given
 
     def _list_agents(self) -> None:
-        living = [
-            (int(group.ids[0, row]), species, group, int(row))
-            for species, group in self._vector.groups.items()
-            for row in np.flatnonzero(group.ids[0] != NOBODY)
-        ]
-        living.sort(key=lambda each: each[0])
-        self._row = {f"{species}_{identity}": (group, row) for identity, species, group, row in living}
+        if not self._slots:
+            living = [
+                (int(group.ids[0, row]), species, group, int(row))
+                for species, group in self._vector.groups.items()
+                for row in np.flatnonzero(group.alive[0])
+            ]
+            living.sort(key=lambda each: each[0])
+            self._row = {f"{species}_{identity}": (group, row) for identity, species, group, row in living}
         self.agents = list(self._row)
+
+    def _info(self, name: str) -> dict[str, Any]:
+        if not self._slots:
+            return {}
+        group, row = self._row[name]
+        told = {"alive": group.alive, "died": group.terminated, "born": group.born}
+        return {what: bool(array[0, row]) for what, array in told.items()}
 
     def _observations(self) -> Values:
         return {name: group.observations[0, row].copy() for name, (group, row) in self._row.items()}
 
     def _spaces_of(self, agent: str) -> tuple[Box, Box]:
         if agent not in self._spaces:
-            species, _, identity = str(agent).rpartition("_")
-            if species not in self._vector.groups or not (identity.isascii() and identity.isdigit()):
+            species, _, number = str(agent).rpartition("_slot_" if self._slots else "_")
+            digits = number.isascii() and number.isdigit()
+            if species not in self._vector.groups or not digits or (self._slots and agent not in self._row):
                 raise ArgumentError(f"agent {brief(str(agent))!r}: there is no such agent")
-            entries = len(self._vector.groups[species].columns)
             # So that two worlds with one seed draw the same actions, also for those who are born in them.
-            seed = [self._vector.simulation.seeds[0], int(identity)]
-            seeds = np.random.SeedSequence(seed).generate_state(2)
-            self._spaces[agent] = (
-                Box(-np.inf, np.inf, (entries,), np.float32, seed=int(seeds[0])),
-                Box(-np.inf, np.inf, (len(ACTIONS),), np.float32, seed=int(seeds[1])),
-            )
+            seeds = np.random.SeedSequence([self._vector.simulation.seeds[0], int(number)]).generate_state(2)
+            spaces = self._vector.spaces
+            observed = spaces.box_of(species)
+            observed.seed(int(seeds[0]))
+            self._spaces[agent] = (observed, spaces.action_box(species, seed=int(seeds[1])))
         return self._spaces[agent]
-
-
-def parallel_env(
-    config: Config,
-    species: str | Sequence[str] | None = None,
-    seed: int = 0,
-    max_steps: int = 0,
-    threads: int = 1,
-) -> ParallelEnv:
-    """Makes a world with PettingZoo's Parallel API.
-
-    Args:
-        config: As for `ParallelEnv`, like all that follow.
-        species: Whose agents the caller drives.
-        seed: Of the world until `reset` is given one.
-        max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
-        threads: Changes no result.
-
-    Raises:
-        ConfigError: A setting is wrong.
-        ArgumentError: Another argument is wrong.
-    """
-    return ParallelEnv(config, species, seed, max_steps, threads)

@@ -1,172 +1,374 @@
-"""Many worlds as arrays: a caller writes actions into one array and reads observations and rewards from others.
+"""Many worlds as arrays: a caller gives actions and gets observations and rewards, all in arrays that stay.
 
 The engine reads and writes the arrays that the groups of agents hold: a step makes and copies none of them.
 """
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
-from hedon.config.problem import nearest
-from hedon.env.group import Group
+from hedon.env.argument import chosen, driven, with_callers, world_seeds
+from hedon.env.group import FORMS, Form, Group
+from hedon.env.keep import arrays_in, text_of
+from hedon.env.space import Spaces
 from hedon.error import ArgumentError
-from hedon.experiment.argument import MAX_STEPS, integer, seed_list
+from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
 from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
+RENDER_MODES = ("rgb_array",)
+RESET_MASK = "reset_mask"
+"""The option of `reset` that Gymnasium's vector environments have too."""
+
 
 class VectorEnv:
-    """Worlds whose agents, all or those of some species, are driven by the caller; the others learn by themselves.
+    """Worlds whose agents, all or those of some species, are driven by the caller; `hedon.make` makes them.
+
+    What `reset` and `step` return, and what the attributes below hold, are the same arrays each time, of shape (worlds,
+    slots, …): a row is a *slot*, in which agents live one after another. Copy what you keep. With several driven
+    species, each of them is a dictionary of such arrays by species.
 
     Args:
-        config: Settings of the worlds.
-        seeds: One world per seed.
-        species: Whose agents the caller drives; None as for `vector_env`.
+        config: Settings of the worlds; then everything as for `hedon.make`.
+        worlds: How many.
+        seed: Of the first world, or of each.
+        species: Whose agents the caller drives.
+        actions: What their numbers are.
+        repeat: Steps of the worlds in one step.
+        max_steps: Steps of a world after which its agents are truncated.
+        render_mode: What `render` gives.
         threads: As in `hedon.Simulation`.
         backend: As in `hedon.Simulation`.
 
     Attributes:
         config: The config, with the policy `external` for the species that are driven.
-        groups: The driven agents, by the name of their species.
-        simulation: The worlds themselves, to be read between steps; `reset` makes a new one.
+        groups: The driven agents, by the name of their species, with more arrays: `Group`.
+        simulation: The worlds themselves, to be read between steps.
+        repeat: Steps of the worlds in one step.
+        max_steps: Steps of a world after which its agents are truncated.
+        render_mode: What `render` gives.
+        spaces: What observations and actions can be, for `single_observation_space` and the others.
 
     Example:
-        >>> import hedon, hedon.env
-        >>> worlds = hedon.env.vector_env(hedon.load_config("baseline"), seeds=[1, 2])
-        >>> agents = worlds.groups["agent"]
-        >>> agents.actions[...] = 0.5  # or a policy of agents.observations
-        >>> worlds.step()
-        >>> agents.rewards[agents.alive].mean()
+        >>> import hedon
+        >>> worlds = hedon.make("baseline", worlds=4, seed=1)
+        >>> observations, info = worlds.reset()
+        >>> worlds.actions[...] = 0.5  # or a policy of the observations
+        >>> observations, rewards, terminated, truncated, info = worlds.step(worlds.actions)
+        >>> rewards[info["alive"]].mean()
     """
 
+    metadata: Mapping[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 30}
+
     def __init__(
-        self, config: Config, seeds: Sequence[int], species: str | Sequence[str] | None, threads: int, backend: str
+        self,
+        config: Config,
+        worlds: int = 1,
+        seed: int | Sequence[int] = 0,
+        species: str | Sequence[str] | None = None,
+        actions: Form = "unit",
+        repeat: int = 1,
+        max_steps: int = 0,
+        render_mode: str | None = None,
+        threads: int = 0,
+        backend: str = "",
     ) -> None:
         names = driven(config, species)
-        self.config = _with_callers(config, names)
-        self._threads, self._backend = threads, backend
-        self.simulation = Simulation(self.config, seeds, threads, backend)
-        every = list(config.species)
-        meals = (*config.food, *every)[: self.simulation.engine.meals(0).shape[1]]
+        seeds = world_seeds(seed, integer("worlds", worlds, 1, MAX_WORLDS))
+        self.repeat = integer("repeat", repeat, 1, MAX_STEPS)
+        self.max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
+        self.render_mode = chosen("render_mode", render_mode, RENDER_MODES, empty=True)
+        form = chosen("actions", actions, FORMS)
+        simulation = Simulation(with_callers(config, names), seeds, threads, backend)
+        self._made(simulation, names, form)
+        self._open(np.ones(len(seeds), np.bool_))
+
+    def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
+        self.simulation, self.config = simulation, simulation.config
+        every = list(self.config.species)
+        meals = (*self.config.food, *every)[: simulation.engine.meals(0).shape[1]]
         self.groups = {
             name: Group(
                 every.index(name),
-                observation_columns(config, name),
+                observation_columns(self.config, name),
                 meals,
-                len(self.simulation.seeds),
-                config.species[name].population.capacity,
+                self.config.species[name].motor,
+                form,
+                len(simulation.worlds),
+                self.config.species[name].population.capacity,
             )
             for name in names
         }
-        self._look()
+        self._form, self._fresh = form, True
+        self._next_seed = (max(simulation.seeds) + 1) % (MAX_WORLD_SEED + 1)
+        self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
+        self._film: Any = None
 
-    def reset(self, seeds: Sequence[int] | None = None) -> None:
-        """Begins again, with the same seeds or with as many others. The groups keep their arrays.
+    @property
+    def observations(self) -> Any:
+        """(worlds, slots, entries) float32: see `Group.observations`."""
+        return self._told[0]
 
-        Raises:
-            ArgumentError: It is no list of seeds, there are more or fewer than worlds, or one is out of bounds.
-        """
-        wanted = self.simulation.seeds if seeds is None else seed_list(seeds, MAX_WORLD_SEED)
-        if len(wanted) != len(self.simulation.seeds):
-            raise ArgumentError(f"seeds: there must be {len(self.simulation.seeds)}, one per world, not {len(wanted)}")
-        self.simulation = Simulation(self.config, wanted, self._threads, self._backend)
-        for group in self.groups.values():
-            group._forget()
-        self._look()
+    @property
+    def rewards(self) -> Any:
+        """(worlds, slots) float32: see `Group.rewards`."""
+        return self._told[1]
 
-    def step(self, repeat: int = 1) -> None:
-        """Advances every world, with the actions that the groups hold; then the arrays are of the new step.
+    @property
+    def alive(self) -> Any:
+        """(worlds, slots) bool, whether an agent lives there now: the mask of all other arrays."""
+        return self._of("alive")
+
+    @property
+    def actions(self) -> Any:
+        """(worlds, slots, 2) float32: write here and give it to `step`, and nothing is copied."""
+        return self._of("actions")
+
+    @cached_property
+    def spaces(self) -> Spaces:
+        """What observations and actions can be, as spaces of Gymnasium."""
+        return Spaces(self.config, self.groups)
+
+    @property
+    def single_observation_space(self) -> Any:
+        """The `gymnasium.spaces.Box` of the observations of one agent; by species where several are driven."""
+        return self.spaces.observation
+
+    @property
+    def single_action_space(self) -> Any:
+        """The same of its actions: two motors, left and right."""
+        return self.spaces.action
+
+    @property
+    def observation_space(self) -> Any:
+        """The same of all slots of all worlds."""
+        return self.spaces.observations
+
+    @property
+    def action_space(self) -> Any:
+        """The same of the actions of all slots of all worlds."""
+        return self.spaces.actions
+
+    def reset(self, seed: int | Sequence[int] | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
+        """Begins worlds again, at first with the seeds that they were made with, then with the next ones.
 
         Args:
-            repeat: Steps with the same actions: the same as this many calls of `step` in which nobody writes an action.
-                Rewards and meals are sums over all of them, and all births and deaths are there: see `Group`.
+            seed: Of the first world, whose followers have the next numbers; or a list with one for each world.
+            options: `{"reset_mask": mask}` with mask (worlds,) bool, to begin only some worlds.
+
+        Returns:
+            The observations, and what else there is to know: as of `step`.
 
         Raises:
-            ArgumentError: An action is not a finite number, or `repeat` is not a positive whole number.
+            ArgumentError: A seed or an option is wrong.
+            EngineError: There is no room for the initial agents or foods of a world.
+        """
+        count = len(self.simulation.worlds)
+        mask = self._mask(options)
+        if seed is not None:
+            seeds = world_seeds(seed, count)
+            self._next_seed = (max(seeds) + 1) % (MAX_WORLD_SEED + 1)
+        elif self._fresh and mask.all():
+            seeds = self.simulation.seeds
+        else:
+            seeds = tuple((self._next_seed + i) % (MAX_WORLD_SEED + 1) for i in range(count))
+            self._next_seed = (self._next_seed + int(mask.sum())) % (MAX_WORLD_SEED + 1)
+            seeds = tuple(seeds[i] for i in np.maximum(np.cumsum(mask) - 1, 0))
+        for i in np.flatnonzero(mask).tolist():
+            self.simulation.engine.reset(i, seeds[i])
+        self._open(mask)
+        self._fresh = False
+        return self._told[0], self._told[4]
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Advances every world by `repeat` steps with these actions.
+
+        It is the same as a call for each of these steps, in which nobody changes an action: rewards and meals are
+        sums, and all births and deaths are counted. Ctrl-C ends it after the step of the worlds that it is in; all
+        arrays are then of that step.
+
+        Args:
+            actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied there. With several
+                species a dictionary of them; a species that is not in it goes on as before.
+
+        Returns:
+            observations (worlds, slots, entries), rewards, terminated and truncated (worlds, slots), and a dictionary
+            with the arrays `agent_id`, `alive`, `born` (worlds, slots), `births`, `deaths` (worlds,) and `meals`
+            (worlds, meals): see `Group`.
+
+        Raises:
+            ArgumentError: An action of a living agent is not a number that it can be.
             EngineError: A world reports an error.
         """
-        steps = integer("repeat", repeat, 1, MAX_STEPS)
-        engine, groups = self.simulation.engine, self.groups.values()
-        for group in groups:
+        self._take(actions)
+        engine = self.simulation.engine
+        for group in self.groups.values():
             group._tell(engine)
-        if steps == 1:
-            self.simulation.run(1)
-            self._look()
-            return
-        for group in groups:
-            group._begin()
-        for i in range(steps):
-            self.simulation.run(1)
-            for group in groups:
-                group._count(engine, last=i == steps - 1)
-
-    def __getstate__(self) -> Any:
-        raise TypeError("worlds that are driven cannot be copied or pickled: make a new one from its config")
-
-    def _look(self) -> None:
         for group in self.groups.values():
             group._begin()
-            group._look(self.simulation.engine)
+        self._fresh = False
+        done, stopped = 0, None
+        while done < self.repeat and stopped is None:
+            try:
+                self._advance()
+            except KeyboardInterrupt as interrupt:  # raised by the engine when the step was done
+                stopped = interrupt
+            done += 1
+            last = done == self.repeat or stopped is not None
+            for group in self.groups.values():
+                if self.repeat == 1:
+                    group._look(engine)
+                else:
+                    group._count(engine, first=done == 1, last=last)
+        self._judge(done)
+        if stopped is not None:
+            raise stopped
+        return self._told
 
+    def render(self, world: int = 0) -> NDArray[np.uint8] | None:
+        """A picture of a world as it is now: (height, width, 3), or None without a `render_mode`.
 
-def vector_env(
-    config: Config,
-    seeds: Sequence[int],
-    species: str | Sequence[str] | None = None,
-    threads: int = 0,
-    backend: str = "",
-) -> VectorEnv:
-    """Makes worlds that a program drives, as arrays.
+        Args:
+            world: Its index.
 
-    Args:
-        config: Settings of the worlds.
-        seeds: One world per seed, each in [0, 2^64).
-        species: Whose agents the caller drives: a name, several, or by default those whose policy is `external`, or
-            all where there are none. A config without `[species]` has the species `agent`.
-        threads: As in `hedon.Simulation`; changes no result.
-        backend: As in `hedon.Simulation`.
+        Raises:
+            ArgumentError: There is no such world.
+        """
+        if self.render_mode is None:
+            return None
+        from hedon.env.picture import Camera  # loads matplotlib
 
-    Raises:
-        ConfigError: A setting is wrong.
-        ArgumentError: Another argument is wrong.
-        EngineError: As in `hedon.Simulation`.
-    """
-    return VectorEnv(config, seeds, species, threads, backend)
+        index = integer("world", world, 0, len(self.simulation.worlds) - 1)
+        self._film = self._film or Camera(self.config)
+        return self._film.picture(self.simulation.worlds[index])
 
+    def close(self) -> None:
+        """Has nothing to close."""
 
-def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
-    """The names of the species that the caller drives.
+    def save(self) -> bytes:
+        """All worlds and all arrays as they are now, as `hedon.Simulation.save` has it.
 
-    Args:
-        config: With the species.
-        species: A name, several, or None for those whose policy is `external`, or all where there are none.
+        Raises:
+            EngineError: A world has stopped at a fault.
+        """
+        return self.simulation._pack(text_of(self._about(), self._arrays()))
 
-    Raises:
-        ArgumentError: There is no such species.
-    """
-    if not isinstance(config, Config):
-        raise ArgumentError(f"config: must be a Config, as load_config gives it, not {brief(repr(config))}")
-    known = list(config.species)
-    if species is None:
-        external = [name for name, each in config.species.items() if each.learning.policy == "external"]
-        return tuple(external or known)
-    if not isinstance(species, str | Iterable):
-        raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
-    wanted = [species] if isinstance(species, str) else list(species)
-    for name in wanted:
-        if name not in known:
-            near = nearest(name, known) if isinstance(name, str) else None
-            hint = f"; did you mean {near}?" if near else ""
-            there = ", ".join(known)
-            raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {there}){hint}")
-    if not wanted:
-        raise ArgumentError("species: there must be at least one")
-    return tuple(name for name in known if name in wanted)
+    def restore(self, saved: bytes) -> None:
+        """Goes on from what `save` gave: as many worlds of the same config, driven in the same way.
 
+        Args:
+            saved: From an environment, not from a `hedon.Simulation`, which knows nothing of actions and rewards.
 
-def _with_callers(config: Config, names: Sequence[str]) -> Config:
-    """The config with the policy `external` for these species."""
-    for name in names:
-        config = config.with_(f"species.{name}.learning.policy", "external")
-    return config
+        Raises:
+            ArgumentError: It is something else, or is damaged. Everything then stays as it is.
+        """
+        found = arrays_in(self.simulation._unpack(saved), self._about(), self._arrays())
+        self.simulation._restore(saved)
+        for name, group in self.groups.items():
+            group._set({key[1]: array for key, array in found.items() if key[0] == name})
+        self._steps[...] = found["", "steps"]
+        (self._next_seed,), (self._fresh,) = found["", "next_seed"].tolist(), found["", "fresh"].tolist()
+
+    def clone(self) -> Self:
+        """A copy with worlds and arrays of its own, which goes on as this one does."""
+        made = type(self).__new__(type(self))
+        made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
+        return made
+
+    def __copy__(self) -> Self:
+        return self.clone()
+
+    def __deepcopy__(self, memo: Any) -> Self:
+        return self.clone()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self._given() | {"saved": self.save(), "worlds": self.simulation._arguments()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        simulation = Simulation.__new__(Simulation)
+        simulation.__setstate__(state.pop("worlds"))
+        self._go_on(simulation, **state)
+
+    def _given(self) -> dict[str, Any]:
+        given = {"repeat": self.repeat, "max_steps": self.max_steps, "render_mode": self.render_mode}
+        return {**given, "about": self._about()}
+
+    def _go_on(
+        self, simulation: Simulation, repeat: int, max_steps: int, render_mode: str | None, about: Any, saved: bytes
+    ) -> None:
+        """Makes a copy of what another one was."""
+        self.repeat, self.max_steps, self.render_mode = repeat, max_steps, render_mode
+        self._made(simulation, about["species"], about["actions"])
+        self.restore(saved)
+
+    def _about(self) -> dict[str, Any]:
+        """What two environments must share to go on from one another's states."""
+        return {"species": list(self.groups), "actions": self._form}
+
+    def _arrays(self) -> dict[tuple[str, str], NDArray[Any]]:
+        """Everything beside the worlds, by species and name."""
+        own = {
+            "steps": self._steps,
+            "next_seed": np.array([self._next_seed], np.uint64),
+            "fresh": np.array([self._fresh]),
+        }
+        return {("", name): array for name, array in own.items()} | {
+            (species, name): array for species, group in self.groups.items() for name, array in group._arrays().items()
+        }
+
+    @cached_property
+    def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """What every step returns: arrays that stay."""
+        info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
+        told = (self._of(name) for name in ("observations", "rewards", "terminated", "truncated"))
+        return (*told, {"agent_id": self._of("ids"), **info})  # type: ignore[return-value]
+
+    def _of(self, name: str) -> Any:
+        """An array of the only driven species, or of each by its name."""
+        every = {species: getattr(group, name) for species, group in self.groups.items()}
+        return every if len(every) > 1 else next(iter(every.values()))
+
+    def _take(self, actions: Any) -> None:
+        if len(self.groups) == 1:
+            next(iter(self.groups.values()))._take(actions)
+            return
+        if not isinstance(actions, Mapping) or not actions.keys() <= self.groups.keys():
+            raise ArgumentError(
+                f"actions = {brief(repr(actions))}: must be a dict of arrays by species ({', '.join(self.groups)})"
+            )
+        for name, array in actions.items():
+            self.groups[name]._take(array)
+
+    def _advance(self) -> None:
+        """One step of the worlds."""
+        self.simulation.run(1)
+
+    def _judge(self, steps: int) -> None:
+        """Says whose time is over."""
+        self._steps += steps
+        if self.max_steps:
+            over = (self._steps >= self.max_steps)[:, None]
+            for group in self.groups.values():
+                np.logical_and(group.alive, over, out=group.truncated)
+
+    def _open(self, worlds: NDArray[np.bool_]) -> None:
+        """Reads worlds that have just begun."""
+        for group in self.groups.values():
+            group._open(self.simulation.engine, worlds)
+        self._steps[worlds] = 0
+
+    def _mask(self, options: Any) -> NDArray[np.bool_]:
+        count = len(self.simulation.worlds)
+        given = dict(options or {})
+        mask = np.asarray(given.pop(RESET_MASK, np.ones(count, np.bool_)))
+        if given:
+            unknown = next(iter(given))
+            raise ArgumentError(f"options: there is no {brief(str(unknown))!r}; there is {RESET_MASK!r}")
+        if mask.shape != (count,) or mask.dtype != np.bool_ or not mask.any():
+            raise ArgumentError(f"options[{RESET_MASK!r}]: must be ({count},) bool, true for at least one world")
+        return mask

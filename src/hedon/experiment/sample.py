@@ -9,7 +9,7 @@ from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.layout import layouts
 from hedon.config.type import types
-from hedon.experiment.simulation import World
+from hedon.experiment.world import World
 from hedon.record.checkpoint import Sampled
 from hedon.record.schema import CAUSES, Columns, columns_of
 from hedon.record.snapshot import Snapshot

@@ -1,29 +1,38 @@
-"""The engine's worlds as Python objects: make them from a config, run them, read them."""
+"""The engine's worlds as Python objects: make them from a config, run them, keep them, go on with them."""
 
+import json
 import os
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import replace
+from functools import cached_property
+from importlib.metadata import version
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hedon import _engine
 from hedon.config.config import Config
-from hedon.config.engine import engine_input
-from hedon.config.layout import layouts, store_columns
-from hedon.error import ArgumentError, EngineError
+from hedon.config.dump import digest
+from hedon.config.engine import EngineInput, engine_input
+from hedon.config.layout import layouts
+from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.device import device_library
+from hedon.experiment.rule import Rule
 from hedon.experiment.rule import rules as find_rules
+from hedon.experiment.world import World
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
 from hedon.record.network import NetworkError, Networks, fixed_species
+from hedon.text import brief
 
 BACKEND_VARIABLE = "HEDON_BACKEND"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
 MAX_WORLD_SEED = 2**64 - 1
 """Largest seed of a world; records of a run hold only the lower half of these."""
 MAX_RUN_STEPS = 2**62
+MARKS = {"hedon": "by another version of hedon", "config": "with another config", "rules": "with other rules"}
+"""What saved worlds share with those that go on from them, and how it is said where they do not."""
 
 
 class Simulation:
@@ -66,9 +75,14 @@ class Simulation:
     ) -> None:
         with _engine.FloatMode():  # the walls must not depend on the caller's rounding mode
             given = engine_input(config)
+        self._begin(given, seed_list(seeds, MAX_WORLD_SEED), threads, backend, find_rules(given.config, rules))
+
+    def _begin(
+        self, given: EngineInput, seeds: tuple[int, ...], threads: int, backend: str, rules: tuple[Rule, ...]
+    ) -> None:
         self.config = given.config
-        self.seeds = seed_list(seeds, MAX_WORLD_SEED)
-        threads = integer("threads", threads, 0, MAX_THREADS)
+        self._given, self._backend = given, backend
+        self._threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
             raise ArgumentError(f"backend: must be the name of an instruction set, not {backend!r}")
         if os.environ.get("HEDON_KERNEL"):
@@ -77,13 +91,18 @@ class Simulation:
         device = device_library(backend)
         host = "" if device else backend
         self.engine = _engine.Simulation(
-            given.settings, given.walls, given.outer_walls, list(self.seeds), threads, host, device=device
+            given.settings, given.walls, given.outer_walls, list(seeds), self._threads, host, device=device
         )
-        self.rules = find_rules(self.config, rules)
+        self.rules = rules
         for rule in self.rules:
             species = list(self.config.species).index(rule.species)
             self.engine.set_rule(species, rule.use, rule.compiled.address)
-        self.worlds = tuple(World(self.engine, i, self.config, seed) for i, seed in enumerate(self.seeds))
+        self.worlds = tuple(World(self.engine, i, self.config) for i in range(len(seeds)))
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """The seed of each world."""
+        return tuple(world.seed for world in self.worlds)
 
     def run(self, steps: int) -> None:
         """Advances every world that is not extinct; agents learn at the end of each window.
@@ -142,155 +161,106 @@ class Simulation:
         """Whether no agent is alive in any world."""
         return all(world.extinct for world in self.worlds)
 
-
-class World:
-    """One world of a simulation, read between runs."""
-
-    def __init__(self, engine: Any, index: int, config: Config, seed: int) -> None:
-        """A simulation makes its worlds.
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Begins all worlds again.
 
         Args:
-            engine: The compiled simulation, with all worlds.
-            index: Of the world in it.
-            config: Of the world.
-            seed: Of the world.
-        """
-        self._engine = engine
-        self.index = index
-        self.config = config
-        self.seed = seed
-
-    @property
-    def step(self) -> int:
-        """Steps completed; it does not change after extinction."""
-        return self._engine.head(self.index)["step"]
-
-    @property
-    def alive(self) -> int:
-        """Agents alive."""
-        return self._engine.head(self.index)["living_count"]
-
-    @property
-    def extinct_step(self) -> int | None:
-        """Steps completed when the last agent died, or None."""
-        step = self._engine.head(self.index)["extinct_step"]
-        return None if step < 0 else step
-
-    @property
-    def extinct(self) -> bool:
-        """Whether no agent is alive."""
-        return self.extinct_step is not None
-
-    @property
-    def waiting_deaths(self) -> float:
-        """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
-        head = self._engine.head(self.index)
-        return (head["death_log_count"] + head["death_log_lost"]) / len(self.view("death_log.birth_step"))
-
-    @property
-    def lost_deaths(self) -> int:
-        """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
-        return self._engine.head(self.index)["death_log_lost"]
-
-    @property
-    def counters(self) -> dict[str, Any]:
-        """Births, deaths, failures and the energy ledger since the world began, over all species."""
-        each = [self.counters_of(species) for species in range(len(self.config.species))]
-        return {name: sum(counters[name] for counters in each) for name in each[0]}
-
-    def counters_of(self, species: int) -> dict[str, Any]:
-        """The same of one species, by its index in the config's order."""
-        return self._engine.counters(self.index, species)
-
-    @property
-    def seconds(self) -> dict[str, float]:
-        """Time spent in each part of a step by the world's first thread [s]."""
-        return self._engine.seconds(self.index)
-
-    @property
-    def living(self) -> NDArray[np.int32]:
-        """Slots of the living in the order of their ids, (alive,): their rows in the views."""
-        return self.view("living")[: self.alive]
-
-    def view(self, path: str) -> NDArray[Any]:
-        """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.
-
-        Args:
-            path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`
-                (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists them all.
+            seeds: One per world, each in [0, 2^64).
 
         Raises:
-            KeyError: There is no such array.
+            ArgumentError: It is no list of seeds, or there are more or fewer than worlds.
+            EngineError: There is no room for the initial agents or foods of a world.
         """
-        return self._engine.view(self.index, path)
+        wanted = seed_list(seeds, MAX_WORLD_SEED)
+        if len(wanted) != len(self.worlds):
+            raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(wanted)}")
+        for world, seed in zip(self.worlds, wanted, strict=True):
+            self.engine.reset(world.index, seed)
 
-    def agents(self) -> dict[str, NDArray[Any]]:
-        """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes).
+    def save(self) -> bytes:
+        """All worlds as they are now, with their seeds: what `restore` goes on from with the same bits.
 
-        Each store beside energy is there by its name, with 0 for agents of species that do not have it.
-        """
-        rows = self._engine.living_rows(self.index)
-        living = self.living
-        rows["age"] = self.step - rows["birth_step"]
-        for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
-            rows[name] = self.view(f"physics.bodies.{name}")[living]
-        return rows | self._held(rows.pop("store"), rows["species"])
-
-    def _held(self, held: NDArray[np.float64], species: NDArray[np.int32]) -> dict[str, NDArray[np.float64]]:
-        """What agents of these species hold of each store beside energy, by its name; 0 of those that they lack."""
-        found = {name: np.zeros(len(species)) for name in store_columns(self.config)}
-        for i, each in enumerate(self.config.species.values()):
-            mine = species == i
-            for column, name in enumerate(each.store):
-                found[name][mine] = held[mine, column]
-        return found
-
-    def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
-        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`, and its stores.
-
-        The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
-        runs. Without a use for them you need not call it.
-
-        Args:
-            partial: Take those that are left, where older ones are lost; `lost_deaths` is the number of the others.
+        Deaths that nobody has read yet (`World.deaths`) are not in it.
 
         Raises:
-            EngineError: Some are lost, and `partial` is false. Nothing is taken then.
+            EngineError: A world has stopped at a fault.
         """
-        lost = self.lost_deaths
-        if lost and not partial:
-            room = len(self.view("death_log.birth_step"))
-            raise EngineError(
-                f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
-                "call World.deaths more often, or take those that are left with World.deaths(partial=True)"
-            )
-        rows = self._engine.take_rows(self.index)
-        return rows | self._held(rows.pop("store"), rows["species"])
+        return self._pack(b"")
 
-    def foods(self) -> dict[str, NDArray[Any]]:
-        """Kind (index in the config's order) and place [u] of each food present, (foods,) each."""
-        present = self.view("physics.circles.present").astype(bool)
-        capacities = [food.capacity for food in self.config.food.values()]
-        kind = np.repeat(np.arange(len(capacities), dtype=np.int32), capacities)
-        circles = {name: self.view(f"physics.circles.{name}")[present] for name in ("x", "y")}
-        return {"kind": kind[present], **circles}
+    def restore(self, saved: bytes) -> None:
+        """Puts saved worlds and their seeds in place of these; threads and backend may be other ones.
 
-    @property
-    def obstacles(self) -> NDArray[np.float32]:
-        """Places of the corners of each obstacle [u], (obstacles, corners, 2)."""
-        count, corners = self.config.obstacle.count, self.config.obstacle.corners
-        return self.view("obstacle").reshape(count, corners, 2).copy()
+        Args:
+            saved: What `save` gave, of as many worlds with the same config, rules and version of hedon.
 
-    def observations(self, species: int = 0) -> NDArray[np.float32]:
-        """What each living agent of a species observes now, (alive, observation size)."""
-        return self._engine.observations(self.index, species)
+        Raises:
+            ArgumentError: It is something else, or is damaged. The worlds then stay as they are.
+        """
+        self._unpack(saved)
+        self._restore(saved)
 
-    def rays(self, species: int = 0) -> NDArray[np.float32]:
-        """The rays of the observations of a species: (alive, rays, types that it sees)."""
-        name = list(self.config.species)[species]
-        rays, seen = self.config.species[name].sensor.ray_count, len(layouts(self.config)[name].sees)
-        return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
+    def clone(self) -> Self:
+        """A copy with worlds of its own, which goes on as this one does; `copy.copy` and `deepcopy` give the same."""
+        made = self._fresh_one()
+        made._restore(self.save())
+        return made
 
-    def digest(self) -> str:
-        """A hash of the world's whole state: equal for equal bits."""
-        return f"{self._engine.digest(self.index):016x}"
+    def __copy__(self) -> Self:
+        return self.clone()
+
+    def __deepcopy__(self, memo: Any) -> Self:
+        return self.clone()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self._arguments() | {"saved": self.save()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        saved = state.pop("saved", None)
+        with _engine.FloatMode():
+            given = engine_input(state.pop("config"))
+        self._begin(given, **state)
+        if saved is not None:
+            self.restore(saved)
+
+    def _arguments(self) -> dict[str, Any]:
+        """What it was made with; the rules without what is compiled for this process."""
+        rules = tuple(replace(rule) for rule in self.rules)
+        given = {"config": self.config, "seeds": self.seeds, "threads": self._threads, "backend": self._backend}
+        return {**given, "rules": rules}
+
+    def _fresh_one(self) -> Self:
+        """Another one with the same arguments, at its beginning."""
+        made = type(self).__new__(type(self))
+        made._begin(self._given, self.seeds, self._threads, self._backend, self.rules)
+        return made
+
+    @cached_property
+    def _mark(self) -> dict[str, Any]:
+        """What worlds must share to go on from one another's states."""
+        rules = [[rule.species, rule.use, rule.source.name, rule.source.digest] for rule in self.rules]
+        return {"hedon": version("hedon"), "config": digest(self.config), "rules": rules}
+
+    def _pack(self, more: bytes) -> bytes:
+        return self.engine.pack(json.dumps(self._mark).encode() + b"\n" + more)
+
+    def _unpack(self, saved: Any) -> bytes:
+        """What `_pack` was given. ArgumentError: these are no worlds that this simulation can go on from."""
+        if not isinstance(saved, bytes):
+            raise ArgumentError(f"saved = {brief(repr(saved))}: must be bytes, as `save` gives them")
+        try:
+            head, _, more = self.engine.packed_head(saved).partition(b"\n")
+            mark = json.loads(head)
+        except ValueError as error:
+            raise ArgumentError(f"saved: these bytes {error}") from None
+        for name, what in MARKS.items():
+            then, now = mark.get(name), self._mark[name]
+            if then != now:
+                said = f" ({then}, here {now})" if name == "hedon" else ""
+                raise ArgumentError(f"saved: these worlds were saved {what}{said}")
+        return more
+
+    def _restore(self, saved: bytes) -> None:
+        try:
+            self.engine.unpack(saved)
+        except ValueError as error:
+            raise ArgumentError(f"saved: {error}") from None

@@ -1,0 +1,135 @@
+"""The life of one agent as an environment of Gymnasium."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config.config import Config
+from hedon.env.group import Form
+from hedon.env.make import make
+from hedon.env.vector import RENDER_MODES
+from hedon.error import ArgumentError, EngineError
+
+Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
+"""From observations (agents, entries) to actions (agents, 2)."""
+
+
+class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
+    """One agent among others: an episode is its life, from the beginning of a world to its death.
+
+    The agent is the first founder of its species. Other species act by their `learning.policy`. Others of the same
+    species act by `others`, since one species has one policy; give the agent a species of its own with a capacity of 1,
+    and all others act and learn by themselves (docs/guide/environment.md).
+
+    Args:
+        config: Settings of the world, as for `hedon.make`, like all that follow but `others`.
+        species: Of the agent: one name; None for the only one whose policy is `external`, or the only one.
+        seed: Of the first world.
+        actions: What their numbers are.
+        repeat: Steps of the world in one step.
+        max_steps: Steps of the world after which the episode is truncated.
+        others: Acts for the others of the species; None to leave their motors in the middle of their range.
+        render_mode: What `render` gives.
+        threads: One world of usual size is fastest on one.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: Another argument is wrong.
+    """
+
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 30}  # noqa: RUF012  # as Gymnasium declares it
+
+    def __init__(
+        self,
+        config: Config | str | Path,
+        species: str | None = None,
+        seed: int = 0,
+        actions: Form = "unit",
+        repeat: int = 1,
+        max_steps: int = 0,
+        others: Policy | None = None,
+        render_mode: str | None = None,
+        threads: int = 1,
+    ) -> None:
+        self._vector = make(config, 1, seed, species, actions, repeat, max_steps, render_mode, threads)
+        if len(self._vector.groups) > 1:
+            raise ArgumentError(f"species: must be one of {', '.join(self._vector.groups)}, that of the agent")
+        (self._group,) = self._vector.groups.values()
+        self._others = others
+        self._slot = -1
+        self.render_mode = render_mode
+        self.observation_space = self._vector.single_observation_space
+        self.action_space = self._vector.single_action_space
+
+    @property
+    def simulation(self) -> Any:
+        """The world itself, for reading: `simulation.worlds[0]`."""
+        return self._vector.simulation
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins a new world and a new life.
+
+        Args:
+            seed: Of the world; None for the first one, and then for the one with the next number.
+            options: None are known; Gymnasium has the argument.
+
+        Returns:
+            The observation (entries,), and the id and the slot of the agent.
+
+        Raises:
+            EngineError: No agent of the species is there when the world begins.
+        """
+        super().reset(seed=seed)
+        self._vector.reset(None if seed is None else [seed])
+        founders = np.flatnonzero(self._group.alive[0])
+        if not len(founders):
+            raise EngineError("the species has no founders: population.initial_count is 0")
+        self._slot = int(founders[np.argmin(self._group.ids[0, founders])])
+        return self._seen(), self._info()
+
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Advances the world by `repeat` steps.
+
+        Args:
+            action: (2,) left and right motor.
+
+        Returns:
+            The observation (entries,), zeros after death; what the agent was paid, whether it has died, whether its
+            time is over, and its id and slot.
+
+        Raises:
+            ArgumentError: The action is not two numbers that it can be, or there was no `reset`.
+        """
+        group, slot = self._group, self._slot
+        if slot < 0:
+            raise ArgumentError("step: there is no agent: call reset first")
+        if self._others is not None:
+            group.actions[0] = self._others(group.observations[0])
+        given = np.asarray(action)
+        if given.shape != (2,) or given.dtype.kind not in "fiu":
+            raise ArgumentError("action: must be two numbers, left and right")
+        group.actions[0, slot] = given
+        self._vector.step(group.actions)
+        died = bool(group.terminated[0, slot])
+        seen = np.zeros(len(group.columns), np.float32) if died else self._seen()
+        cut = bool(group.truncated[0, slot]) and not died
+        told = seen, float(group.rewards[0, slot]), died, cut, self._info()
+        if died:
+            self._slot = -1
+        return told
+
+    def render(self) -> Any:
+        """A picture of the world: see `VectorEnv.render`."""
+        return self._vector.render()
+
+    def _seen(self) -> NDArray[np.float32]:
+        return self._group.observations[0, self._slot].copy()
+
+    def _info(self) -> dict[str, Any]:
+        return {"agent_id": int(self._group.ids_before[0, self._slot]), "slot": self._slot}

@@ -1,0 +1,93 @@
+"""Checks what environments are made with."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from hedon.config.config import Config
+from hedon.config.problem import nearest
+from hedon.error import ArgumentError
+from hedon.experiment.argument import integer, seed_list
+from hedon.experiment.simulation import MAX_WORLD_SEED
+from hedon.text import brief
+
+
+def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
+    """The names of the species that the caller drives.
+
+    Args:
+        config: With the species.
+        species: A name, several, or None for those whose policy is `external`, or all where there are none.
+
+    Raises:
+        ArgumentError: There is no such species.
+    """
+    if not isinstance(config, Config):
+        raise ArgumentError(
+            f"config: must be a Config, as load_config gives it, a preset or a file, not {brief(repr(config))}"
+        )
+    known = list(config.species)
+    if species is None:
+        external = [name for name, each in config.species.items() if each.learning.policy == "external"]
+        return tuple(external or known)
+    if not isinstance(species, str | Iterable):
+        raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
+    wanted = [species] if isinstance(species, str) else list(species)
+    for name in wanted:
+        if name not in known:
+            near = nearest(name, known) if isinstance(name, str) else None
+            hint = f"; did you mean {near}?" if near else ""
+            there = ", ".join(known)
+            raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {there}){hint}")
+    if not wanted:
+        raise ArgumentError("species: there must be at least one")
+    return tuple(name for name in known if name in wanted)
+
+
+def with_callers(config: Config, names: Sequence[str]) -> Config:
+    """The config with the policy `external` for some species.
+
+    Args:
+        config: Of worlds that a program drives.
+        names: Of the species.
+    """
+    for name in names:
+        config = config.with_(f"species.{name}.learning.policy", "external")
+    return config
+
+
+def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
+    """The seed of each world.
+
+    Args:
+        seed: Of the first, whose followers have the next numbers; or a list with one for each.
+        worlds: How many there are.
+
+    Raises:
+        ArgumentError: It is neither.
+    """
+    if isinstance(seed, Iterable) and not isinstance(seed, str | bytes):
+        seeds = seed_list(seed, MAX_WORLD_SEED)
+        if len(seeds) != worlds:
+            raise ArgumentError(f"seed: there must be {worlds}, one per world, not {len(seeds)}")
+        return seeds
+    first = integer("seed", seed, 0, MAX_WORLD_SEED - worlds + 1)
+    return tuple(range(first, first + worlds))
+
+
+def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) -> Any:
+    """A value that is one of a few.
+
+    Args:
+        name: What the error calls it.
+        value: What a caller gave.
+        known: What it may be.
+        empty: Whether it may be None.
+
+    Raises:
+        ArgumentError: It is none of them.
+    """
+    if value in known or (empty and value is None):
+        return value
+    near = nearest(value, known) if isinstance(value, str) else None
+    hint = f"; did you mean {near}?" if near else ""
+    raise ArgumentError(f"{name} = {brief(repr(value))}: must be {' or '.join(known)}{hint}")

@@ -1,0 +1,55 @@
+"""Arrays in a string of bytes, with what they belong to: what `VectorEnv.save` adds to the worlds."""
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.error import ArgumentError
+
+Arrays = dict[tuple[str, str], NDArray[Any]]
+FREE = "_gone"
+"""The only array whose length may be another one."""
+
+
+def text_of(about: dict[str, Any], arrays: Arrays) -> bytes:
+    """Writes arrays.
+
+    Args:
+        about: What they belong to.
+        arrays: Of any shapes, by two names.
+    """
+    rows = [[*names, len(array)] for names, array in arrays.items()]
+    head = json.dumps({"about": about, "rows": rows}).encode()
+    return b"".join([head, b"\n", *(np.ascontiguousarray(array).tobytes() for array in arrays.values())])
+
+
+def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
+    """Reads arrays.
+
+    Args:
+        text: What `text_of` gave.
+        about: What they must belong to.
+        like: Arrays of the types and shapes that they must have.
+
+    Raises:
+        ArgumentError: It is something else.
+    """
+    head, _, rest = text.partition(b"\n")
+    try:
+        told = json.loads(head)
+    except ValueError:
+        raise ArgumentError("saved: these bytes hold worlds alone, without those who drive them") from None
+    if told["about"] != about:
+        raise ArgumentError(f"saved: these worlds were driven in another way: {told['about']}, here {about}")
+    found: Arrays = {}
+    at = 0
+    for (first, second, rows), (names, array) in zip(told["rows"], like.items(), strict=True):
+        shape = (rows, *array.shape[1:])
+        count = rows * int(np.prod(array.shape[1:], dtype=np.int64))
+        if (first, second) != names or (rows != len(array) and second != FREE) or rows < 0:
+            raise ArgumentError(f"saved: {second} is of other worlds")
+        found[names] = np.frombuffer(rest, array.dtype, count, at).reshape(shape).copy()
+        at += count * array.dtype.itemsize
+    return found

@@ -1,0 +1,50 @@
+"""Makes worlds that a program drives."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hedon.config.config import Config
+from hedon.config.load import load_config
+from hedon.env.group import Form
+from hedon.env.vector import VectorEnv
+
+
+def make(
+    config: Config | str | Path,
+    worlds: int = 1,
+    seed: int | Sequence[int] = 0,
+    species: str | Sequence[str] | None = None,
+    actions: Form = "unit",
+    repeat: int = 1,
+    max_steps: int = 0,
+    render_mode: str | None = None,
+    threads: int = 0,
+    backend: str = "",
+) -> VectorEnv:
+    """Makes worlds that a program drives, as arrays: how other programs train agents in hedon.
+
+    Args:
+        config: Settings of the worlds: a config, the name of a preset, or the path of a file.
+        worlds: How many worlds advance together.
+        seed: Of the first world, whose followers have the next numbers; or a list with one for each world.
+        species: Whose agents the caller drives: a name, several, or by default those whose policy is `external`, or
+            all where there are none. A config without `[species]` has the species `agent`. All others act by their
+            `learning.policy`.
+        actions: What the numbers of actions are: `unit`, from −1, the least force of a motor, to 1, the greatest;
+            `force`, the force itself [mass·u/s²]; or `logit`, what the networks of the engine give: any number, before
+            the sigmoid.
+        repeat: Steps of the worlds in one step, with the same actions.
+        max_steps: Steps of a world after which its agents are truncated; 0 for no end. A world goes on if it is not
+            begun again.
+        render_mode: `rgb_array` to have pictures by `render`.
+        threads: As in `hedon.Simulation`; changes no result.
+        backend: As in `hedon.Simulation`.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: Another argument is wrong.
+        EngineError: As in `hedon.Simulation`.
+    """
+    if isinstance(config, str | Path):
+        config = load_config(config)
+    return VectorEnv(config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend)

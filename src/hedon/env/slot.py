@@ -1,0 +1,105 @@
+"""Slots of worlds as environments of Stable-Baselines3."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
+
+from hedon.env.group import Group
+from hedon.env.vector import RESET_MASK, VectorEnv
+from hedon.error import ArgumentError
+
+
+class SlotVecEnv(VecEnv):
+    """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
+
+    An episode is a life: it ends at a death (`dones`), and the next one begins at the birth of who takes the slot.
+    In between, while nobody lives there, is an episode of its own that shows zeros and pays 0; its infos have
+    `alive: False`. Worlds that have come to
+    `max_steps`, or in which no agent of the species is left, begin again with the next seeds; where time ended a life,
+    its info has `TimeLimit.truncated`. The last observation of a life is in `terminal_observation`: zeros after death.
+
+    Args:
+        worlds: Of `hedon.make`, with one driven species; nobody else may step or reset them.
+
+    Raises:
+        ArgumentError: Several species are driven.
+    """
+
+    def __init__(self, worlds: VectorEnv) -> None:
+        if len(worlds.groups) > 1:
+            raise ArgumentError(f"worlds: must drive one species, not {', '.join(worlds.groups)}")
+        self.worlds = worlds
+        self.group: Group = next(iter(worlds.groups.values()))
+        self.render_mode = worlds.render_mode
+        super().__init__(self.group.ids.size, worlds.single_observation_space, worlds.single_action_space)
+
+    def reset(self) -> Any:
+        """Begins all worlds: (slots, entries)."""
+        seed = next((each for each in self._seeds if each is not None), None)
+        self.worlds.reset(seed=seed)
+        self._reset_seeds()
+        return self._table(self.group.observations)
+
+    def step_async(self, actions: Any) -> None:
+        """Tells every agent what to do: (slots, 2)."""
+        self.group.actions[...] = actions.reshape(self.group.actions.shape)
+
+    def step_wait(self) -> Any:
+        """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
+        group, worlds = self.group, self.worlds
+        worlds.step(worlds.actions)
+        rewards = group.rewards.ravel().copy()
+        over = group.truncated.any(axis=1) | ~group.alive.any(axis=1)
+        dones = (group.terminated | group.born | over[:, None]).ravel()
+        cut = (group.truncated & ~group.born).ravel()
+        rows = self._table(group.observations)
+        nothing = np.zeros(len(group.columns), np.float32)
+        if over.any():
+            worlds.reset(options={RESET_MASK: over})
+        infos: list[dict[str, Any]] = [{"alive": each} for each in group.alive.ravel().tolist()]
+        for i in np.flatnonzero(dones).tolist():
+            last = rows[i] if cut[i] else nothing
+            infos[i] |= {"terminal_observation": last, "TimeLimit.truncated": bool(cut[i])}
+        return self._table(group.observations) if over.any() else rows, rewards, dones, infos
+
+    def close(self) -> None:
+        """Closes the worlds."""
+        self.worlds.close()
+
+    def get_images(self) -> Sequence[Any]:
+        """A picture of each world."""
+        return [self.worlds.render(i) for i in range(len(self.worlds.simulation.worlds))]
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """An attribute of the worlds, the same for all slots."""
+        return [getattr(self.worlds, attr_name)] * self._count(indices)
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Slots have no attributes of their own.
+
+        Raises:
+            ArgumentError: Always.
+        """
+        raise ArgumentError(f"{attr_name}: slots have no attributes of their own: change the worlds")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+        """Slots have no methods of their own.
+
+        Raises:
+            ArgumentError: Always.
+        """
+        raise ArgumentError(f"{method_name}: slots have no methods of their own: call those of the worlds")
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        """None is."""
+        return [False] * self._count(indices)
+
+    def _count(self, indices: Any) -> int:
+        if indices is None:
+            return self.num_envs
+        return len(list(indices)) if isinstance(indices, Iterable) else 1
+
+    def _table(self, array: Any) -> Any:
+        return array.reshape(self.num_envs, -1).copy()

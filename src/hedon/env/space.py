@@ -1,0 +1,104 @@
+"""What observations and actions can be, as spaces of Gymnasium."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config.config import Config
+from hedon.config.layout import layouts
+from hedon.env.group import ACTIONS, Group
+from hedon.error import HedonError
+
+TURN = 2 * np.pi
+
+
+def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """The least and the greatest that each entry of an observation can be, (entries,) each.
+
+    Velocities have no bounds. What an agent holds of a store is at most its capacity.
+
+    Args:
+        config: With the species.
+        name: Of the species.
+    """
+    species, layout = config.species[name], layouts(config)[name]
+    stores = list(species.stores.values())
+    limit = {"heading": (-1.0, 1.0), "smell": (0.0, 1.0), "angle": (-TURN, TURN)}
+    low = [-1.0] * (len(layout.sees) * species.sensor.ray_count)
+    low += [0.0] * (len(layout.touches) * species.sensor.touch_sectors)
+    high = [1.0] * len(low)
+    for channel in layout.observed:
+        least, most = limit.get(channel.source, (-np.inf, np.inf))
+        if channel.source == "store":
+            least, most = 0.0, stores[channel.index].capacity
+        low.append(least / channel.scale)
+        high.append(most / channel.scale)
+    return np.array(low, np.float32), np.array(high, np.float32)
+
+
+class Spaces:
+    """The spaces of the agents of some species: of one species a Box, of several a Dict of them by name.
+
+    Args:
+        config: With the species.
+        groups: Their agents, by the name of the species.
+
+    Raises:
+        HedonError: Gymnasium is not installed.
+    """
+
+    def __init__(self, config: Config, groups: Mapping[str, Group]) -> None:
+        try:
+            from gymnasium import spaces
+        except ModuleNotFoundError as error:
+            raise HedonError(f'spaces need {error.name}: pip install "hedon[env]"') from error
+        self._spaces, self._groups = spaces, groups
+        self._observed = {name: bounds(config, name) for name in groups}
+
+    @cached_property
+    def observation(self) -> Any:
+        """What one agent observes."""
+        return self._of({name: self.box_of(name) for name in self._groups})
+
+    @cached_property
+    def action(self) -> Any:
+        """What one agent does."""
+        return self._of({name: self.action_box(name) for name in self._groups})
+
+    @cached_property
+    def observations(self) -> Any:
+        """What all agents observe, (worlds, slots, entries)."""
+        return self._of({name: self.box_of(name, group.ids.shape) for name, group in self._groups.items()})
+
+    @cached_property
+    def actions(self) -> Any:
+        """What all agents do, (worlds, slots, 2)."""
+        return self._of({name: self.action_box(name, group.ids.shape) for name, group in self._groups.items()})
+
+    def box_of(self, name: str, rows: tuple[int, ...] = ()) -> Any:
+        """The Box of the observations of a species.
+
+        Args:
+            name: Of the species.
+            rows: Shape before that of one agent.
+        """
+        low, high = (np.broadcast_to(bound, (*rows, len(bound))) for bound in self._observed[name])
+        return self._spaces.Box(low, high, dtype=np.float32)
+
+    def action_box(self, name: str, rows: tuple[int, ...] = (), seed: int | None = None) -> Any:
+        """The Box of the actions of a species; without bounds where any number is an action.
+
+        Args:
+            name: Of the species.
+            rows: Shape before that of one agent.
+            seed: Of its samples.
+        """
+        group = self._groups[name]
+        low, high = (-np.inf, np.inf) if group.open else (group.low, group.high)
+        return self._spaces.Box(low, high, (*rows, len(ACTIONS)), np.float32, seed=seed)
+
+    def _of(self, boxes: dict[str, Any]) -> Any:
+        return self._spaces.Dict(boxes) if len(boxes) > 1 else next(iter(boxes.values()))

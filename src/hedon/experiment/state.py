@@ -1,0 +1,50 @@
+"""The arrays of a world's state as attributes."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from hedon.config.problem import nearest
+
+PARTS = ("", "life.", "physics.bodies.")
+"""Where an attribute is looked for, in this order."""
+
+
+class State:
+    """The arrays of a world's state, each read-only, with a row per slot, valid until the next `run`.
+
+    `state.energy` is `view("life.energy")`, `state.x` is `view("physics.bodies.x")`, `state.genome` is
+    `view("genome")`. The rows of the living are `state.energy[world.living]`. `dir(state)` lists all names; what has
+    none, such as `food_stock.eaten`, `World.view` gives.
+
+    Args:
+        view: Gives an array by its path.
+        paths: Of all arrays.
+    """
+
+    def __init__(self, view: Callable[[str], NDArray[Any]], paths: Sequence[str]) -> None:
+        self._view = view
+        self._paths = {
+            name: path
+            for part in reversed(PARTS)
+            for path in paths
+            if path.startswith(part) and "." not in (name := path.removeprefix(part))
+        }
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        """The array of this name, of any shape.
+
+        Raises:
+            AttributeError: There is none.
+        """
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._paths:
+            near = nearest(name, self._paths)
+            hint = f"; did you mean {near}?" if near else ""
+            raise AttributeError(f"the state has no array {name!r}{hint}")
+        return self._view(self._paths[name])
+
+    def __dir__(self) -> list[str]:
+        return sorted(self._paths)

@@ -1,0 +1,198 @@
+"""One world of a simulation, read between runs."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config.config import Config
+from hedon.config.layout import choose_species, layouts, store_columns
+from hedon.error import EngineError
+from hedon.experiment.state import State
+
+
+class World:
+    """One world of a simulation, read between runs."""
+
+    def __init__(self, engine: Any, index: int, config: Config) -> None:
+        """A simulation makes its worlds.
+
+        Args:
+            engine: The compiled simulation, with all worlds.
+            index: Of the world in it.
+            config: Of the world.
+        """
+        self._engine = engine
+        self.index = index
+        self.config = config
+
+    @property
+    def seed(self) -> int:
+        """Its seed."""
+        return self._engine.seed(self.index)
+
+    @property
+    def step(self) -> int:
+        """Steps completed; it does not change after extinction."""
+        return self._engine.head(self.index)["step"]
+
+    @property
+    def alive(self) -> int:
+        """Agents alive."""
+        return self._engine.head(self.index)["living_count"]
+
+    @property
+    def extinct_step(self) -> int | None:
+        """Steps completed when the last agent died, or None."""
+        step = self._engine.head(self.index)["extinct_step"]
+        return None if step < 0 else step
+
+    @property
+    def extinct(self) -> bool:
+        """Whether no agent is alive."""
+        return self.extinct_step is not None
+
+    @property
+    def waiting_deaths(self) -> float:
+        """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
+        head = self._engine.head(self.index)
+        return (head["death_log_count"] + head["death_log_lost"]) / len(self.view("death_log.birth_step"))
+
+    @property
+    def lost_deaths(self) -> int:
+        """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
+        return self._engine.head(self.index)["death_log_lost"]
+
+    @property
+    def counters(self) -> dict[str, Any]:
+        """Births, deaths, failures and the energy ledger since the world began, over all species."""
+        each = [self.counters_of(species) for species in range(len(self.config.species))]
+        return {name: sum(counters[name] for counters in each) for name in each[0]}
+
+    def counters_of(self, species: int | str) -> dict[str, Any]:
+        """The same of one species.
+
+        Args:
+            species: Its name, or its index in the config's order; so everywhere.
+
+        Raises:
+            ArgumentError: There is no species of this name.
+        """
+        return self._engine.counters(self.index, self._species(species))
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent in each part of a step by the world's first thread [s]."""
+        return self._engine.seconds(self.index)
+
+    @property
+    def living(self) -> NDArray[np.int32]:
+        """Slots of the living in the order of their ids, (alive,): their rows in the views."""
+        return self.view("living")[: self.alive]
+
+    @cached_property
+    def state(self) -> State:
+        """The arrays of the state as attributes: `world.state.energy` is `world.view("life.energy")`; see `State`."""
+        return State(self.view, tuple(self._engine.view_names()))
+
+    def view(self, path: str) -> NDArray[Any]:
+        """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.
+
+        Args:
+            path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`
+                (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists them all.
+
+        Raises:
+            KeyError: There is no such array.
+        """
+        return self._engine.view(self.index, path)
+
+    def agents(self) -> dict[str, NDArray[Any]]:
+        """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes).
+
+        Each store beside energy is there by its name, with 0 for agents of species that do not have it.
+        """
+        rows = self._engine.living_rows(self.index)
+        living = self.living
+        rows["age"] = self.step - rows["birth_step"]
+        for name in ("x", "y", "angle", "velocity_x", "velocity_y", "angular_velocity"):
+            rows[name] = self.view(f"physics.bodies.{name}")[living]
+        return rows | self._held(rows.pop("store"), rows["species"])
+
+    def _held(self, held: NDArray[np.float64], species: NDArray[np.int32]) -> dict[str, NDArray[np.float64]]:
+        """What agents of these species hold of each store beside energy, by its name; 0 of those that they lack."""
+        found = {name: np.zeros(len(species)) for name in store_columns(self.config)}
+        for i, each in enumerate(self.config.species.values()):
+            mine = species == i
+            for column, name in enumerate(each.store):
+                found[name][mine] = held[mine, column]
+        return found
+
+    def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
+        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`, and its stores.
+
+        The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
+        runs. Without a use for them you need not call it.
+
+        Args:
+            partial: Take those that are left, where older ones are lost; `lost_deaths` is the number of the others.
+
+        Raises:
+            EngineError: Some are lost, and `partial` is false. Nothing is taken then.
+        """
+        lost = self.lost_deaths
+        if lost and not partial:
+            room = len(self.view("death_log.birth_step"))
+            raise EngineError(
+                f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
+                "call World.deaths more often, or take those that are left with World.deaths(partial=True)"
+            )
+        rows = self._engine.take_rows(self.index)
+        return rows | self._held(rows.pop("store"), rows["species"])
+
+    def foods(self) -> dict[str, NDArray[Any]]:
+        """Kind (index in the config's order) and place [u] of each food present, (foods,) each."""
+        present = self.view("physics.circles.present").astype(bool)
+        capacities = [food.capacity for food in self.config.food.values()]
+        kind = np.repeat(np.arange(len(capacities), dtype=np.int32), capacities)
+        circles = {name: self.view(f"physics.circles.{name}")[present] for name in ("x", "y")}
+        return {"kind": kind[present], **circles}
+
+    @property
+    def obstacles(self) -> NDArray[np.float32]:
+        """Places of the corners of each obstacle [u], (obstacles, corners, 2)."""
+        count, corners = self.config.obstacle.count, self.config.obstacle.corners
+        return self.view("obstacle").reshape(count, corners, 2).copy()
+
+    def observations(self, species: int | str = 0) -> NDArray[np.float32]:
+        """What each living agent of a species observes now, (alive, observation size).
+
+        Args:
+            species: Its name or index.
+
+        Raises:
+            ArgumentError: There is no species of this name.
+        """
+        return self._engine.observations(self.index, self._species(species))
+
+    def rays(self, species: int | str = 0) -> NDArray[np.float32]:
+        """The rays of the observations of a species: (alive, rays, types that it sees).
+
+        Args:
+            species: Its name or index.
+
+        Raises:
+            ArgumentError: There is no species of this name.
+        """
+        name = list(self.config.species)[self._species(species)]
+        rays, seen = self.config.species[name].sensor.ray_count, len(layouts(self.config)[name].sees)
+        return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
+
+    def digest(self) -> str:
+        """A hash of the world's whole state: equal for equal bits."""
+        return f"{self._engine.digest(self.index):016x}"
+
+    def _species(self, species: int | str) -> int:
+        names = list(self.config.species)
+        return names.index(choose_species(species, self.config)) if isinstance(species, str) else species
