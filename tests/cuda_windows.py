@@ -38,6 +38,10 @@ WORLDS = {
         "baseline",
         (*FEW, "birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=200"),
     ),
+    "bodies": (
+        "baseline",
+        (*FEW, "birth.kappa=0.5", "genome.set.body.radius={}", "genome.mutation.g_body_radius.limit=0.2"),
+    ),
 }
 """Presets and overrides of the worlds that run."""
 BARRIERS = 12

@@ -37,9 +37,13 @@ class Judge:
     def __init__(self, simulation: Simulation, seed: int) -> None:
         self.simulation, self.model = simulation, Model(simulation.config, seed)
         species = self.model.rules.species
-        self.force = FORCE * math.sqrt(2) * max(each.max_force for each in species)
+        # Genes may multiply forces and costs by up to this.
+        genes = [(gene, own.limit) for each in species for gene, own in zip(each.genes, each.mutations, strict=True)]
+        set_by = {"g_" + path.replace(".", "_") for each in species for path in each.genome.set}
+        stretch = 10 ** max((limit for gene, limit in genes if gene in set_by), default=0.0)
+        self.force = FORCE * math.sqrt(2) * stretch * max(each.max_force for each in species)
         costs = [sum(store.action_cost for store in each.stores.values()) for each in species]
-        self.costs = 2e-12 + self.force * max(costs)
+        self.costs = 2e-12 + self.force * stretch * max(costs)
         self.happened: dict[str, float] = {}
         self.born_with: dict[int, np.ndarray] = {}
         """The network that each agent had when it was first seen."""
@@ -202,7 +206,8 @@ class Judge:
                 continue
             now, first = params[parent][:size], self.born_with[child.parent_id][:size]
             source = first if species.birth.network == "initial" else now
-            wanted = inherited_network(self.model.rules, species, source.astype(float), child.agent_id)
+            giver = self.model.rules.of(before.agents[parent])
+            wanted = inherited_network(self.model.rules, giver, source.astype(float), child.agent_id)
             if "action_sd" in species.genome.learning:
                 wanted[log_sd] = first_log_sd(species, child.genome)
             assert_close(network, wanted, WEIGHT)

@@ -64,7 +64,7 @@ class Scene {
         throw nb::value_error("classes: at most 3 more, with ascending first slots");
       table_.first_slot[c] = first;
       table_.first_slot[c + 1] = static_cast<int32_t>(bodies);
-      table_.shape[c] = make_disc(own_radius, own_density);
+      table_.set_shape(c, make_disc(own_radius, own_density));
       for (int32_t other = 0; other <= c; ++other) table_.meets_bodies[other] = (2u << c) - 1u;
       table_.meets_circles[c] = 1;
     }

@@ -171,7 +171,7 @@ void set_genomes(PythonSimulation& self, int index,
   const auto each = [&](auto&& visit) {
     for (size_t i = 0; i < genomes.shape(0); ++i) {
       const int32_t slot = from.state.living[static_cast<int64_t>(i)];
-      const SpeciesLayout& layout = *from.species(slot).layout;
+      const SpeciesLayout& layout = from.species(slot).layout;
       for (int32_t g = 0; g < layout.genes.count; ++g)
         visit(genomes.data()[i * width + static_cast<size_t>(g)], layout.genes[g].limit(), from.genome(slot)[g]);
     }
@@ -181,6 +181,7 @@ void set_genomes(PythonSimulation& self, int index,
   });
   each([](float value, float, float& gene) { gene = value; });
   for (int32_t i = 0; i < from.head().living_count; ++i) express_genes(from, from.state.living[i]);
+  if (from.shape->bodies.own != 0) place_founders_again(from);
 }
 
 /// Gives the living of a species of a world other networks, in their order.

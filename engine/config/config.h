@@ -47,6 +47,16 @@ struct LearningGene {
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_GENES - 1)};
 };
 
+/// A gene that sets a number of its species: it multiplies it by ten to its power.
+struct SettingGene {
+  GenomeSet sets;
+  int32_t store;  ///< of which store, for a number of stores
+  int32_t gene;
+
+  HEDON_FIELDS(SettingGene, sets, store, gene)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, MAX_STORES - 1), Limit::from(0, MAX_GENES - 1)};
+};
+
 /// A number that can be known of an agent in a step: see `hedon.config.channel`.
 struct Channel {
   ChannelSource source;
@@ -103,6 +113,7 @@ struct SpeciesLayout {
   FixedList<int32_t, RULE_USES> rules;                  ///< 1 for each use that a function of the caller decides
   FixedList<Gene, MAX_GENES> genes;                     ///< the genome, in order
   FixedList<LearningGene, LEARNING_GENES> learning;
+  FixedList<SettingGene, MAX_GENES> sets;     ///< what genes set beside learning and the reward, in order
   FixedList<int32_t, FAMILY_GENES> family;    ///< gene that multiplies each setting by ten to its power; -1 for none
   FixedList<int32_t, MAX_STORES> set_points;  ///< gene of the set point of each store; -1 for none
   FixedList<RewardTerm, MAX_REWARD_TERMS> terms;
@@ -114,13 +125,13 @@ struct SpeciesLayout {
   FixedList<NeighborQuery, MAX_QUERIES> neighbors;
 
   HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
-               needs, rules, genes, learning, family, set_points, terms, observed, last, recorded, gate, season_period,
-               neighbors)
+               needs, rules, genes, learning, sets, family, set_points, terms, observed, last, recorded, gate,
+               season_period, neighbors)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
                                      FORCE,
-                                     Limit::over(0, 1e6),
+                                     Limit::over(0, MAX_DISTANCE),
                                      TYPE,
                                      TYPE,
                                      TYPE,
@@ -129,6 +140,7 @@ struct SpeciesLayout {
                                      Limit::from(-1e4, 1e4),
                                      Limit::from(0, 1e6),
                                      YES,
+                                     Limit(),
                                      Limit(),
                                      Limit(),
                                      GENE,

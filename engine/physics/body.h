@@ -39,6 +39,8 @@ struct BodyTable {
   int32_t classes;
   int32_t first_slot[MAX_BODY_CLASSES + 1];  ///< class c owns slots [first_slot[c], first_slot[c + 1])
   BodyShape shape[MAX_BODY_CLASSES];
+  int32_t own;  ///< 1 where bodies have shapes of their own, `PhysicsState::shape`, between those of their class:
+  BodyShape smallest[MAX_BODY_CLASSES], largest[MAX_BODY_CLASSES];  ///< `shape` itself where they have none
   uint32_t meets_bodies[MAX_BODY_CLASSES];   ///< bit c: it collides with bodies of class c; symmetric
   uint32_t meets_circles[MAX_BODY_CLASSES];  ///< bit c: it collides with circles of class c
   int32_t circle_classes;
@@ -64,19 +66,20 @@ struct BodyTable {
   HEDON_FN bool collides_with_circle(int32_t slot, int32_t circle) const {
     return (meets_circles[body_class(slot)] >> circle_class(circle) & 1u) != 0;
   }
+  HEDON_FN void set_shape(int32_t c, const BodyShape& of_class) { shape[c] = smallest[c] = largest[c] = of_class; }
   HEDON_FN float max_radius() const {
-    float largest = shape[0].radius;
-    for (int32_t c = 1; c < classes; ++c) largest = shape[c].radius > largest ? shape[c].radius : largest;
-    return largest;
+    float most = largest[0].radius;
+    for (int32_t c = 1; c < classes; ++c) most = largest[c].radius > most ? largest[c].radius : most;
+    return most;
   }
   HEDON_FN float min_radius() const {
-    float least = shape[0].radius;
-    for (int32_t c = 1; c < classes; ++c) least = shape[c].radius < least ? shape[c].radius : least;
+    float least = smallest[0].radius;
+    for (int32_t c = 1; c < classes; ++c) least = smallest[c].radius < least ? smallest[c].radius : least;
     return least;
   }
   HEDON_FN float min_mass() const {
-    float least = shape[0].mass;
-    for (int32_t c = 1; c < classes; ++c) least = shape[c].mass < least ? shape[c].mass : least;
+    float least = smallest[0].mass;
+    for (int32_t c = 1; c < classes; ++c) least = smallest[c].mass < least ? smallest[c].mass : least;
     return least;
   }
 };
@@ -87,7 +90,7 @@ HEDON_FN BodyTable uniform_bodies(const BodyShape& shape, float circle_radius, i
   table.classes = table.circle_classes = 1;
   table.first_slot[1] = static_cast<int32_t>(slots);
   table.first_circle[1] = static_cast<int32_t>(circles);
-  table.shape[0] = shape;
+  table.set_shape(0, shape);
   table.meets_bodies[0] = table.meets_circles[0] = 1;
   table.circle_radius = circle_radius;
   table.first_obstacle = INT32_MAX;

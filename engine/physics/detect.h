@@ -39,7 +39,7 @@ struct AlikeBodies {
   using Contact = BodyContact;
   float size, inverse_of_mass, inverse_of_inertia, gyration;
 
-  HEDON_FN AlikeBodies(const BodyTable& table, const PhysicsScratch&)
+  HEDON_FN AlikeBodies(const BodyTable& table, const PhysicsState&, const PhysicsScratch&)
       : size(table.shape[0].radius),
         inverse_of_mass(1.0f / table.shape[0].mass),
         inverse_of_inertia(1.0f / table.shape[0].inertia),
@@ -50,6 +50,7 @@ struct AlikeBodies {
   HEDON_FN float inverse_mass(int32_t) const { return inverse_of_mass; }
   HEDON_FN float inverse_inertia(int32_t) const { return inverse_of_inertia; }
   HEDON_FN float inverse_gyration(int32_t) const { return gyration; }
+  HEDON_FN static float for_lightest(int32_t, float squared_force) { return squared_force; }
   HEDON_FN static BodyContact* contacts(const PhysicsScratch& scratch) { return scratch.body_contacts.data; }
 };
 
@@ -59,7 +60,7 @@ struct MixedBodies {
   const BodyTable& table;
   uint8_t* body_class;
 
-  HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsScratch& scratch)
+  HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsState&, const PhysicsScratch& scratch)
       : table(classes), body_class(scratch.body_class.data) {}
 
   /// Keeps the class of a body; call it first in each step.
@@ -73,6 +74,35 @@ struct MixedBodies {
   HEDON_FN float inverse_gyration(int32_t index) const { return shape(index).mass / shape(index).inertia; }
   /// Change of velocity per impulse: the mass of the first class over that of the body.
   HEDON_FN float weight(int32_t index) const { return table.shape[0].mass / shape(index).mass; }
+  HEDON_FN static float for_lightest(int32_t, float squared_force) { return squared_force; }
+  HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
+};
+
+/// Bodies with shapes of their own, by their index in the list.
+struct OwnBodies {
+  using Contact = MixedContact;
+  float unit;      ///< mass that impulses are in units of
+  float lightest;  ///< least mass that a body can have
+  const BodyShape* by_slot;
+  BodyShape* by_index;
+
+  HEDON_FN OwnBodies(const BodyTable& table, const PhysicsState& state, const PhysicsScratch& scratch)
+      : unit(table.shape[0].mass),
+        lightest(table.min_mass()),
+        by_slot(state.shape.data),
+        by_index(scratch.shape.data) {}
+
+  HEDON_FN void note(int32_t index, int32_t slot) const { by_index[index] = by_slot[slot]; }
+  HEDON_FN float radius(int32_t index) const { return by_index[index].radius; }
+  HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / by_index[index].mass; }
+  HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / by_index[index].inertia; }
+  HEDON_FN float inverse_gyration(int32_t index) const { return by_index[index].mass / by_index[index].inertia; }
+  HEDON_FN float weight(int32_t index) const { return unit / by_index[index].mass; }
+  /// The squared force that would push the lightest possible body as much as this one does the body.
+  HEDON_FN float for_lightest(int32_t index, float squared_force) const {
+    const float ratio = lightest / by_index[index].mass;
+    return squared_force * ratio * ratio;
+  }
   HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
 };
 

@@ -99,11 +99,11 @@ HEDON_FN void find_body_pairs(const Crew& crew, const PhysicsState& state, const
   const BodyState& bodies = state.bodies;
   pairs.collect(crew, count, scratch.work, [&](int32_t rank, auto&& add) {
     const int32_t slot = order[rank];
-    const float radius = table.radius(slot);
+    const float radius = radius_of(state, table, slot);
     const float x = bodies.x[slot], y = bodies.y[slot];
     for_each_near(state.body_grid, x, y, radius + table.max_radius() + skin, [&](int32_t other) {
       const float dx = bodies.x[other] - x, dy = bodies.y[other] - y;
-      const float reach = radius + table.radius(other) + skin;
+      const float reach = radius + radius_of(state, table, other) + skin;
       if (dx * dx + dy * dy < reach * reach && scratch.rank[other] > rank && table.collide(slot, other))
         add(scratch.rank[other]);
     });
@@ -117,7 +117,7 @@ HEDON_FN void find_circle_pairs(const Crew& crew, const PhysicsState& state, con
   const StaticCircles& circles = state.circles;
   pairs.collect(crew, count, scratch.work, [&](int32_t rank, auto&& add) {
     const int32_t slot = order[rank];
-    const float reach = table.radius(slot) + table.circle_radius + skin;
+    const float reach = radius_of(state, table, slot) + table.circle_radius + skin;
     const float x = state.bodies.x[slot], y = state.bodies.y[slot];
     for_each_near(state.circle_grid, x, y, reach, [&](int32_t circle) {
       const float dx = circles.x[circle] - x, dy = circles.y[circle] - y;
@@ -148,7 +148,7 @@ HEDON_FN void find_bodies_at(const PhysicsState& state, const BodyTable& table, 
     const float middle = (static_cast<float>(row) + 0.5f) * cell;
     for_each_in(grid, (x0 < x1 ? x0 : x1) - margin, middle, (x0 < x1 ? x1 : x0) + margin, middle, [&](int32_t slot) {
       const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
-      const float reach = table.radius(slot) + skin;
+      const float reach = radius_of(state, table, slot) + skin;
       if (squared_length(nearest_on_segment(a, b, center) - center) < reach * reach) add(scratch.rank[slot]);
     });
   }

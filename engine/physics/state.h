@@ -64,6 +64,7 @@ struct NeighborList {
 
 struct PhysicsState {
   BodyState bodies;
+  Array<BodyShape> shape;  ///< by slot, where bodies have shapes of their own
   StaticCircles circles;
   Array<Segment> walls;
   int32_t outer_walls;  ///< number of outer walls, which come first: a closed polygon, clockwise, around the bodies
@@ -72,8 +73,12 @@ struct PhysicsState {
   Grid circle_grid;  ///< circles by slot
   NeighborList neighbors;
 
-  HEDON_FIELDS(PhysicsState, bodies, circles, walls, outer_walls, unused, body_grid, circle_grid, neighbors)
+  HEDON_FIELDS(PhysicsState, bodies, shape, circles, walls, outer_walls, unused, body_grid, circle_grid, neighbors)
 };
+
+HEDON_FN float radius_of(const PhysicsState& state, const BodyTable& table, int32_t slot) {
+  return table.own != 0 ? state.shape[slot].radius : table.radius(slot);
+}
 
 /// Pairs found while a list is built, and the impulses of the listed pairs while a step is tried.
 struct PairScratch {
@@ -90,7 +95,8 @@ struct BatchReport {
   float squared_moved;  ///< largest squared distance of a body from its position at the last build; infinite if not
                         ///< finite
   float squared_speed;  ///< largest squared speed at the end
-  float squared_force;  ///< largest squared force
+  float squared_force;  ///< largest squared force; where bodies have shapes of their own, what does as much to the
+                        ///< lightest
   float unused;
 
   HEDON_FIELDS(BatchReport, squared_moved, squared_speed, squared_force, unused)
@@ -114,14 +120,15 @@ struct PhysicsScratch {
   PairScratch circles;
   PairScratch walls;
   Array<uint8_t> body_class;             ///< by index; none if all bodies are of one class
+  Array<BodyShape> shape;                ///< by index; none if bodies have the shapes of their classes
   Array<BodyContact> body_contacts;      ///< none if there are several classes
   Array<MixedContact> mixed_contacts;    ///< none if there is one class
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
   HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_index, position, motion, change, angle, colors, active,
-               color, color_start, bodies, circles, walls, body_class, body_contacts, mixed_contacts, static_contacts,
-               reports)
+               color, color_start, bodies, circles, walls, body_class, shape, body_contacts, mixed_contacts,
+               static_contacts, reports)
 };
 
 /// The sizes of the arrays.
@@ -136,11 +143,11 @@ struct PhysicsCapacity {
   int32_t rows;
   float cell;     ///< side of a grid cell [u]
   float skin;     ///< skin that the capacities are for [u]
-  int32_t mixed;  ///< 1 if there are several classes of bodies
-  int32_t unused;
+  int32_t mixed;  ///< 1 if bodies differ
+  int32_t own;    ///< 1 if they have shapes of their own
 
   HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin,
-               mixed, unused)
+               mixed, own)
 };
 
 /// Capacities for an arena. Discs that do not overlap limit the number of pairs: within a skin of 20 u (twice the
@@ -167,7 +174,8 @@ HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64
   // Cells as wide as the search range, but at most a few per item in an almost empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
   const float search = 2.0f * table.max_radius() + skin;
-  capacity.mixed = table.classes > 1 ? 1 : 0;
+  capacity.own = table.own;
+  capacity.mixed = table.classes > 1 || table.own != 0 ? 1 : 0;
   capacity.cell = even > search ? even : search;
   capacity.columns = static_cast<int32_t>(width / capacity.cell) + 1;
   capacity.rows = static_cast<int32_t>(height / capacity.cell) + 1;
@@ -196,6 +204,7 @@ template <class Visit>
 void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& visit) {
   const int64_t cells = static_cast<int64_t>(capacity.columns) * capacity.rows;
   visit_arrays(state.bodies, capacity.bodies, visit);
+  visit("shape", state.shape, capacity.own != 0 ? capacity.bodies : 0);
   visit_arrays(state.circles, capacity.circles, visit);
   visit("walls", state.walls, capacity.walls);
   visit("body_grid.head", state.body_grid.head, cells);
@@ -236,6 +245,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit_arrays(scratch.walls, capacity.wall_pairs, visit);
   const bool mixed = capacity.mixed != 0;
   visit("body_class", scratch.body_class, mixed ? capacity.bodies : 0);
+  visit("shape", scratch.shape, capacity.own != 0 ? capacity.bodies : 0);
   visit("body_contacts", scratch.body_contacts, mixed ? 0 : capacity.body_pairs);
   visit("mixed_contacts", scratch.mixed_contacts, mixed ? capacity.body_pairs : 0);
   visit("static_contacts", scratch.static_contacts, capacity.circle_pairs + capacity.wall_pairs);

@@ -47,7 +47,7 @@ HEDON_FN void load_batch(const Batch<Bodies, Crew>& batch, const BodyForce& forc
     scratch.motion[index] = {bodies.velocity_x[slot] + push_x * inverse_mass * dt,
                              bodies.velocity_y[slot] + push_y * inverse_mass * dt,
                              bodies.angular_velocity[slot] + force.torque[slot] * inverse_inertia * dt, 0.0f};
-    const float squared_force = push_x * push_x + push_y * push_y;
+    const float squared_force = batch.bodies.for_lightest(index, push_x * push_x + push_y * push_y);
     if (squared_force > report.squared_force) report.squared_force = squared_force;
     visitor.on_start(slot);
   });
@@ -110,7 +110,7 @@ template <class Solver, class Bodies, class Crew, class Visitor>
 HEDON_CLONED HEDON_FN void try_batch(const Crew& crew, const PhysicsConfig& config, const BodyTable& table,
                                      const SolverConstants& c, const PhysicsState& state, const PhysicsScratch& scratch,
                                      const BodyForce& force, float squared_limit, int32_t number, Visitor& visitor) {
-  const Bodies bodies(table, scratch);
+  const Bodies bodies(table, state, scratch);
   const BatchRange range = batch_range(state.neighbors, number);
   const Batch<Bodies, Crew> batch{crew, config, bodies, table, c, state, scratch, range};
   BatchReport report{};
@@ -184,7 +184,10 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
         try_batch<Solver, Bodies>(crew, config, table, constants, state, scratch, force, limit * limit, batch, visitor);
       };
       const bool sequential = config.solver == PhysicsSolver::sequential;
-      if (table.classes == 1)
+      if (table.own != 0)
+        sequential ? attempt.template operator()<SequentialSolver, OwnBodies>()
+                   : attempt.template operator()<JacobiSolver, OwnBodies>();
+      else if (table.classes == 1)
         sequential ? attempt.template operator()<SequentialSolver, AlikeBodies>()
                    : attempt.template operator()<JacobiSolver, AlikeBodies>();
       else
@@ -206,7 +209,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
     skin = build ? 2.0f * skin : usual_skin;
     build = true;
   }
-  // The distance that the fastest body can move in a step without contacts, with the largest force of this step. Both
+  // The distance that the fastest body can move in a step without contacts, with the largest push of this step. Both
   // solvers limit the speeds of a step before its bodies move.
   const float capped = 2.0f * constants.max_speed * constants.max_speed;
   const float squared_speed = report.squared_speed < capped ? report.squared_speed : capped;

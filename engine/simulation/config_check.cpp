@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "learning/observation.h"
+#include "world/own.h"
 
 namespace hedon {
 namespace {
@@ -208,6 +209,15 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   count("needs", own.needs.count, config.food.count * stores, "one for each kind of food and each store");
   complaint.need(own.has_rule() || own.neighbors.count == 0, path + "neighbors", own.neighbors.count,
                  "none for a species without rules");
+  for (int32_t i = 0; i < own.sets.count; ++i) {
+    if (own.sets[i].sets == GenomeSet::body_radius && own.sets[i].gene < own.genes.count) {
+      const double most = config.species[s].body.radius * std::pow(10.0, own.genes[own.sets[i].gene].limit());
+      complaint.need(2.0 * most < std::min(config.arena.width, config.arena.height), path + "sets", most,
+                     "a radius that fits into the arena");
+    }
+    check_gene(complaint, path + "sets.gene", own, own.sets[i].gene);
+    complaint.need(own.sets[i].store < stores, path + "sets.store", own.sets[i].store, "a store of the species");
+  }
   for (int32_t i = 0; i < own.family.count; ++i) check_gene(complaint, path + "family", own, own.family[i]);
   for (int32_t i = 0; i < own.set_points.count; ++i) check_gene(complaint, path + "set_points", own, own.set_points[i]);
   complaint.need(own.min_force < own.max_force, path + "min_force", own.min_force, "below max_force");
@@ -220,6 +230,9 @@ void check_species(Complaint& complaint, const std::string& path, const Config& 
   const int32_t touched = config.layout[s].touches.count;
   complaint.need(own.population.initial_count <= own.population.capacity, path + "population.initial_count",
                  own.population.initial_count, "at most population.capacity");
+  const bool late = config.world.inheritance == WorldInheritance::at_window_end;
+  complaint.need(!late || !sets_body(config.layout[s]), path + "genome.set", 0,
+                 "without genes of bodies where newborns inherit when the window ends");
   complaint.need(2.0f * own.body.radius < side, path + "body.radius", own.body.radius, "smaller than half the arena");
   complaint.need(touched * own.sensor.touch_sectors <= MAX_TOUCH_BITS, path + "sensor.touch_sectors",
                  own.sensor.touch_sectors, "at most " + std::to_string(MAX_TOUCH_BITS / std::max(touched, 1)));

@@ -92,14 +92,8 @@ Device::Device(const DeviceProgram& program, int32_t number, std::vector<World>&
   on_.species = shape.species;
   for (int32_t s = 0; s < shape.species; ++s) on_.params[s] = shape.of[s].learns ? shape.of[s].network.size() : 0;
 
-  WorldShape there = shape;
-  const Config* const settings = reinterpret_cast<const Config*>(common_ + at.config);
-  for (int32_t s = 0; s < shape.species; ++s) {
-    there.of[s].config = settings->species.items + s;
-    there.of[s].layout = settings->layout.items + s;
-  }
   note(program.copy_in(common_ + at.config, &config, sizeof config));
-  note(program.copy_in(common_ + at.shape, &there, sizeof there));
+  note(program.copy_in(common_ + at.shape, &shape, sizeof shape));
   note(program.fill_kernel(on_.kernel));
   list_pieces();
   for (int i = first; i < last; ++i) place(i);

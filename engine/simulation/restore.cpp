@@ -347,6 +347,7 @@ void fill(const Inspector& in, World& target, SavedExtent& extent, const std::ve
     const char* from = in.find(name)->bytes.data();
     for (int64_t i = 0; i < rows.count; ++i, from += rows.row_bytes()) memcpy(rows.row(i), from, rows.row_bytes());
   });
+  for (const int32_t slot : extent.slots) express_settings(target, slot);
   for (const int32_t food : extent.foods) state.physics.circles.present[food] = 1;
   for (const int32_t slot : extent.networks)
     target.kernel->network.pack_weights(target.species(slot).network, target.network(slot));

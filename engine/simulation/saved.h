@@ -123,6 +123,8 @@ class SavedArrays {
     } else if constexpr (std::is_arithmetic_v<T>) {
       const int64_t stride = (width == 0 ? 1 : width) * static_cast<int64_t>(sizeof(T));
       visit_(name, SavedRows<T>{first, stride, index, count, width});
+    } else if constexpr (std::is_same_v<T, Species>) {
+      // It follows from the genome.
     } else {
       T::for_each_field([&](const char* field, auto member) {
         using Number = std::remove_cvref_t<decltype(first->*member)>;

@@ -132,6 +132,10 @@ void Simulation::begin(World& world) {
   head.extinct_step = -1;
   for (int32_t slot = shape_.capacity - 1; slot >= 0; --slot)
     give_back_slot(world, slot_order_.empty() ? slot : slot_order_[static_cast<size_t>(slot)]);
+  for (int32_t slot = 0; slot < shape_.capacity && shape_.own; ++slot)
+    world.state.own[slot] = shape_.of[shape_.species_of(slot)];
+  for (int64_t slot = 0; slot < world.state.physics.shape.count; ++slot)
+    world.state.physics.shape[slot] = world.state.own[slot].body;
   for (int64_t f = 0; f < shape_.foods; ++f) world.scratch.eater[f] = -1;
   init_physics(world.state.physics, world_physics_capacity(world));
   world.state.physics.outer_walls = shape_.outer_walls;

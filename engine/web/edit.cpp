@@ -29,12 +29,12 @@ class Nearest {
 };
 
 std::string add_agent(World& world, int32_t species, Vec2 position) {
-  const SpeciesConfig& config = *world.shape->of[species].config;
+  const SpeciesConfig& config = world.shape->of[species].config;
   if (inherits_late(world))
     return "nobody can be added where children inherit at the end of a window, as with the fidelity \"released\"";
   if (world.state.free_count[species] == 0)
     return "there is no room: population.capacity is " + std::to_string(world.shape->of[species].capacity());
-  if (!can_place(world, position, config.body.radius)) return NO_PLACE;
+  if (!can_place(world, position, founder_radius(world, species, world.head().next_agent_id))) return NO_PLACE;
   const float angle = child_heading(world, static_cast<uint32_t>(world.head().next_agent_id));
   spawn_founder(world, species, position, angle, config.energy.initial, world.head().step);
   world.head().extinct_step = -1;

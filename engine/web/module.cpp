@@ -322,7 +322,7 @@ HEDON_EXPORT(hedon_probe) const AgentProbe* hedon_probe(int32_t slot) {
   note_start(world(), slot);
   observe(world(), slot, 0, probe.observation);
   memset(probe.output, 0, sizeof probe.output);
-  const FixedList<Channel, MAX_CHANNELS>& observed = world().species(slot).layout->observed;
+  const FixedList<Channel, MAX_CHANNELS>& observed = world().species(slot).layout.observed;
   for (int32_t d = 0; d < observed.count; ++d)
     probe.observed[d] = read_channel(world(), slot, probe.observation, observed[d]);
   if (world().species(slot).has_network)

@@ -42,7 +42,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const float* 
 /// The action of the agent in `slot`, into row `t` of its rollout, if its species has no networks.
 HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
   float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
-  switch (world.species(slot).config->learning.policy) {
+  switch (world.species(slot).config.learning.policy) {
     case LearningPolicy::random: {
       const NormalPair noise = action_noise(world, slot);
       action[0] = noise.first;
@@ -70,15 +70,15 @@ HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
 /// Turns the action into the forces of the two motors, and the force and torque on the body.
 HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   const Species& species = world.species(slot);
-  const SpeciesLayout& motor = *species.layout;
+  const SpeciesLayout& motor = species.layout;
   StepScratch& scratch = world.scratch;
   const float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
-  const bool rests = species.config->learning.policy == LearningPolicy::idle;
+  const bool rests = species.config.learning.policy == LearningPolicy::idle;
   const float range = motor.max_force - motor.min_force;
   float left = rests ? 0.0f : motor.min_force + range * sigmoid(action[0]);
   float right = rests ? 0.0f : motor.min_force + range * sigmoid(action[1]);
   for (int32_t i = 0; i < species.stores(); ++i) {
-    const float threshold = store_of(*species.config, i).motor_threshold;
+    const float threshold = store_of(species.config, i).motor_threshold;
     if (!(threshold > 0.0f)) continue;
     const float left_over = static_cast<float>(strength(threshold, world.held(slot, i)));
     left *= left_over;

@@ -117,7 +117,7 @@ HEDON_FN void audit_ledger(const World& world, int32_t s) {
   const double damage = world.shape->obstacles > 0 ? world.state.obstacle_counters[s].energy_damage : 0.0;
   const double moved = damage + c.energy_initial + eaten + hunted + c.energy_forgiven + c.energy_basic +
                        c.energy_action + c.energy_capped + c.energy_lost + c.energy_shared +
-                       world.config->species[s].energy.capacity;
+                       world.shape->most_energy[s];
   const double due = c.energy_initial + c.energy_eaten + hunted + c.energy_forgiven - c.energy_basic - c.energy_action -
                      c.energy_capped - c.energy_lost - damage;
   const double gap = held > due ? held - due : due - held;
@@ -180,7 +180,7 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   const bool network_finite = (!species.has_network || all_finite(world.params(slot), size)) &&
                               (!species.learns || (all_finite(&state.first_moment[first], size) &&
                                                    all_finite(&state.second_moment[first], size)));
-  if (!network_finite || !all_finite(world.genome(slot), species.layout->genes.count))
+  if (!network_finite || !all_finite(world.genome(slot), species.layout.genes.count))
     return {Status::not_finite, -1, species.learns ? static_cast<double>(state.updates[slot]) : 0.0};
   const double energy = state.life[slot].energy;
   if (!is_finite(energy)) return {Status::not_finite, -1, energy};

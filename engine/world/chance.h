@@ -36,9 +36,9 @@ HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
 /// The parts of the hazard by all stores of the agent in `slot`, and by its age [step].
 HEDON_FN double hazard_by_stores_and_age(const World& world, int32_t slot, double age) {
   const Species& species = world.species(slot);
-  const HazardConfig& config = species.config->hazard;
+  const HazardConfig& config = species.config.hazard;
   const auto by_store = [&](int32_t store) {
-    const double weight = store_of(*species.config, store).hazard_weight;
+    const double weight = store_of(species.config, store).hazard_weight;
     return weight > 0.0 ? weight * hazard_by_store(config, world.held(slot, store)) : 0.0;
   };
   double chance = by_store(ENERGY) + hazard_by_age(config, age);
@@ -48,7 +48,7 @@ HEDON_FN double hazard_by_stores_and_age(const World& world, int32_t slot, doubl
 
 /// Probability of dying in a step at age `age` [step], by the form of the hazard.
 HEDON_FN double hazard(const World& world, int32_t slot, double age) {
-  const HazardConfig& config = world.species(slot).config->hazard;
+  const HazardConfig& config = world.species(slot).config.hazard;
   switch (config.form) {
     case HazardForm::age_energy:
       return hazard_by_stores_and_age(world, slot, age);
@@ -62,14 +62,14 @@ HEDON_FN double hazard(const World& world, int32_t slot, double age) {
 
 /// Probability that the agent in `slot` dies at the end of this step.
 HEDON_FN double death_chance(const World& world, int32_t slot) {
-  const HazardConfig& config = world.species(slot).config->hazard;
+  const HazardConfig& config = world.species(slot).config.hazard;
   const double age = static_cast<double>(world.head().step + 1 - world.state.life[slot].birth_step);
   return factor_at(config.schedule.scale, world.head().step) * hazard(world, slot, age);
 }
 
 /// Probability that the agent in `slot` has a child at the end of this step.
 HEDON_FN double birth_chance(const World& world, int32_t slot) {
-  return birth_rate(world.species(slot).config->birth, world.state.life[slot].energy);
+  return birth_rate(world.species(slot).config.birth, world.state.life[slot].energy);
 }
 
 }  // namespace hedon

@@ -20,7 +20,7 @@ HEDON_FN const PackedObservation& seen_by(const World& world, int32_t slot) {
 
 /// Mean reading of all rays of a species, 0 for those that met nothing.
 HEDON_FN float nearness(const Species& species, const PackedObservation& seen) {
-  const int32_t rays = species.config->sensor.ray_count;
+  const int32_t rays = species.config.sensor.ray_count;
   float sum = 0.0f;
   for (int32_t r = 0; r < rays; ++r) sum += seen.ray[r] > 0.0f ? seen.ray[r] - 1.0f : 0.0f;
   return sum / static_cast<float>(rays);
@@ -28,7 +28,7 @@ HEDON_FN float nearness(const Species& species, const PackedObservation& seen) {
 
 /// Mean or largest reading, in [0, 1], of the rays that met a channel of sight; 0 for the others.
 HEDON_FN float sight_of(const Species& species, const PackedObservation& seen, int32_t channel, bool mean) {
-  const int32_t rays = species.config->sensor.ray_count;
+  const int32_t rays = species.config.sensor.ray_count;
   float sum = 0.0f, largest = 0.0f;
   for (int32_t r = 0; r < rays; ++r) {
     if (seen.ray_type[r] != channel || !(seen.ray[r] > 0.0f)) continue;
@@ -41,7 +41,7 @@ HEDON_FN float sight_of(const Species& species, const PackedObservation& seen, i
 
 /// Mean over the noses of what they smell of a channel of smell.
 HEDON_FN float smell_of(const World& world, int32_t slot, int32_t channel) {
-  const int32_t noses = world.species(slot).config->sensor.noses;
+  const int32_t noses = world.species(slot).config.sensor.noses;
   const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents + channel * noses];
   float sum = 0.0f;
   for (int32_t n = 0; n < noses; ++n) sum += smelled[n];
@@ -51,7 +51,7 @@ HEDON_FN float smell_of(const World& world, int32_t slot, int32_t channel) {
 /// How many touch sectors of the agent in `slot` felt something in its last step: of the channels of touch
 /// [first, last).
 HEDON_FN int32_t felt_sectors(const World& world, int32_t slot, int32_t first, int32_t last) {
-  const int32_t sectors = world.species(slot).config->sensor.touch_sectors;
+  const int32_t sectors = world.species(slot).config.sensor.touch_sectors;
   const auto felt = [&](int32_t bit) {
     const uint64_t bits = bit < 64 ? world.state.touch[slot] : world.state.touch_more[slot];
     return (bits >> (bit & 63)) & 1u;
@@ -69,7 +69,7 @@ HEDON_FN int32_t felt_sectors(const World& world, int32_t slot, int32_t first, i
 HEDON_FN int32_t count_near(const World& world, int32_t slot, int32_t type) {
   const RayScene& scene = world.scene;
   const Vec2 center{world.scratch.start_x[slot], world.scratch.start_y[slot]};
-  const float range = world.species(slot).config->sensor.near_range;
+  const float range = world.species(slot).config.sensor.near_range;
   int32_t count = 0;
   for_each_circle_in(world, center, range, [&](int32_t i) {
     const Vec2 apart{scene.x[i] - center.x, scene.y[i] - center.y};
@@ -83,7 +83,7 @@ HEDON_FN int32_t count_near(const World& world, int32_t slot, int32_t type) {
 HEDON_FN int32_t count_meals_near(const World& world, int32_t slot) {
   const BodyState& body = world.state.physics.bodies;
   const Species& species = world.species(slot);
-  const float range = species.config->sensor.near_range;
+  const float range = species.config.sensor.near_range;
   int32_t count = 0;
   for_each_body_near(world.state.physics, body.x[slot], body.y[slot], range, [&](int32_t other) {
     if (other == slot || world.state.alive[other] == 0 || other < species.first_slot || other >= species.last_slot)
@@ -105,19 +105,19 @@ HEDON_FN float applied_force(const World& world, int32_t slot) {
 HEDON_FN double drive_reduction(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
   const auto measure = [&](int32_t i) {
-    const StoreConfig& store = store_of(*species.config, i);
+    const StoreConfig& store = store_of(species.config, i);
     return static_cast<double>(store.motor_threshold > 0.0f ? store.motor_threshold : store.capacity);
   };
   const double* before = world.held_before(slot);
   const float* genome = world.genome(slot);
   return drive(
-             *species.layout, genome, [&](int32_t i) { return before[i]; }, measure) -
-         drive(*species.layout, genome, [&](int32_t i) { return world.held(slot, i); }, measure);
+             species.layout, genome, [&](int32_t i) { return before[i]; }, measure) -
+         drive(species.layout, genome, [&](int32_t i) { return world.held(slot, i); }, measure);
 }
 
 /// Sine (0) or cosine (1) of the time of the year.
 HEDON_FN double season(const World& world, int32_t slot, int32_t part) {
-  const int64_t period = world.species(slot).layout->season_period;
+  const int64_t period = world.species(slot).layout.season_period;
   if (period == 0) return 0.0;
   double sine, cosine;
   sincos_double(2.0 * PI * static_cast<double>(world.head().step % period) / static_cast<double>(period), &sine,
@@ -164,7 +164,7 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObse
     case ChannelSource::contacts:
       return felt_sectors(world, slot, i, i + 1);
     case ChannelSource::touched:
-      return felt_sectors(world, slot, 0, species.layout->touches.count);
+      return felt_sectors(world, slot, 0, species.layout.touches.count);
     case ChannelSource::near:
       return count_near(world, slot, i);
     case ChannelSource::meals_near:
@@ -212,16 +212,16 @@ HEDON_FN float read_channel(const World& world, int32_t slot, const PackedObserv
 /// What the config itself pays the agent in `slot` for this step.
 HEDON_FN float own_reward(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
-  const RewardConfig& config = species.config->reward;
+  const RewardConfig& config = species.config.reward;
   const PackedObservation& seen = seen_by(world, slot);
-  const double gate = has_gate(config.family) ? channel_value(world, slot, seen, species.layout->gate) : 0.0;
-  return reward(config, *species.layout, world.genome(slot), gate,
+  const double gate = has_gate(config.family) ? channel_value(world, slot, seen, species.layout.gate) : 0.0;
+  return reward(config, species.layout, world.genome(slot), gate,
                 [&](const Channel& channel) { return read_channel(world, slot, seen, channel); });
 }
 
 /// Keeps what of this step the agent in `slot` observes in the next one.
 HEDON_FN void keep_last(const World& world, int32_t slot) {
-  const FixedList<Channel, MAX_CHANNELS>& last = world.species(slot).layout->last;
+  const FixedList<Channel, MAX_CHANNELS>& last = world.species(slot).layout.last;
   for (int32_t i = 0; i < last.count; ++i) {
     const double value = channel_value(world, slot, seen_by(world, slot), last[i]);
     world.state.last[int64_t{slot} * world.shape->last + i] = static_cast<float>(value);

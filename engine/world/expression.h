@@ -1,20 +1,31 @@
-/// Genes that set learning, expressed once, at birth: a gene g multiplies the setting by 10^g.
+/// Genes that set numbers of a species, expressed once, at birth: a gene g multiplies the number by 10^g.
 #pragma once
 
 #include <cstdint>
 
 #include "base/device.h"
 #include "base/math.h"
+#include "world/own.h"
 #include "world/world.h"
 
 namespace hedon {
 
-HEDON_FN double power_of_ten(float exponent) { return exp_double(exponent * LOG_10); }
+/// Gives the agent in `slot` the numbers that its genes set, in worlds that have such genes. It has its genome.
+HEDON_FN void express_settings(const World& world, int32_t slot) {
+  if (!world.shape->own) return;
+  const Species& common = world.shape->of[world.shape->species_of(slot)];
+  Species& own = world.state.own[slot] = common;
+  const FixedList<SettingGene, MAX_GENES>& sets = common.layout.sets;
+  for (int32_t i = 0; i < sets.count; ++i)
+    scale_setting(own, sets[i], factor_of(common.layout, sets[i], world.genome(slot)));
+  if (sets.count > 0) derive(own);
+  if (world.shape->bodies.own != 0) world.state.physics.shape[slot] = own.body;
+}
 
 /// The settings with which the agent in `slot` learns.
 HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
-  const SpeciesLayout& layout = *world.species(slot).layout;
-  LearningConfig own = world.species(slot).config->learning;
+  const SpeciesLayout& layout = world.species(slot).layout;
+  LearningConfig own = world.species(slot).config.learning;
   for (int32_t i = 0; i < layout.learning.count; ++i) {
     const LearningGene& set = layout.learning[i];
     const double factor = power_of_ten(world.genome(slot)[set.gene]);
@@ -36,12 +47,13 @@ HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
   return own;
 }
 
-/// Sets the parts of a new network that genes set, if its species learns. The agent in `slot` has its network and its
-/// genome.
+/// Sets what genes set: numbers of the agent in `slot`, and parts of its new network if its species learns. It has its
+/// network and its genome.
 HEDON_FN void express_genes(World& world, int32_t slot) {
+  express_settings(world, slot);
   const Species& species = world.species(slot);
   if (!species.learns) return;
-  const SpeciesLayout& layout = *species.layout;
+  const SpeciesLayout& layout = species.layout;
   for (int32_t i = 0; i < layout.learning.count; ++i) {
     const LearningGene& set = layout.learning[i];
     if (set.sets != GenomeLearning::action_sd) continue;

@@ -14,6 +14,7 @@ enum class Extent : uint8_t {
   one,
   slots,
   mixed_slots,     ///< slots, if there are several species
+  own_slots,       ///< slots, if genes set numbers of some species
   resident_slots,  ///< slots, if only agents in slots that were taken when the window began have children
   network_slots,   ///< slots, if some species acts by networks; of other species they are not used
   learner_slots,   ///< slots, if some species learns; of other species they are not used
@@ -76,12 +77,12 @@ enum class Lifetime : uint8_t {
 
 /// Whether an array with these rows has one for each slot, or none at all.
 HEDON_FN bool is_by_slot(Extent rows) {
-  return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::resident_slots ||
-         rows == Extent::network_slots || rows == Extent::learner_slots || rows == Extent::external_slots ||
-         rows == Extent::ruled_slots || rows == Extent::packed_slots || rows == Extent::wide_slots ||
-         rows == Extent::obstacle_slots || rows == Extent::store_slots || rows == Extent::instinct_slots ||
-         rows == Extent::mating_slots || rows == Extent::hunted_slots || rows == Extent::last_slots ||
-         rows == Extent::birth_slots;
+  return rows == Extent::slots || rows == Extent::mixed_slots || rows == Extent::own_slots ||
+         rows == Extent::resident_slots || rows == Extent::network_slots || rows == Extent::learner_slots ||
+         rows == Extent::external_slots || rows == Extent::ruled_slots || rows == Extent::packed_slots ||
+         rows == Extent::wide_slots || rows == Extent::obstacle_slots || rows == Extent::store_slots ||
+         rows == Extent::instinct_slots || rows == Extent::mating_slots || rows == Extent::hunted_slots ||
+         rows == Extent::last_slots || rows == Extent::birth_slots;
 }
 
 /// Whether an array with these rows has one for each death that waits for the reader, or none at all.
@@ -103,6 +104,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.capacity;
     case Extent::mixed_slots:
       return shape.species > 1 ? shape.capacity : 0;
+    case Extent::own_slots:
+      return shape.own ? shape.capacity : 0;
     case Extent::resident_slots:
       return shape.resident_slots ? shape.capacity : 0;
     case Extent::network_slots:

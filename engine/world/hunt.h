@@ -98,14 +98,14 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
 
 /// What an eater gains by its prey: its share of what that has left, or had before the step.
 HEDON_FN double gain_by(const World& world, int32_t eater, int32_t prey) {
-  const float share = world.species(eater).layout->eats_species[world.shape->species_of(prey)];
+  const float share = world.species(eater).layout.eats_species[world.shape->species_of(prey)];
   const bool before = world.config->world.prey_energy == WorldPreyEnergy::before_step;
   return static_cast<double>(share) * (before ? world.held_before(prey)[ENERGY] : world.state.life[prey].energy);
 }
 
 /// Gives an eater what it gains by its prey.
 HEDON_FN void feed_with(World& world, int32_t eater, int32_t prey, double gained) {
-  const SpeciesConfig& config = *world.species(eater).config;
+  const SpeciesConfig& config = world.species(eater).config;
   const int32_t s = world.shape->species_of(prey);
   Life& life = world.state.life[eater];
   const double wanted = life.energy + gained, capacity = config.energy.capacity;

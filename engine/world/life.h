@@ -97,7 +97,7 @@ HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
 HEDON_FN void apply_rules(World& world) {
   for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
     const Species& species = world.shape->of[s];
-    const SpeciesLayout& layout = *species.layout;
+    const SpeciesLayout& layout = species.layout;
     for (int32_t slot = species.first_slot; slot < species.last_slot && layout.neighbors.count > 0; ++slot) {
       if (world.state.alive[slot] != 0) look_around(world, slot);
     }
@@ -141,17 +141,18 @@ HEDON_FN void keep_ledger(World& world) {
 }
 
 /// Looks for a free position for the child of `parent` around it.
-HEDON_FN bool find_child_position(const World& world, int32_t parent, Vec2* position) {
-  const SpeciesConfig& species = *world.species(parent).config;
-  const float sd = world.species(parent).layout->distance_sd;
+/// radius   of the child
+HEDON_FN bool find_child_position(const World& world, int32_t parent, float radius, Vec2* position) {
+  const int32_t attempts = world.species(parent).config.birth.attempts;
+  const float sd = world.species(parent).layout.distance_sd;
   const BodyState& body = world.state.physics.bodies;
   const RandomStream random{world.seed, Purpose::child_place, static_cast<uint32_t>(world.state.life[parent].agent_id),
                             static_cast<uint32_t>(world.head().step)};
-  for (int32_t i = 0; i < species.birth.attempts; ++i) {
+  for (int32_t i = 0; i < attempts; ++i) {
     const Random4 bits = random.draw(static_cast<uint32_t>(i));
     const NormalPair normal = to_normal(bits.word[0], bits.word[1]);
     *position = {body.x[parent] + sd * normal.first, body.y[parent] + sd * normal.second};
-    if (can_place(world, *position, species.body.radius)) return true;
+    if (can_place(world, *position, radius)) return true;
   }
   return false;
 }
@@ -162,7 +163,7 @@ HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
   Vec2 position;
   if (world.state.free_count[world.shape->species_of(parent)] == 0) {
     counters.births_failed_full += 1;
-  } else if (!find_child_position(world, parent, &position)) {
+  } else if (!find_child_position(world, parent, child_radius(world, parent, mate), &position)) {
     counters.births_failed_space += 1;
   } else {
     spawn_child(world, parent, mate, position);

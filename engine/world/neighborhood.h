@@ -51,7 +51,7 @@ HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuer
 
 /// Answers all queries about the agent in `slot`, for the channels of its rules.
 HEDON_FN void look_around(const World& world, int32_t slot) {
-  const FixedList<NeighborQuery, MAX_QUERIES>& queries = world.species(slot).layout->neighbors;
+  const FixedList<NeighborQuery, MAX_QUERIES>& queries = world.species(slot).layout.neighbors;
   for (int32_t q = 0; q < queries.count; ++q)
     ask_neighbors(world, slot, queries[q], &world.scratch.near[int64_t{slot} * world.shape->near + q * QUERY_NUMBERS]);
 }

@@ -35,7 +35,7 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
 /// Keeps the network of a newcomer, where it will be passed on.
 HEDON_FN void keep_initial(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
-  if (!species.learns || species.config->birth.network != BirthNetwork::initial) return;
+  if (!species.learns || species.config.birth.network != BirthNetwork::initial) return;
   for (int32_t p = 0; p < species.network.size(); ++p) world.initial_params(slot)[p] = world.params(slot)[p];
 }
 
@@ -48,8 +48,8 @@ HEDON_FN void give_own_network(World& world, int32_t slot) {
 
 /// The network of a child: a new one, or one of its parent's with noise.
 HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
-  const Species& species = world.species(slot);
-  const BirthConfig& birth = species.config->birth;
+  const Species& species = world.species(parent);
+  const BirthConfig& birth = species.config.birth;
   if (!species.has_network || birth.network == BirthNetwork::none) return give_own_network(world, slot);
   const bool kept = species.learns && birth.network == BirthNetwork::initial;
   const float* from = kept ? world.initial_params(parent) : world.params(parent);
@@ -79,7 +79,7 @@ HEDON_FN void fill_vacancies(World& world) {
     for (int32_t i = 0; i < world.state.free_count[s]; ++i, ++number) {
       const int32_t slot = world.state.free[species.first_slot + i];
       give_network(world, slot, RandomStream{world.seed, Purpose::vacant_network, number, 0});
-      init_genome(*species.layout, RandomStream{world.seed, Purpose::vacant_genome, number, 0}, world.genome(slot));
+      init_genome(species.layout, RandomStream{world.seed, Purpose::vacant_genome, number, 0}, world.genome(slot));
       express_genes(world, slot);
     }
   }
@@ -115,7 +115,7 @@ HEDON_FN void apply_late_inheritance(World& world) {
     const Newborn& newborn = state.newborn[i];
     const float* parent = newborn_genome(world, newborn.parent < 0 ? i : newborn.parent);
     const int32_t species = state.newborn_species.count > 0 ? state.newborn_species[i] : 0;
-    inherit(*world.shape->of[species].layout, world.config->world.mutation_noise, world.seed,
+    inherit(world.shape->of[species].layout, world.config->world.mutation_noise, world.seed,
             static_cast<uint32_t>(newborn.agent_id), {static_cast<uint32_t>(births), static_cast<uint32_t>(i)}, parent,
             newborn_genome(world, i));
   }

@@ -50,7 +50,7 @@ HEDON_FN bool free_of_bodies(const World& world, Vec2 position, float radius) {
   bool is_free = true;
   const BodyTable& bodies = world.shape->bodies;
   for_each_body_near(physics, position.x, position.y, radius + bodies.max_radius(), [&](int32_t slot) {
-    const float agent_reach = radius + bodies.radius(slot);
+    const float agent_reach = radius + radius_of(physics, bodies, slot);
     const Vec2 apart{physics.bodies.x[slot] - position.x, physics.bodies.y[slot] - position.y};
     if (state.alive[slot] && squared_length(apart) < agent_reach * agent_reach) is_free = false;
   });

@@ -75,14 +75,49 @@ HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, flo
                                int64_t birth_step = 0) {
   const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
   const Species& own = world.shape->of[species];
-  const SpeciesLayout& layout = *own.layout;
-  for (int32_t i = 1; i < own.stores(); ++i) world.held(slot, i) = store_of(*own.config, i).initial;
+  const SpeciesLayout& layout = own.layout;
+  for (int32_t i = 1; i < own.stores(); ++i) world.held(slot, i) = store_of(own.config, i).initial;
   give_own_network(world, slot);
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   init_genome(layout, RandomStream{world.seed, Purpose::initial_genome, id, 0}, world.genome(slot));
   express_genes(world, slot);
   world.counters(slot).energy_initial += energy;
   return slot;
+}
+
+/// The radius of an agent of a species with this genome.
+HEDON_FN float radius_of_genome(const World& world, int32_t species, const float* genome) {
+  const BodyTable& bodies = world.shape->bodies;
+  return radius_by(world.shape->of[species], genome, bodies.smallest[species], bodies.largest[species]);
+}
+
+/// The radius that the founder of a species with this id will have.
+HEDON_FN float founder_radius(const World& world, int32_t species, int32_t id) {
+  const Species& common = world.shape->of[species];
+  if (world.shape->bodies.own == 0) return common.config.body.radius;
+  float genome[MAX_GENES];
+  init_genome(common.layout, RandomStream{world.seed, Purpose::initial_genome, static_cast<uint32_t>(id), 0}, genome);
+  return radius_of_genome(world, species, genome);
+}
+
+/// Makes the genome of the child with this id of `parent`, and of `mate` unless that is -1.
+HEDON_FN void make_child_genome(const World& world, int32_t parent, int32_t mate, uint32_t id, float* genome) {
+  const WorldHead& head = world.head();
+  const float* from = world.genome(parent);
+  if (mate >= 0) {
+    recombine(world, id, parent, mate, genome);
+    from = genome;
+  }
+  inherit(world.species(parent).layout, world.config->world.mutation_noise, world.seed, id,
+          {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)}, from, genome);
+}
+
+/// The radius that the next child of these parents will have.
+HEDON_FN float child_radius(const World& world, int32_t parent, int32_t mate) {
+  if (world.shape->bodies.own == 0) return world.species(parent).config.body.radius;
+  float genome[MAX_GENES];
+  make_child_genome(world, parent, mate, static_cast<uint32_t>(world.head().next_agent_id), genome);
+  return radius_of_genome(world, world.shape->species_of(parent), genome);
 }
 
 /// The heading of a child with this id that is born in this step.
@@ -97,7 +132,7 @@ HEDON_FN float child_heading(const World& world, uint32_t id) {
 HEDON_FN void give_child_shares(World& world, int32_t parent, int32_t parents, double* given) {
   const Species& species = world.species(parent);
   for (int32_t i = 0; i < species.stores(); ++i) {
-    const double share = static_cast<double>(store_of(*species.config, i).child_share) / parents;
+    const double share = static_cast<double>(store_of(species.config, i).child_share) / parents;
     double& held = world.held(parent, i);
     const double part = share * held;
     held -= part;
@@ -125,22 +160,18 @@ HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 posit
   Life& child = state.life[slot];
   child.parent_id = state.life[parent].agent_id;
   child.generation = state.life[parent].generation + 1;
-  const float* genome = world.genome(parent);
   if (mate >= 0) {
     state.mate_id[slot] = state.life[mate].agent_id;
     const int32_t other = state.life[mate].generation + 1;
     child.generation = other > child.generation ? other : child.generation;
-    recombine(world, id, parent, mate, world.genome(slot));
-    genome = world.genome(slot);
   }
   if (inherits_late(world)) {
     note_newborn(world, parent, child.agent_id);
+    express_settings(world, slot);
     forget_updates(world, slot);  // it never learns with them, and a checkpoint does not hold those of free slots
   } else {
     give_child_network(world, parent, slot);
-    inherit(*species.layout, world.config->world.mutation_noise, world.seed, id,
-            {static_cast<uint32_t>(head.births_before), static_cast<uint32_t>(head.births_in_window)}, genome,
-            world.genome(slot));
+    make_child_genome(world, parent, mate, id, world.genome(slot));
     express_genes(world, slot);
   }
   head.births_in_window += 1;
@@ -211,16 +242,37 @@ HEDON_FN bool find_founder_position(const World& world, int32_t number, float ra
 HEDON_FN void init_founders(World& world) {
   int32_t number = 0;
   for (int32_t s = 0; s < world.shape->species; ++s) {
-    const SpeciesConfig& species = *world.shape->of[s].config;
+    const SpeciesConfig& species = world.shape->of[s].config;
     for (int32_t i = 0; i < species.population.initial_count; ++i, ++number) {
       Vec2 position;
-      if (!find_founder_position(world, number, species.body.radius, &position))
+      if (!find_founder_position(world, number, founder_radius(world, s, number), &position))
         return world.fail(Status::initial_placement, number, number);
       const RandomStream random{world.seed, Purpose::initial_heading, static_cast<uint32_t>(number), 0};
       const float angle = wrap_angle(species.population.heading_range * to_uniform(random.draw(0).word[0]));
       spawn_founder(world, s, position, angle, species.energy.initial);
     }
   }
+}
+
+/// Places the living of a new world again, in their order, since their bodies are others now.
+HEDON_FN void place_founders_again(World& world) {
+  const WorldState& state = world.state;
+  const BodyState& body = state.physics.bodies;
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    state.alive[state.living[i]] = 0;
+    remove(state.physics.body_grid, state.living[i]);
+  }
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    const int32_t slot = state.living[i], id = state.life[slot].agent_id;
+    Vec2 position;
+    if (!find_founder_position(world, id, world.species(slot).body.radius, &position))
+      return world.fail(Status::initial_placement, id, id);
+    state.alive[slot] = 1;
+    body.x[slot] = position.x;
+    body.y[slot] = position.y;
+    insert(state.physics.body_grid, slot, position.x, position.y);
+  }
+  mark_stale(state.physics);
 }
 
 /// Puts the founders and the first foods into an empty world.

@@ -21,7 +21,7 @@ HEDON_FN Rows square_layer(const World& world, int32_t slot) {
 /// The fan of the agent in `slot`, whose heading is `forward`.
 HEDON_FN RayFan make_fan(const World& world, int32_t slot, Vec2 forward) {
   const Species& species = world.species(slot);
-  const SensorConfig& sensor = species.config->sensor;
+  const SensorConfig& sensor = species.config.sensor;
   const bool behind = sensor.ray_inside == SensorRayInside::behind;
   RayFan fan{world.state.physics.bodies.x[slot],
              world.state.physics.bodies.y[slot],

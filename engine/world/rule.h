@@ -30,8 +30,8 @@ HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use) {
 HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double* record) {
   const int32_t s = world.shape->species_of(slot);
   const Species& species = world.shape->of[s];
-  const SpeciesConfig& config = *species.config;
-  const SpeciesLayout& layout = *species.layout;
+  const SpeciesConfig& config = species.config;
+  const SpeciesLayout& layout = species.layout;
   const PackedObservation& seen = seen_by(world, slot);
   for (int32_t i = 0; i < layout.terms.count; ++i)
     *record++ = static_cast<double>(read_channel(world, slot, seen, layout.terms[i].channel));
@@ -67,13 +67,13 @@ HEDON_FN int32_t ask_all(World& world, int32_t s, RuleUse use) {
 /// What a rule has left in the memory of the agent that was number `i`.
 HEDON_FN const double* memory_after(const World& world, int32_t s, int32_t i) {
   const Species& species = world.shape->of[s];
-  return &world.scratch.record[int64_t{i + 1} * species.record - species.config->reward.memory];
+  return &world.scratch.record[int64_t{i + 1} * species.record - species.config.reward.memory];
 }
 
 /// Pays the agents of a species by its rule.
 HEDON_FN void pay_by_rule(World& world, int32_t s) {
   const WorldState& state = world.state;
-  const int32_t memory = world.shape->of[s].config->reward.memory;
+  const int32_t memory = world.shape->of[s].config.reward.memory;
   const int32_t count = ask_all(world, s, RuleUse::reward);
   for (int32_t i = 0; i < count; ++i) {
     const int32_t slot = world.scratch.asked[i];
@@ -94,7 +94,7 @@ HEDON_FN double answered_chance(const World& world, int32_t s, int32_t i) {
   const double chance = world.scratch.answer[i];
   if (!(chance >= 0.0 && chance <= 1.0)) world.fail(Status::rule_no_chance, id, chance);
   const double* kept = memory_after(world, s, i);
-  for (int32_t m = 0; m < world.shape->of[s].config->reward.memory; ++m) {
+  for (int32_t m = 0; m < world.shape->of[s].config.reward.memory; ++m) {
     if (kept[m] != world.state.memory[int64_t{slot} * world.shape->memory + m])
       world.fail(Status::rule_wrote, id, kept[m]);
   }

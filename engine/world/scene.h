@@ -38,7 +38,7 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
     scene.y[at] = place.y;
     if (circle < foods) {
       const int32_t slot = state.living[circle], s = shape.species_of(slot);
-      scene.radius[at] = shape.of[s].body.radius;
+      scene.radius[at] = shape.own ? state.own[slot].body.radius : shape.of[s].body.radius;
       scene.type[at] = static_cast<float>(s);
       scene.own[slot] = at;
     } else {

@@ -32,10 +32,10 @@ HEDON_FN Vec2 forward_of(const World& world, int32_t slot) {
 /// Writes the part of an observation that needs no rays: touch, and channels.
 HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& out) {
   const Species& species = world.species(slot);
-  const FixedList<Channel, MAX_CHANNELS>& observed = species.layout->observed;
+  const FixedList<Channel, MAX_CHANNELS>& observed = species.layout.observed;
   out.touch = world.state.touch[slot];
   if (species.network.observation.wide()) extra_of(out).touch = world.state.touch_more[slot];
-  if (species.layout->smells.count > 0) smell(world, slot, forward_of(world, slot));
+  if (species.layout.smells.count > 0) smell(world, slot, forward_of(world, slot));
   for (int32_t d = observed.count; d < MAX_DENSE; ++d) out.dense[d] = 0.0f;
   for (int32_t d = 0; d < observed.count; ++d) set_dense(out, d, read_channel(world, slot, out, observed[d]));
 }
@@ -73,7 +73,7 @@ struct TouchVisitor {
     const float ahead = cosine * direction.y - sine * direction.x;
     const float aside = -cosine * direction.x - sine * direction.y;
     *mouth = species.mouth_center.x * ahead + species.mouth_center.y * aside >= species.mouth_cosine;
-    const int32_t sectors = species.config->sensor.touch_sectors;
+    const int32_t sectors = species.config.sensor.touch_sectors;
     for (int32_t s = 0; s + 1 < sectors; ++s) {
       // At or past this sector's first edge, and before its last.
       const float past_first = species.sector_cosine[s] * aside - species.sector_sine[s] * ahead;
@@ -95,7 +95,7 @@ struct TouchVisitor {
     if (kind == PairKind::circle) type = shape.food_type(food_kind(shape, other));
     const bool hurts = type == shape.obstacle_type();
     if (hurts || (mouth && eats(species, type))) mark |= bit;
-    const int32_t touched = species.touch.of_type[type] * species.config->sensor.touch_sectors + at;
+    const int32_t touched = species.touch.of_type[type] * species.config.sensor.touch_sectors + at;
     if (touched < 64)
       crew.set_bits(world->state.touch[slot], uint64_t{1} << touched);
     else
@@ -110,8 +110,8 @@ struct TouchVisitor {
 
   HEDON_FN bool eats(const Species& species, int32_t type) const {
     const WorldShape& shape = *world->shape;
-    if (type < shape.species) return shape.hunting && species.layout->eats_species[type] > 0.0f;
-    return type < shape.wall_type() && species.layout->eats_food[type - shape.species] != 0.0f;
+    if (type < shape.species) return shape.hunting && species.layout.eats_species[type] > 0.0f;
+    return type < shape.wall_type() && species.layout.eats_food[type - shape.species] != 0.0f;
   }
 };
 

@@ -7,6 +7,7 @@
 #include "base/math.h"
 #include "config/config.h"
 #include "physics/state.h"
+#include "world/own.h"
 #include "world/species.h"
 
 namespace hedon {
@@ -63,6 +64,7 @@ struct WorldShape {
   bool counts_births;      ///< some species senses, or is paid for, the children that it had
   int32_t scents;          ///< of the longest row of smells: channels times noses
   bool packed;             ///< some species acts with weights in pairs
+  bool own;                ///< genes set numbers of some species, so agents have them of their own
   bool instinct;           ///< some species passes on the networks that it was born with
   bool mating;             ///< some species has two parents
   int32_t stores;          ///< most stores of a species
@@ -73,6 +75,7 @@ struct WorldShape {
   int32_t lines;           ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
   RayGrid scene;
+  float most_energy[MAX_SPECIES];  ///< largest capacity of an agent of each species
   Species of[MAX_SPECIES];
   BodyTable bodies;
 
@@ -105,7 +108,12 @@ HEDON_FN BodyTable make_body_table(const Config& config, const WorldShape& shape
   for (int32_t k = 0; k <= shape.kinds; ++k) table.first_circle[k] = shape.food_offset[k];
   for (int32_t s = 0; s < shape.species; ++s) {
     table.first_slot[s + 1] = shape.of[s].last_slot;
-    table.shape[s] = shape.of[s].body;
+    table.set_shape(s, shape.of[s].body);
+    if (sets_body(shape.of[s].layout)) {
+      table.own = 1;
+      table.smallest[s] = extreme(shape.of[s], -1.0f).body;
+      table.largest[s] = extreme(shape.of[s], 1.0f).body;
+    }
     const FixedList<int32_t, MAX_TYPES>& touches = config.layout[s].touches;
     for (int32_t c = 0; c < touches.count; ++c) {
       const int32_t type = touches[c];
@@ -135,6 +143,8 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
     const SpeciesLayout& layout = config.layout[s];
     const Species& species = shape.of[s] = make_species(own, layout, shape.capacity, shape.types());
     shape.capacity = species.last_slot;
+    shape.own |= layout.sets.count > 0;
+    shape.most_energy[s] = extreme(species, 1.0f).config.energy.capacity;
     shape.instinct |= species.learns && own.birth.network == BirthNetwork::initial;
     shape.mating |= own.birth.mating == BirthMating::pairs;
     grow(shape.stores, species.stores());

@@ -18,7 +18,7 @@ HEDON_FN float smell_reach(const World& world, float decay) {
 
 /// Place of nose `n`: of two, the first is to the right. One nose lies ahead.
 HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forward) {
-  const SensorConfig& sensor = species.config->sensor;
+  const SensorConfig& sensor = species.config.sensor;
   if (sensor.noses == 1) return center + species.body.radius * forward;
   const float sine = n == 0 ? -species.nose_sine : species.nose_sine;
   return center + species.body.radius * (species.nose_cosine * forward + sine * Vec2{-forward.y, forward.x});
@@ -28,9 +28,9 @@ HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forwa
 /// order of the scene. Needs the scene.
 HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, int32_t own, float* smelled) {
   const RayScene& scene = world.scene;
-  const float decay = species.config->sensor.smell_decay;
+  const float decay = species.config.sensor.smell_decay;
   const float reach = smell_reach(world, decay);
-  const int32_t channels = species.layout->smells.count;
+  const int32_t channels = species.layout.smells.count;
   double sum[MAX_TYPES] = {};
   for_each_circle_in(world, nose, reach, [&](int32_t i) {
     const int32_t channel = species.scent.of_type[static_cast<int32_t>(scene.type[i])];
@@ -45,14 +45,14 @@ HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, in
 /// Smells with all noses of the agent in `slot`, into its row of scratch: by channel, then by nose.
 HEDON_FN void smell(const World& world, int32_t slot, Vec2 forward) {
   const Species& species = world.species(slot);
-  const SensorConfig& sensor = species.config->sensor;
+  const SensorConfig& sensor = species.config.sensor;
   const BodyState& body = world.state.physics.bodies;
   float* out = &world.scratch.smelled[int64_t{slot} * world.shape->scents];
   for (int32_t n = 0; n < sensor.noses; ++n) {
     float smelled[MAX_TYPES];
     const Vec2 nose = nose_at(species, n, {body.x[slot], body.y[slot]}, forward);
     smell_at(world, species, nose, world.scene.own[slot], smelled);
-    for (int32_t c = 0; c < species.layout->smells.count; ++c) out[c * sensor.noses + n] = smelled[c];
+    for (int32_t c = 0; c < species.layout.smells.count; ++c) out[c * sensor.noses + n] = smelled[c];
   }
 }
 

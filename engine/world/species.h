@@ -26,9 +26,10 @@ HEDON_FN Channels make_channels(const FixedList<int32_t, MAX_TYPES>& list, int32
   return channels;
 }
 
+/// All in one piece of memory, without pointers: agents whose genes set some of it have one of their own.
 struct Species {
-  const SpeciesConfig* config;
-  const SpeciesLayout* layout;
+  SpeciesConfig config;
+  SpeciesLayout layout;
   int32_t first_slot;  ///< it owns slots [first_slot, last_slot)
   int32_t last_slot;
   NetworkShape network;
@@ -51,12 +52,12 @@ struct Species {
   float sector_cosine[65];
 
   HEDON_FN int32_t capacity() const { return last_slot - first_slot; }
-  HEDON_FN int32_t stores() const { return 1 + config->store.count; }
+  HEDON_FN int32_t stores() const { return 1 + config.store.count; }
 };
 
 /// The directions of the rays and of the edges of touch sectors.
 HEDON_FN void set_directions(Species& species) {
-  const SensorConfig& sensor = species.config->sensor;
+  const SensorConfig& sensor = species.config.sensor;
   const double degree = PI / 180.0;
   double sine, cosine;
   const int32_t rays = sensor.ray_count;
@@ -78,15 +79,33 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
+/// What follows from the numbers of a species.
+HEDON_FN void derive(Species& species) {
+  const SpeciesConfig& config = species.config;
+  species.body = make_disc(config.body.radius, config.body.density);
+  double sine, cosine;
+  sincos_double(config.motor.angle * (PI / 180.0), &sine, &cosine);
+  species.motor_arm = static_cast<float>(config.body.radius * sine);
+  species.max_force = species.layout.max_force * sqrtf(2.0f);
+  sincos_double(config.sensor.nose_angle * (PI / 180.0), &sine, &cosine);
+  species.nose_sine = static_cast<float>(sine);
+  species.nose_cosine = static_cast<float>(cosine);
+  sincos_double(config.sensor.mouth_spread * (PI / 180.0), &sine, &cosine);
+  // A mouth on all sides: rounding must not leave a gap directly behind.
+  species.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;
+  sincos_double(config.sensor.mouth_center * (PI / 180.0), &sine, &cosine);
+  species.mouth_center = {static_cast<float>(cosine), static_cast<float>(sine)};
+  set_directions(species);
+}
+
 /// types   of a world that senses may tell apart
 HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& layout, int32_t first_slot,
                               int32_t types) {
   Species species{};
-  species.config = &config;
-  species.layout = &layout;
+  species.config = config;
+  species.layout = layout;
   species.first_slot = first_slot;
   species.last_slot = first_slot + config.population.capacity;
-  species.body = make_disc(config.body.radius, config.body.density);
   species.sight = make_channels(layout.sees, types);
   species.touch = make_channels(layout.touches, types);
   species.scent = make_channels(layout.smells, types);
@@ -99,19 +118,7 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   species.observes |= is_sensed(layout.gate.source);
   species.network = {{config.sensor.ray_count, layout.sees.count, layout.touches.count * config.sensor.touch_sectors,
                       layout.observed.count, NARROW_LINES}};
-  double sine, cosine;
-  sincos_double(config.motor.angle * (PI / 180.0), &sine, &cosine);
-  species.motor_arm = static_cast<float>(config.body.radius * sine);
-  species.max_force = layout.max_force * sqrtf(2.0f);
-  sincos_double(config.sensor.nose_angle * (PI / 180.0), &sine, &cosine);
-  species.nose_sine = static_cast<float>(sine);
-  species.nose_cosine = static_cast<float>(cosine);
-  sincos_double(config.sensor.mouth_spread * (PI / 180.0), &sine, &cosine);
-  // A mouth on all sides: rounding must not leave a gap directly behind.
-  species.mouth_cosine = config.sensor.mouth_spread < 180.0f ? static_cast<float>(cosine) : -2.0f;
-  sincos_double(config.sensor.mouth_center * (PI / 180.0), &sine, &cosine);
-  species.mouth_center = {static_cast<float>(cosine), static_cast<float>(sine)};
-  set_directions(species);
+  derive(species);
   return species;
 }
 

@@ -141,6 +141,7 @@ struct WorldState {
   Array<uint64_t> touch;  // bit channel * sectors + sector, of the last step
   PhysicsState physics;   // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
   Array<int32_t> species;
+  Array<Species> own;          // where genes set numbers: those of the agent, which follow from its genome
   Array<uint64_t> touch_more;  // bits of touch from 64 on
   Array<int32_t> digestion;    // steps until an agent can eat another one
   Array<HuntCounters> hunt_counters;
@@ -193,7 +194,7 @@ struct WorldState {
                (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),
                (free, slots, one, derived), (free_count, species, one, derived), (life, slots, one, saved),
                (eaten, slots, meals, saved), (genome, slots, genes, saved), (touch, slots, one, saved),
-               (physics, one, one, saved), (species, mixed_slots, one, saved), (touch_more, wide_slots, one, saved),
+               (physics, one, one, saved), (species, mixed_slots, one, saved), (own, own_slots, one, derived), (touch_more, wide_slots, one, saved),
                (digestion, hunted_slots, one, saved), (hunt_counters, deaths, one, saved),
                (eaten_by, eaters, meals, saved), (ready_until, mating_slots, one, saved),
                (mate_id, mating_slots, one, saved), (store, store_slots, more_stores, saved),

@@ -18,7 +18,7 @@ HEDON_FN double strength(float threshold, double held) {
 /// What this step's meals give the agent in `slot` of a store. Its diet's factors are on energy alone.
 HEDON_FN double gained(const World& world, int32_t slot, int32_t store) {
   const Species& species = world.species(slot);
-  const SpeciesLayout& layout = *species.layout;
+  const SpeciesLayout& layout = species.layout;
   const int32_t* meal = world.meal(slot);
   double sum = 0.0;
   for (int32_t k = 0; k < world.shape->kinds; ++k) {
@@ -32,7 +32,7 @@ HEDON_FN double gained(const World& world, int32_t slot, int32_t store) {
 /// force    that its motors applied
 /// damage   what obstacles cost it, in energy
 HEDON_FN void settle_store(const World& world, int32_t slot, int32_t store, double force, double damage) {
-  const StoreConfig& config = store_of(*world.species(slot).config, store);
+  const StoreConfig& config = store_of(world.species(slot).config, store);
   const StepScratch& scratch = world.scratch;
   double& held = world.held(slot, store);
   world.held_before(slot)[store] = held;
@@ -56,7 +56,7 @@ HEDON_FN bool can_digest(const World& world, int32_t slot, int32_t k) {
   if (!world.shape->gated) return true;
   const Species& species = world.species(slot);
   for (int32_t i = 0; i < species.stores(); ++i) {
-    if (world.held(slot, i) < species.layout->needs[k * species.stores() + i]) return false;
+    if (world.held(slot, i) < species.layout.needs[k * species.stores() + i]) return false;
   }
   return true;
 }

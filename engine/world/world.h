@@ -99,8 +99,12 @@ struct World {
   RayScene scene;
 
   HEDON_FN WorldHead& head() const { return state.head[0]; }
-  HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && species(slot).layout->has_rule(use); }
-  HEDON_FN const Species& species(int32_t slot) const { return shape->of[shape->species_of(slot)]; }
+  HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && species(slot).layout.has_rule(use); }
+  /// The settings of the agent in `slot` and what follows from them: those of its species, or its own if genes set
+  /// some.
+  HEDON_FN const Species& species(int32_t slot) const {
+    return shape->own ? state.own[slot] : shape->of[shape->species_of(slot)];
+  }
   HEDON_FN Counters& counters(int32_t slot) const { return state.counters[shape->species_of(slot)]; }
   HEDON_FN Fault& fault() const { return state.fault[0]; }
   /// The step at which the window of the current step began.
@@ -119,7 +123,7 @@ struct World {
   HEDON_FN float* initial_params(int32_t slot) const { return &state.initial_params[int64_t{slot} * shape->params]; }
   /// What the agent in `slot` acts with.
   HEDON_FN ActingNetwork network(int32_t slot) const {
-    const bool rounded = species(slot).config->learning.acting_weights == LearningActingWeights::bfloat16;
+    const bool rounded = species(slot).config.learning.acting_weights == LearningActingWeights::bfloat16;
     float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->pairs] : nullptr;
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }

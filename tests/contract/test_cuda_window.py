@@ -71,6 +71,19 @@ MECHANISMS = {
     ),
     "fixed": ("learning.policy=fixed", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
+    "genes of numbers": (
+        *(
+            "birth.kappa=0.3",
+            "genome.mutation_scale=0.1",
+            "genome.set.energy.basic_cost={}",
+            "genome.set.birth.kappa={}",
+        ),
+        *("genome.set.sensor.ray_length={}", "genome.set.sensor.mouth_spread={}", "genome.set.motor.force_scale={}"),
+    ),
+    "genes of bodies": (
+        *("birth.kappa=0.3", "genome.mutation_scale=0.1", "genome.set.body.radius.initial_sd=0.1"),
+        *("genome.set.body.density.initial_sd=0.2", "genome.mutation.g_body_radius.limit=0.2"),
+    ),
 }
 
 

@@ -151,6 +151,8 @@ def general(path: str) -> str:
         parts = parts[:3]
     if parts[:2] == ["sensor", "observes"]:
         parts = parts[:2]
+    if parts[:2] == ["genome", "set"]:
+        parts = [*parts[:2], "<kind>", parts[-1]]
     for i, part in enumerate(parts[:-1]):
         if part in NAMED and i + 2 < len(parts):
             parts[i + 1] = "<kind>"

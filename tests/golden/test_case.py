@@ -37,7 +37,7 @@ def general(path: tuple[str, ...]) -> str:
             inner = sections(here)[told[-1]]
             here = inner.type
             if inner.repeated:
-                words.pop(0)
+                words = words[-1:] if told[-1] == "set" else words[1:]  # which names a whole path
                 told.append("*")
     return ".".join(told)
 

@@ -44,6 +44,8 @@ ALL_TABLES = (
     "sensor.observes={moved=1.0, births=1.0}",
     "genome.learning={gamma={}, action_sd={}}",
     "genome.family.threshold={}",
+    "genome.set={sensor.ray_length={}, store.nutrient.basic_cost={}, body.radius={}, hazard.kappa={}}",
+    "genome.mutation.g_body_radius.limit=0.3",
     "genome.mutation.w_action.law=normal",
 )
 SOURCES = {

@@ -28,10 +28,10 @@ def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Tu
         agent.births = 0
     here = {agent.agent_id for agent in world.agents}
     turn_of = {turn.agent.agent_id: turn for turn in turns if turn.agent.agent_id in here}
-    parents = [turn for turn in turn_of.values() if turn.breeds]
+    breeding = [turn for turn in turn_of.values() if turn.breeds]
     if rules.resident_slots_only:
-        parents = [turn for turn in parents if turn.agent.resident_slot]
-    for turn in sorted(parents, key=lambda each: rules.draw("parent_order", each.agent.agent_id, world.step)[0]):
+        breeding = [turn for turn in breeding if turn.agent.resident_slot]
+    for turn in sorted(breeding, key=lambda each: rules.draw("parent_order", each.agent.agent_id, world.step)[0]):
         parent, species = turn.agent, rules.of(turn.agent)
         mate = None
         if species.birth.mating == "pairs":
@@ -40,13 +40,14 @@ def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Tu
             if mate is None:
                 continue
         sums = world.sums[species.number]
-        place = child_place(rules, world, parent) if world.vacancies[species.number] else None
+        parents = [parent, mate] if mate else [parent]
+        place = child_place(rules, world, parents) if world.vacancies[species.number] else None
         if not world.vacancies[species.number]:
             sums["births_failed_full"] += 1
         elif place is None:
             sums["births_failed_space"] += 1
         else:
-            bear(rules, world, [parent, mate] if mate else [parent], place)
+            bear(rules, world, parents, place)
             for each in filter(None, (parent, mate)):
                 has_given(turn_of[each.agent_id])
 
@@ -54,7 +55,6 @@ def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Tu
 def find_mate(rules: Rules, world: World, turn_of: dict[int, Turn], parent: Agent) -> Agent | None:
     """The nearest of its species that waits within range; of equally near ones the oldest."""
     species = rules.of(parent)
-    reach = 2 * species.body.radius + species.birth.mating_range
     waiting = [
         turn.agent
         for turn in turn_of.values()
@@ -64,16 +64,21 @@ def find_mate(rules: Rules, world: World, turn_of: dict[int, Turn], parent: Agen
         and not turn.starved
     ]
     apart = {mate.agent_id: math.hypot(mate.x - parent.x, mate.y - parent.y) for mate in waiting}
-    near = [mate for mate in waiting if apart[mate.agent_id] <= reach]
+    range_of = {mate.agent_id: species.body.radius + rules.of(mate).body.radius for mate in waiting}
+    near = [mate for mate in waiting if apart[mate.agent_id] <= range_of[mate.agent_id] + species.birth.mating_range]
     return min(near, key=lambda mate: (apart[mate.agent_id], mate.agent_id), default=None)
 
 
-def child_place(rules: Rules, world: World, parent: Agent) -> tuple[float, float] | None:
-    species = rules.of(parent)
+def child_place(rules: Rules, world: World, parents: list[Agent]) -> tuple[float, float] | None:
+    """A free place for a child, whose genes may set its radius."""
+    parent, species = parents[0], rules.of(parents[0])
+    radius = species.body.radius
+    if species.genome.set and not rules.inherits_late:
+        radius = rules.with_genes(parent.species, next_genome(rules, world, parents)).body.radius
     for i in range(species.birth.attempts):
         aside, along = normals(*rules.draw("child_place", parent.agent_id, world.step, i)[:2])
         x, y = parent.x + species.distance_sd * aside, parent.y + species.distance_sd * along
-        if is_free(rules, world, x, y, species.body.radius):
+        if is_free(rules, world, x, y, radius):
             return x, y
     return None
 
@@ -83,11 +88,11 @@ def bear(rules: Rules, world: World, parents: list[Agent], place: tuple[float, f
     sums = world.sums[species.number]
     energy, store = 0.0, dict.fromkeys(species.store, 0.0)
     for parent in parents:
-        share = species.energy.child_share / len(parents)
+        share = rules.of(parent).energy.child_share / len(parents)
         energy += share * parent.energy
         sums["energy_shared"] += share * parent.energy
         parent.energy *= 1 - share
-        for name, own in species.store.items():
+        for name, own in rules.of(parent).store.items():
             part = own.child_share / len(parents)
             store[name] += part * parent.store[name]
             parent.store[name] *= 1 - part
@@ -132,6 +137,12 @@ def child_genome(rules: Rules, world: World, parents: list[Agent], before: np.nd
         at = among.index(first.agent_id) if first.agent_id in among else -1
         world.newborns.append(Newborn(child_id, species.number, at, first.genome))
         return before
+    return next_genome(rules, world, parents)
+
+
+def next_genome(rules: Rules, world: World, parents: list[Agent]) -> np.ndarray:
+    """The genome of the next child where it inherits at birth."""
+    first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
     genome = first.genome
     if len(parents) == 2:
         genome = recombined(rules, genome, parents[1].genome, child_id)

@@ -61,14 +61,16 @@ class Model:
 
     def founder(self, world: World, species: Species, meals: int) -> Agent:
         draw, number = self.rules.draw, world.next_agent_id
+        genome = first_genome(self.rules, species, number, "initial_genome")
+        radius = self.rules.with_genes(species.number, genome).body.radius
         places = (self.rules.arena.anywhere(draw("initial_place", number, 0, n)) for n in range(TRIES))
         return Agent(
             number,
             species.number,
-            *next(place for place in places if is_free(self.rules, world, *place, species.body.radius)),
+            *next(place for place in places if is_free(self.rules, world, *place, radius)),
             species.population.heading_range * uniform(draw("initial_heading", number, 0)[0]),
             species.energy.initial,
-            first_genome(self.rules, species, number, "initial_genome"),
+            genome,
             {name: store.initial for name, store in species.store.items()},
             eaten=[0] * meals,
             memory=memory_of(species),

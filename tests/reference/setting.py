@@ -1,5 +1,6 @@
 """The settings of a world as the rules read them: per species, by name, in the numbers that the engine holds."""
 
+from copy import deepcopy
 from dataclasses import fields, is_dataclass
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +10,7 @@ from reference.draw import Draws
 from reference.place import Arena
 
 from hedon.config.config import Config
+from hedon.config.expression import kind_of, limits_of
 from hedon.config.layout import layouts
 
 MAX_EXPONENT = 2.0
@@ -81,7 +83,8 @@ class Species:
         if gene.startswith("set_point"):
             return self.stores[gene.removeprefix("set_point").removeprefix("_") or "energy"].set_point
         if gene.startswith("g_"):
-            return (genome.family | genome.learning)[name]
+            set_by = {path.replace(".", "_"): law for path, law in genome.set.items()}
+            return (genome.family | genome.learning | set_by)[name]
         return held(weights[name]) if name in weights else genome.second
 
     def _mutation(self, gene: str) -> SimpleNamespace:
@@ -102,6 +105,26 @@ class Species:
 
     def gene(self, genome: np.ndarray, name: str) -> float:
         return float(genome[self.genes.index(name)])
+
+    def with_genes(self, genome: np.ndarray) -> "Species":
+        """The species with the numbers that genes set, as an agent with this genome has them."""
+        own = deepcopy(self)
+        for path in self.genome.set:
+            name = "g_" + path.replace(".", "_")
+            limit = self.mutations[self.genes.index(name)].limit
+            factor = 10 ** min(max(self.gene(genome, name), -limit), limit)
+            if path == "motor.force_scale":
+                own.min_force, own.max_force = held(factor * own.min_force), held(factor * own.max_force)
+                continue
+            if path == "birth.distance_sd":
+                own.distance_sd = held(factor * own.distance_sd)
+                continue
+            low, high = limits_of(kind_of(path))
+            section, (*names, last) = own, path.split(".")
+            for each in names:
+                section = section[each] if isinstance(section, dict) else getattr(section, each)
+            setattr(section, last, held(min(max(factor * getattr(section, last), low), high)))
+        return own
 
 
 class Rules:
@@ -130,6 +153,17 @@ class Rules:
         self.shared_heading = config.world.child_heading == "shared"
         self.mutation_noise = config.world.mutation_noise
         self.window = config.world.rollout_steps
+        self.known: dict[tuple[int, bytes], Species] = {}
 
     def of(self, agent: Any) -> Species:
-        return self.species[agent.species]
+        """The species of an agent, with the numbers that its genes set."""
+        return self.with_genes(agent.species, agent.genome)
+
+    def with_genes(self, number: int, genome: np.ndarray) -> Species:
+        """A species as an agent with this genome has it."""
+        common, key = self.species[number], (number, genome.tobytes())
+        if not common.genome.set:
+            return common
+        if key not in self.known:
+            self.known[key] = common.with_genes(genome)
+        return self.known[key]

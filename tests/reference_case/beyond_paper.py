@@ -2,6 +2,7 @@
 
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER
+from reference_case.gene import GENES
 from reference_case.obstacle import OBSTACLES
 from reference_case.paid import REWARDS
 from reference_case.ruled import RULED
@@ -348,4 +349,4 @@ COMBINED = {
     ),
 }
 
-CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | REWARDS | RULED | POLICIES | FOOD | COMBINED
+CASES = FIRST_PAPER | SPECIES | INNER | OBSTACLES | HEREDITY | GENES | REWARDS | RULED | POLICIES | FOOD | COMBINED

@@ -229,7 +229,7 @@ function smellsOf(source: Source, frame: Frame, at: number): HTMLElement[] {
   const { layout } = source;
   const { smells } = layout.species[frame.species[at]!]!;
   if (smells.length === 0) return [];
-  const sides = smell(layout, frame, at);
+  const sides = smell(source, frame, at);
   const text = (channel: number) => (sides.length === 1 ? show(sides[0]![channel]) : `left ${show(sides[1]![channel])}, right ${show(sides[0]![channel])}`);
   return [element("h3", { text: "what it smells" }), table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]))];
 }
@@ -265,7 +265,7 @@ function answer(source: Source): HTMLElement[] {
 /** What its rays see now, in words and colors. */
 function seenTitle(source: Source, frame: Frame, at: number): HTMLElement[] {
   const { layout } = source;
-  const found = [...new Set(castRays(layout, frame, at, source.obstacles).map((ray) => ray.type))].filter((type) => type >= 0);
+  const found = [...new Set(castRays(source, frame, at).map((ray) => ray.type))].filter((type) => type >= 0);
   const names = found.map((type) => {
     const dot = element("b", { text: "■" });
     dot.style.color = typeColor(layout, type) || "var(--wall)";
@@ -277,7 +277,7 @@ function seenTitle(source: Source, frame: Frame, at: number): HTMLElement[] {
 function drawSight(canvas: HTMLCanvasElement, source: Source, frame: Frame, at: number): void {
   const { layout } = source;
   const pen = surface(canvas);
-  const rays = castRays(layout, frame, at, source.obstacles).reverse();
+  const rays = castRays(source, frame, at).reverse();
   const [width, height] = [canvas.clientWidth / rays.length, canvas.clientHeight];
   rays.forEach((ray, i) => {
     if (ray.type < 0) return;

@@ -174,7 +174,7 @@ export class App {
 
   /** The rays of an agent of the moment that is shown. */
   rays(i: number): Ray[] {
-    return this.frame ? castRays(this.source.layout, this.frame, i, this.source.obstacles) : [];
+    return this.frame ? castRays(this.source, this.frame, i) : [];
   }
 
   help(): void {

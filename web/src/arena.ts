@@ -1,11 +1,12 @@
 // Draws one moment of a world: walls, foods, agents, and what belongs to the chosen agent.
+import { bodyOf } from "./body";
 import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesColor, typeColor, UNKNOWN } from "./color";
 import { styleColor } from "./element";
 import { castRays } from "./rays";
 import { Scene } from "./scene";
 import { noses } from "./smells";
 import type { Source } from "./source";
-import type { Frame, Layout, Place } from "./types";
+import type { Frame, Layout, Place, Species } from "./types";
 
 /** Center x, center y, and the zoom as a multiple of that of the whole arena. */
 export type View = [number, number, number];
@@ -13,6 +14,11 @@ export type View = [number, number, number];
 const TRAIL = 240; // places of the chosen agent that are kept
 const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
 const HALO = 0x10000000; // the alpha of that, in a packed color
+
+/** The cosine of half the angle of a mouth. */
+const mouthOf = (species: Species) => Math.cos((species.mouth_degrees * Math.PI) / 180);
+/** Where the middle of a mouth is. */
+const middleOf = (species: Species) => (species.mouth_center_degrees * Math.PI) / 180;
 
 export class Arena {
   readonly scene: Scene;
@@ -86,7 +92,7 @@ export class Arena {
   pick(source: Source, frame: Frame, x: number, y: number): number {
     let [best, found] = [Infinity, -1];
     for (let i = 0; i < frame.id.length; i++) {
-      const radius = source.layout.species[frame.species[i]!]!.radius + 4 / this.scene.zoom;
+      const radius = bodyOf(source, frame, i).radius + 4 / this.scene.zoom;
       const distance = (frame.x[i]! - x) ** 2 + (frame.y[i]! - y) ** 2;
       if (distance < Math.min(best, radius * radius)) [best, found] = [distance, frame.id[i]!];
     }
@@ -99,8 +105,8 @@ export class Arena {
 
   private drawFrame(source: Source, frame: Frame, coloring: Coloring, chosen: number): Painted["legend"] {
     const { layout } = source;
-    const mouths = layout.species.map((species) => Math.cos((species.mouth_degrees * Math.PI) / 180));
-    const middles = layout.species.map((species) => (species.mouth_center_degrees * Math.PI) / 180);
+    const mouths = layout.species.map(mouthOf);
+    const middles = layout.species.map(middleOf);
     if (this.colors.length < frame.id.length) this.colors = new Uint32Array(frame.id.length * 2);
     const { colors, legend } = paint(coloring, source, frame, this.colors);
     const at = frame.id.indexOf(chosen);
@@ -114,9 +120,11 @@ export class Arena {
     }
     for (let i = 0; i < frame.id.length; i++) {
       const species = frame.species[i]!;
-      const { radius } = layout.species[species]!;
+      const body = bodyOf(source, frame, i);
+      const [mouth, middle] = body.sets.length > 0 ? [mouthOf(body), middleOf(body)] : [mouths[species]!, middles[species]!];
+      const { radius } = body;
       const known = colors[i] !== UNKNOWN;
-      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouths[species]!, known ? 0 : 0.3, middles[species]!);
+      this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouth, known ? 0 : 0.3, middle);
       if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
     }
     if (at >= 0) this.markKin(source, frame, at);
@@ -158,7 +166,7 @@ export class Arena {
   private drawRays(source: Source, frame: Frame, at: number): void {
     const { layout } = source;
     const [nothing, wall] = [pack(parse(styleColor("--quiet")), 110), styleColor("--wall")];
-    for (const ray of castRays(layout, frame, at, source.obstacles)) {
+    for (const ray of castRays(source, frame, at)) {
       const color = ray.type < 0 ? nothing : pack(parse(typeColor(layout, ray.type) || wall));
       this.scene.line(ray.x0, ray.y0, ray.x1, ray.y1, color);
       if (ray.type >= 0) this.scene.disc(ray.x1, ray.y1, 1.4, color);
@@ -166,7 +174,7 @@ export class Arena {
   }
 
   private markKin(source: Source, frame: Frame, at: number): void {
-    const radius = (i: number) => source.layout.species[frame.species[i]!]!.radius;
+    const radius = (i: number) => bodyOf(source, frame, i).radius;
     const [mark, kin] = [pack(parse(styleColor("--mark"))), pack(parse(styleColor("--kin")))];
     const chosen = frame.id[at]!;
     for (let i = 0; i < frame.id.length; i++) {
@@ -175,6 +183,6 @@ export class Arena {
     }
     this.scene.disc(frame.x[at]!, frame.y[at]!, radius(at) * 1.6, mark, 0, 2, 0.16);
     if (source.layout.species[frame.species[at]!]!.smells.length === 0) return;
-    for (const [x, y] of noses(source.layout, frame, at)) this.scene.disc(x, y, 2, mark);
+    for (const [x, y] of noses(source, frame, at)) this.scene.disc(x, y, 2, mark);
   }
 }

@@ -1,5 +1,7 @@
 // The rays of one agent, from positions alone: what they hit in a moment that was recorded.
-import type { Frame, Layout, Place } from "./types";
+import { bodyOf } from "./body";
+import type { Source } from "./source";
+import type { Frame } from "./types";
 
 export interface Ray {
   x0: number;
@@ -32,8 +34,9 @@ function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]
 }
 
 /** The rays of agent `i` of a frame, from the right to the left. Heading 0 is up, positive is counter-clockwise. */
-export function castRays(layout: Layout, frame: Frame, i: number, obstacles: Place[][]): Ray[] {
-  const own = layout.species[frame.species[i]!]!;
+export function castRays(source: Source, frame: Frame, i: number): Ray[] {
+  const { layout, obstacles } = source;
+  const own = bodyOf(source, frame, i);
   const { count, spread_degrees: spread, length } = own.rays;
   const body = own.radius;
   const [x, y] = [frame.x[i]!, frame.y[i]!];
@@ -52,8 +55,8 @@ export function castRays(layout: Layout, frame: Frame, i: number, obstacles: Pla
     };
     for (let j = 0; j < frame.id.length; j++) {
       const other = frame.species[j]!;
-      const { radius } = layout.species[other]!;
       if (j === i || !own.sees.includes(other)) continue;
+      const { radius } = bodyOf(source, frame, j);
       if (Math.abs(frame.x[j]! - x) > reach + radius || Math.abs(frame.y[j]! - y) > reach + radius) continue;
       consider(toDisc(x, y, dx, dy, frame.x[j]!, frame.y[j]!, radius), other);
     }

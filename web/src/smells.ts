@@ -1,9 +1,11 @@
 // What the noses of one agent smell, from positions alone.
-import type { Frame, Layout, Place } from "./types";
+import { bodyOf } from "./body";
+import type { Source } from "./source";
+import type { Frame, Place } from "./types";
 
 /** Where the noses of agent `i` of a frame are: one ahead, or two, the right one first. */
-export function noses(layout: Layout, frame: Frame, i: number): Place[] {
-  const own = layout.species[frame.species[i]!]!;
+export function noses(source: Source, frame: Frame, i: number): Place[] {
+  const own = bodyOf(source, frame, i);
   const turns = own.noses.count === 1 ? [0] : [-own.noses.degrees, own.noses.degrees];
   return turns.map((turn) => {
     const angle = frame.angle[i]! + (turn * Math.PI) / 180;
@@ -12,9 +14,10 @@ export function noses(layout: Layout, frame: Frame, i: number): Place[] {
 }
 
 /** What each nose of agent `i` smells of each of its channels: what all sources add, at most 1. */
-export function smell(layout: Layout, frame: Frame, i: number): number[][] {
-  const own = layout.species[frame.species[i]!]!;
-  return noses(layout, frame, i).map(([x, y]) => {
+export function smell(source: Source, frame: Frame, i: number): number[][] {
+  const { layout } = source;
+  const own = bodyOf(source, frame, i);
+  return noses(source, frame, i).map(([x, y]) => {
     const sums = new Array<number>(own.smells.length).fill(0);
     const add = (type: number, sx: number, sy: number) => {
       const channel = own.smells.indexOf(type);

@@ -2,7 +2,7 @@
 
 export interface Gene {
   name: string;
-  role: "reward" | "learning" | "rule" | "neutral";
+  role: "reward" | "learning" | "setting" | "rule" | "neutral";
   input: string;
   title: string; // in plain words
   unit: string; // "" where there is none
@@ -20,6 +20,7 @@ export interface Species {
   sees: number[]; // types, by channel
   noses: { count: number; degrees: number; decay: number };
   smells: number[]; // types, by channel
+  sets: { place: string; gene: number; low: number; high: number }[]; // numbers that genes of the layout multiply
   genes: number[]; // of the layout's genes, in the order of the genome
   starts: number[]; // of each of them, the mean of the founders
   drifts: boolean[]; // whether the neutral markers mutate like it, so that they show its drift

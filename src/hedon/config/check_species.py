@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from hedon.config.channel import called, known_channels, plain_channels
 from hedon.config.evolution import GATED
+from hedon.config.expression import NO_GENE, expressed, settable
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
 from hedon.config.problem import Check, nearest, single
@@ -230,6 +231,10 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
     for value in ("learning_rate", "entropy_coef"):
         good = value not in genome.learning or getattr(learning, value) > 0
         check.need(good, f"{path}learning.{value}", "a gene multiplies it, so it must not be 0")
+    for place in genome.set:
+        _settable(check, species, place, path)
+    if check.has(f"{path}genome."):
+        return
     genes = layout_of(config, species).genes
     names = [gene.name for gene in genes]
     if len(names) > MAX_GENES:
@@ -238,10 +243,54 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
         check.add(
             f"{path}genome", f"two genes would have the name {gene}: rename a food, a species or what reward.pay has"
         )
+    _own_bodies(check, config, path, genes)
     for gene in genome.mutation.keys() - set(names):
         rule = "there is no such gene: there are " + ", ".join(names)
         check.add(f"{path}genome.mutation.{gene}", rule, nearest(gene, names))
     _laws(check, config, species, path, genes)
+
+
+def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> None:
+    """A gene can set the number at a place, and it has an effect."""
+    kinds = {name: name if name == ENERGY else f"store.{name}" for name in species.stores}
+    known = [each for each in settable() if "<kind>" not in each]
+    known += [each.replace("store.<kind>", kind) for each in settable() for kind in kinds.values() if "<kind>" in each]
+    where, section, name = f"{path}genome.set.{place}", place.split(".")[0], place.split(".")[-1]
+    if place not in known:
+        why = NO_GENE.get(name) or NO_GENE.get(section) or "there are " + ", ".join(known)
+        check.add(where, f"no gene can set this: {why}", nearest(place, known))
+    elif value_at(species, place) == 0:
+        check.add(where, f"a gene multiplies {path}{place}, so that must not be 0")
+    elif idle := _idle(species).get(place):
+        check.add(where, f"it would have no effect, since {idle}")
+
+
+def _idle(species: SpeciesConfig) -> dict[str, str]:
+    """Numbers that do nothing in a species, with the reason."""
+    birth, sensor, reward = species.birth, species.sensor, species.reward
+    channels = (*sensor.observes, reward.gate, *(pay.channel or name for name, pay in reward.pay.items()))
+    near = any(name.startswith("near_") or name == "meals_near" for name in channels)
+    found = {
+        "sensor.near_range": "" if near else "nothing reads the channels near_NAME or meals_near",
+        "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
+        "sensor.nose_angle": "" if sensor.noses == 2 else "its nose lies ahead: give sensor.noses = 2",
+        "birth.network_noise": "" if birth.network != "none" else "children inherit no network: give birth.network",
+        "birth.mating_range": "" if birth.mating == "pairs" else 'nobody mates: give birth.mating = "pairs"',
+    }
+    return {place: reason for place, reason in found.items() if reason}
+
+
+def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]) -> None:
+    """Bodies that genes set fit into the arena, and have their genes from birth on."""
+    side, radius = min(config.arena.width, config.arena.height), value_at(config, f"{path}body.radius")
+    for gene in (gene for gene in genes if gene.place.startswith("genome.set.body.")):
+        most = radius * 10.0**gene.mutation.limit
+        if gene.place.endswith(".radius") and 2 * radius < side <= 2 * single(most):
+            rule = f"can make a radius of {most:g}, which does not fit into the arena: give genome.mutation.{gene.name}"
+            check.add(f"{path}{gene.place}", f"{rule} a limit below {math.log10(side / 2 / radius):.3g}")
+        rule = 'bodies cannot change in a window: needs world.inheritance = "at_birth"'
+        if config.world.inheritance != "at_birth":
+            check.add(f"{path}{gene.place}", rule)
 
 
 def _laws(check: Check, config: Settings, species: SpeciesConfig, path: str, genes: Sequence[Gene]) -> None:
@@ -277,10 +326,16 @@ def _crowd(check: Check, config: Settings) -> None:
     for name, species in config.species.items():
         if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
             return  # that is said already
-        each = math.pi * species.body.radius**2
+        each = math.pi * _founder_radius(species) ** 2
         most = math.floor((room - area) / each)
         area += species.population.initial_count * each
         check.need(area <= room, paths[name], f"too many to place: the arena has room for {most}")
+
+
+def _founder_radius(species: SpeciesConfig) -> float:
+    """The radius of a founder, a large one where genes set it."""
+    law = species.genome.set.get("body.radius")
+    return expressed(species, "body.radius", law.initial_mean + law.initial_sd) if law else species.body.radius
 
 
 def _collisions(check: Check, config: Settings) -> None:

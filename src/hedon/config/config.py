@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hedon.config.layer import EVERY, settle_mutation, settle_stores
+from hedon.config.layer import EVERY, settle_genes, settle_stores
 from hedon.config.migrate import new_path
 from hedon.config.override import parse_path
 from hedon.config.problem import ConfigError, Problem, folded
@@ -40,7 +40,7 @@ class Config(Settings):
         for root in [["food", kind] for kind in kinds] or roots:
             if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
                 raise ConfigError(self.name, [Problem(path, "there is no such setting")])
-        settle_mutation(tables)
+        settle_genes(tables)
         problems = list(settle_stores(tables))
         if problems:
             raise ConfigError(self.name, folded(problems, tuple(self.species)))

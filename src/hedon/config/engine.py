@@ -8,6 +8,7 @@ from hedon.config.arena import outer_count, walls
 from hedon.config.channel import Channel, season_place
 from hedon.config.config import Config, validated
 from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
+from hedon.config.expression import engine_name, gene_column, kind_of
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
 from hedon.config.layout import Gene, layout_of, set_point_of
 from hedon.config.life import distance_sd
@@ -141,6 +142,14 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         "rules": [int(bool(getattr(species, use).rule)) for use in RULE_USES],
         "genes": [_gene(species, path, each) for each in layout.genes],
         "learning": [{"sets": each, "gene": gene[f"g_{each}"]} for each in species.genome.learning],
+        "sets": [
+            {
+                "sets": engine_name(kind_of(place)),
+                "store": layout.stores.index(place.split(".")[-2]) if kind_of(place) != place else 0,
+                "gene": gene[gene_column(place)],
+            }
+            for place in species.genome.set
+        ],
         "family": [gene.get(f"g_{each}", -1) for each in FAMILY_GENES],
         "set_points": [gene.get(set_point_of(state), -1) for state in layout.stores],
         "terms": [

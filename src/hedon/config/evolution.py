@@ -19,6 +19,8 @@ FAMILY_GENES = {
 """What of the family of a reward a gene may set, with what the gene is."""
 GATED = ("above", "below", "between", "around")
 """Families of rewards that have a gate, with a threshold."""
+MAX_EXPONENT = 2.0
+"""Largest limit of genes that are powers of ten."""
 OF_ALL_GENES = {
     "law": "mutation_law",
     "scale": "mutation_scale",
@@ -52,7 +54,7 @@ class MutationConfig:
 
 @dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """The weights of the reward, genes that set learning, genes for rules, then neutral markers that have no effect.
+    """The weights of the reward, genes that set numbers, genes for rules, then neutral markers that have no effect.
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
     that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
@@ -60,6 +62,9 @@ class GenomeConfig:
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
+    `[genome.set.PATH]`, such as `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the
+    motors, the stores, the hazard or births, within the limits of its setting; the gene is g_PATH, with `_` for each
+    dot.
     `[genome.extra.NAME]` makes a gene extra_NAME that only rules in Python read (guide/rule.md).
     `[genome.mutation.GENE]` gives one gene a mutation of its own.
     """
@@ -85,6 +90,7 @@ class GenomeConfig:
     second: GeneConfig = section(GeneConfig)
     learning: dict[str, GeneConfig] = section(names=LEARNING_GENES)
     family: dict[str, GeneConfig] = section(names=FAMILY_GENES)
+    set: dict[str, GeneConfig] = section()
     extra: dict[str, GeneConfig] = section()
     mutation: dict[str, MutationConfig] = section()
 

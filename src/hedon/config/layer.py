@@ -3,7 +3,9 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from hedon.config.evolution import OF_ALL_GENES
+from hedon.config.evolution import OF_ALL_GENES, GeneConfig
+from hedon.config.expression import kind_of, settable
+from hedon.config.field import settings
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.species import ONLY, PER_SPECIES
 
@@ -117,11 +119,20 @@ def has(table: Any, path: Sequence[str]) -> bool:
     return True
 
 
-def settle_mutation(tables: Table) -> None:
-    """Completes `genome.mutation` of each species, in place: what a gene does not say, `genome` says."""
+def settle_genes(tables: Table) -> None:
+    """Completes the genes of each species, in place.
+
+    What a gene of `genome.mutation` does not say, `genome` says. What `genome.set` names is named by its whole path:
+    `set.sensor.ray_length` may be nested, or have quotes.
+    """
     species = tables.get("species")
     owners = species.values() if isinstance(species, dict) else []
     for genome in (owner.get("genome") for owner in owners if isinstance(owner, dict)):
+        if isinstance(genome, dict) and isinstance(genome.get("set"), dict):
+            laws: Table = {}
+            for path, law in _laws(genome["set"]):
+                laws[path] = _lay(laws.get(path), law)
+            genome["set"] = laws
         if not isinstance(genome, dict) or not isinstance(genome.get("mutation"), dict):
             continue
         common = {name: genome[whole] for name, whole in OF_ALL_GENES.items() if whole in genome}
@@ -130,6 +141,14 @@ def settle_mutation(tables: Table) -> None:
             for gene, own in genome["mutation"].items()
             if own is not False
         }
+
+
+def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
+    """The laws of the genes that set numbers, by the whole paths of these."""
+    for name, value in table.items():
+        place = f"{path}{name}"
+        is_law = not isinstance(value, dict) or kind_of(place) in settable() or {*value} <= {*settings(GeneConfig)}
+        yield from [(place, value)] if is_law else _laws(value, f"{place}.")
 
 
 def settle_stores(tables: Table) -> Iterator[Problem]:

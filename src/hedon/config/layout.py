@@ -9,11 +9,13 @@ from hedon.config.channel import Channel, called, known_channels, observed_chann
 from hedon.config.evolution import (
     FAMILY_GENES,
     LEARNING_GENES,
+    MAX_EXPONENT,
     OF_ALL_GENES,
     GeneConfig,
     MutationConfig,
     RewardConfig,
 )
+from hedon.config.expression import gene_column
 from hedon.config.field import value_at
 from hedon.config.problem import nearest
 from hedon.config.settings import Settings
@@ -33,8 +35,8 @@ SECOND_GENES = {
 SET_POINT = "set_point"
 EXTRA = "extra_"
 """What the columns of genes for rules begin with."""
-MAX_EXPONENT, MAX_WEIGHT = 2.0, 1e3
-"""Largest limit of genes that are exponents, and of others."""
+MAX_WEIGHT = 1e3
+"""Largest limit of genes that are no exponents."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +45,7 @@ class Gene:
 
     Attributes:
         name: Its column in the records.
-        role: "reward", "learning", "rule" or "neutral".
+        role: "reward", "learning", "setting", "rule" or "neutral".
         meaning: What it does, as a phrase.
         law: How founders draw it.
         place: The path of the law: in the config where it begins with "food.", else in the species.
@@ -234,7 +236,7 @@ def second_ending(reward: RewardConfig) -> str:
 def _most(family: str, role: str, name: str) -> float:
     """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
     exponent = family == "sinh" and role == "reward" and not name.startswith(SET_POINT)
-    exponent |= name.endswith(SCALE) or role == "learning" or name.removeprefix("g_") in FAMILY_GENES
+    exponent |= name.endswith(SCALE) or role in ("learning", "setting") or name.removeprefix("g_") in FAMILY_GENES
     return MAX_EXPONENT if exponent else MAX_WEIGHT
 
 
@@ -275,6 +277,9 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
         made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
     for name in genome.learning:
         made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], f"genome.learning.{name}")
+    for place in genome.set:
+        meaning = f"power of ten by which {place} differs"
+        made.add_gene(gene_column(place), "setting", meaning, f"genome.set.{place}")
     for name in genome.extra:
         made.add_gene(f"{EXTRA}{name}", "rule", f"{name}, for rules in Python", f"genome.extra.{name}")
     for i in range(genome.neutral_count):

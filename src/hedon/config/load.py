@@ -10,12 +10,11 @@ from typing import Any
 
 from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, diff, digest, dump_toml
-from hedon.config.field import leaves
+from hedon.config.field import leaves, value_at
 from hedon.config.layer import (
     Table,
-    has,
     settle_food,
-    settle_mutation,
+    settle_genes,
     settle_species,
     settle_stores,
     stack,
@@ -225,7 +224,7 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     merged = stack([*below, *above])
     problems = [*_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
     problems += settle_stores(merged)
-    settle_mutation(merged)
+    settle_genes(merged)
     if problems:
         raise ConfigError(origin, folded(problems, _species_of(merged)))
     config = build(Config, merged, origin)
@@ -254,10 +253,19 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
     problems = [
         Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
         for path, setting, _ in leaves(config)
-        if path not in PROVENANCE and not has(tables, path.split("."))
+        if path not in PROVENANCE and not _says(tables, path)
     ]
     if problems:
         raise ConfigError(origin, folded(problems, tuple(config.species)))
+
+
+def _says(tables: Table, path: str) -> bool:
+    """Whether tables have something at a path; names in it may have points."""
+    try:
+        value_at(tables, path)
+    except (ValueError, AttributeError):
+        return False
+    return True
 
 
 def _preset_layers(name: str) -> list[Table]:

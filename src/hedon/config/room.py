@@ -20,5 +20,7 @@ MAX_GENES = 64
 """Most genes of a genome."""
 MAX_FORCE = 1e6
 """Largest force of a motor, as for all numbers: squares of it are finite [mass·u/s²]."""
+MAX_DISTANCE = 1e6
+"""Largest standard deviation of a child's place around its parent [u]."""
 MAX_FACTOR = 1000.0
 """Largest factor of a schedule."""

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from hedon.config import Config
 from hedon.config.body import MotorConfig
+from hedon.config.expression import of_mean_founders
 from hedon.config.food import FoodConfig
 from hedon.config.layout import choose_species
 from hedon.config.schedule import ScheduleConfig
@@ -90,6 +91,7 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
         ArgumentError: There is no such species.
     """
     species = choose_species(species, config)
+    config = _of_mean_founders(config)
     own = config.species[species]
     capacity = own.population.capacity
     sizes = np.unique(np.linspace(1, max(capacity - 1, 1), _SIZES).astype(int)).tolist()
@@ -97,7 +99,8 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
     places = tuple(Room(n, float(success)) for n, success in zip(sizes, found, strict=True))
     levels = tuple(_level(own, energy, places) for energy in _energies(own))
     force, (need, supply, fed) = fresh_force(own.motor), _balance(config, species)
-    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, setting_warnings(config, species))
+    warnings = _warnings(config, species, levels, fed)
+    return Forecast(levels, (*places, Room(capacity, 0.0)), need, supply, fed, force, warnings)
 
 
 def setting_warnings(config: Config, species: str | None = None) -> tuple[str, ...]:
@@ -111,8 +114,14 @@ def setting_warnings(config: Config, species: str | None = None) -> tuple[str, .
         ArgumentError: There is no such species.
     """
     species = choose_species(species, config)
+    config = _of_mean_founders(config)
     levels = tuple(_level(config.species[species], energy, ()) for energy in _energies(config.species[species]))
     return _warnings(config, species, levels, _balance(config, species)[2])
+
+
+def _of_mean_founders(config: Config) -> Config:
+    """The config with the numbers that genes set as founders with mean genes have them."""
+    return replace(config, species={name: of_mean_founders(own) for name, own in config.species.items()})
 
 
 def fresh_force(motor: MotorConfig) -> float:
@@ -187,7 +196,7 @@ def _warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...], fed
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
     capacity, founders = own.population.capacity, own.population.initial_count
     floor = own.energy.at_zero == "floor"
-    found = list(_rule_warnings(own))
+    found = [*_gene_warnings(own), *_rule_warnings(own)]
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
     if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime):
@@ -313,6 +322,14 @@ def _beyond(config: Config, species: str) -> Iterator[str]:
     for name, store in own.stores.items():
         if store.motor_threshold:
             yield f"{name.capitalize()} weakens motors, so agents that hold it spend less; this is not forecast."
+
+
+def _gene_warnings(own: SpeciesConfig) -> Iterator[str]:
+    if own.genome.set:
+        yield (
+            f"Genes set {', '.join(own.genome.set)}: the numbers here are those of founders with mean genes; others "
+            "differ, and evolution moves them."
+        )
 
 
 def _rule_warnings(own: SpeciesConfig) -> Iterator[str]:

@@ -12,7 +12,7 @@ from hedon.config.type import types
 from hedon.experiment.world import World
 from hedon.record.checkpoint import Sampled
 from hedon.record.schema import CAUSES, Columns, columns_of
-from hedon.record.snapshot import Snapshot
+from hedon.record.snapshot import Snapshot, own_bodies
 
 Rows = dict[str, Any]
 
@@ -179,6 +179,7 @@ def snapshot(world: World) -> Snapshot:
         ray_spread=np.array([kind.sensor.ray_spread for kind in kinds]),
         mouth_spread=np.array([kind.sensor.mouth_spread for kind in kinds]),
         mouth_center=np.array([kind.sensor.mouth_center for kind in kinds]),
+        own=own_bodies(config, lives["species"], _gene_rows(config, lives)),
     )
 
 

@@ -85,14 +85,15 @@ def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray
     """
     own = snapshot.species[index]
     readings = snapshot.rays[index, : snapshot.ray_count[own]]
-    spread = np.radians(snapshot.ray_spread[own])
+    spread = np.radians(snapshot.of_agents("ray_spread")[index])
+    reach = snapshot.of_agents("ray_length")[index]
     angle = snapshot.angle[index] + np.linspace(-spread, spread, len(readings))
     direction = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
     best = readings.max(axis=1)
     kind = np.where(best >= 0, readings.argmax(axis=1), -1)
-    length = np.where(kind >= 0, (1 - best) * snapshot.ray_length[own], snapshot.ray_length[own])
+    length = np.where(kind >= 0, (1 - best) * reach, reach)
     center = np.array([snapshot.x[index], snapshot.y[index]])
-    start = center + snapshot.radius[own] * direction
+    start = center + snapshot.of_agents("radius")[index] * direction
     return np.stack([start, start + length[:, None] * direction], axis=1), kind
 
 
@@ -151,18 +152,17 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
         ValueError: Nobody lives.
     """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
-    discs = None
+    discs, radius, spread = None, snapshot.of_agents("radius"), snapshot.of_agents("mouth_spread")
     for species in np.unique(snapshot.species).tolist():
         mine = snapshot.species == species
         several = len(snapshot.species_names) > 1
         edge = {"edgecolors": species_color(species) if several else MUTED, "linewidths": 1.8 if several else 0.5}
-        discs = _discs(axes, centers[mine], float(snapshot.radius[species]), **edge)
+        discs = _discs(axes, centers[mine], radius[mine], **edge)
         if top is None:
             discs.set_facecolor(AGENT_COLOR)
         else:
             discs.set(array=snapshot.energy[mine], cmap=_ENERGY_COLORS, norm=Normalize(0, top))
-    radius, spread = snapshot.radius[snapshot.species], snapshot.mouth_spread[snapshot.species]
-    degree = np.degrees(snapshot.angle) + snapshot.mouth_center[snapshot.species] + 90.0  # Matplotlib counts from +x
+    degree = np.degrees(snapshot.angle) + snapshot.of_agents("mouth_center") + 90.0  # Matplotlib counts from +x
     mouths = [
         Wedge((x, y), r, a - half, a + half, width=1.9)
         for (x, y), a, r, half in zip(centers, degree, radius, spread, strict=True)
@@ -185,7 +185,7 @@ def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
         index: of the agent in the snapshot.
     """
     center = np.array([[snapshot.x[index], snapshot.y[index]]])
-    radius = float(snapshot.radius[snapshot.species[index]]) + 1.5
+    radius = float(snapshot.of_agents("radius")[index]) + 1.5
     _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)
 
 
@@ -223,8 +223,8 @@ def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
     return [*species, *(colors[kind] for kind in snapshot.food_kinds), *solid]
 
 
-def _discs(axes: Axes, centers: np.ndarray, radius: float, **look: object) -> EllipseCollection:
-    size = np.full(len(centers), 2 * radius)
+def _discs(axes: Axes, centers: np.ndarray, radius: float | np.ndarray, **look: object) -> EllipseCollection:
+    size = np.broadcast_to(2.0 * np.asarray(radius), len(centers))
     discs = EllipseCollection(
         size,
         size,

@@ -282,8 +282,9 @@ def _gene_meaning(name: str, columns: Columns) -> str:
         return "energy that is sought, as a share of the capacity"
     if name.startswith(EXTRA):
         return f"gene {name.removeprefix(EXTRA)}, which only rules in Python read"
-    if name.removeprefix("g_") in LEARNING_GENES | FAMILY_GENES:
-        return (LEARNING_GENES | FAMILY_GENES)[name.removeprefix("g_")]
+    if name.startswith("g_"):
+        number = name.removeprefix("g_")
+        return (LEARNING_GENES | FAMILY_GENES).get(number, f"power of ten by which {number} differs")
     sense, _, seen = what.partition("_")
     verb = {"see": "seeing ", "smell": "smelling "}.get(sense, "")
     return f"reward weight for {verb}{seen if verb else what}"

@@ -1,11 +1,16 @@
 """The state of one world at one moment, for pictures: `final.npz`, plain arrays without pickle."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hedon.config.config import Config
+from hedon.config.expression import expressed, gene_column
+from hedon.config.field import value_at
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import SNAPSHOT
@@ -30,7 +35,16 @@ _ARRAYS = {  # name: (type, shape with n agents, m foods, w walls, o obstacles, 
     "ray_spread": (np.float64, "s"),
     "mouth_spread": (np.float64, "s"),
     "mouth_center": (np.float64, "s"),
+    "own": (np.float64, "k5"),
 }
+OWN = {
+    "radius": "body.radius",
+    "ray_length": "sensor.ray_length",
+    "ray_spread": "sensor.ray_spread",
+    "mouth_spread": "sensor.mouth_spread",
+    "mouth_center": "sensor.mouth_center",
+}
+"""The columns of `Snapshot.own`, each with its path in a species."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +76,8 @@ class Snapshot:
         mouth_spread: half-width of the mouth [degree], shape (s,).
         mouth_center: direction of its middle, counter-clockwise of the heading [degree], shape (s,);
             empty for 0 of each.
+        own: these five but the number of rays of each agent where genes set some of them, by `OWN`, shape (n, 5); else
+            (0, 5).
     """
 
     world: int
@@ -88,11 +104,16 @@ class Snapshot:
     obstacles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), np.float32))
     food_radius: float = 4.0
     mouth_center: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    own: np.ndarray = field(default_factory=lambda: np.zeros((0, len(OWN))))
+
+    def of_agents(self, name: str) -> np.ndarray:
+        """One of `OWN` of each agent, shape (n,)."""
+        return self.own[:, list(OWN).index(name)] if len(self.own) else getattr(self, name)[self.species]
 
     def __post_init__(self) -> None:
         if not len(self.mouth_center):  # a file of an earlier version
             object.__setattr__(self, "mouth_center", np.zeros(len(self.mouth_spread)))
-        sizes: dict[str, int] = {"4": 4, "2": 2}
+        sizes: dict[str, int] = {"4": 4, "2": 2, "5": len(OWN)}
         for name, (dtype, letters) in _ARRAYS.items():
             array = np.asarray(getattr(self, name), dtype)
             if array.ndim != len(letters) or any(
@@ -100,6 +121,29 @@ class Snapshot:
             ):
                 raise RecordError(f"snapshot: {name} has shape {array.shape}, which does not fit the others")
             object.__setattr__(self, name, array)
+        if len(self.own) not in (0, len(self.x)):
+            raise RecordError(f"snapshot: own has {len(self.own)} rows, but there are {len(self.x)} agents")
+
+
+def own_bodies(
+    config: Config, species: NDArray[np.int32], genes: Mapping[str, NDArray[np.float32]]
+) -> NDArray[np.float64]:
+    """What pictures show of bodies, where genes set some of it: `Snapshot.own`.
+
+    Args:
+        config: of the world.
+        species: of each agent, an index, shape (n,).
+        genes: of each agent by column, shape (n,).
+    """
+    if not any(set(OWN.values()) & own.genome.set.keys() for own in config.species.values()):
+        return np.zeros((0, len(OWN)))
+    found = np.empty((len(species), len(OWN)))
+    for number, own in enumerate(config.species.values()):
+        mine = species == number
+        for i, path in enumerate(OWN.values()):
+            known = path in own.genome.set
+            found[mine, i] = expressed(own, path, genes[gene_column(path)][mine]) if known else value_at(own, path)
+    return found
 
 
 def save_snapshot(folder: Path, snapshot: Snapshot) -> None:

@@ -2,16 +2,19 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from hedon.config.arena import walls
 from hedon.config.config import Config
+from hedon.config.expression import gene_column
 from hedon.config.load import parse_config
 from hedon.record.reader import Run, open_run
-from hedon.record.snapshot import Snapshot
+from hedon.record.snapshot import Snapshot, own_bodies
 from hedon.video.error import VideoError
 
 EVEN_STEPS = 128
@@ -85,12 +88,26 @@ class Footage:
         if len(kept):
             yield self._snapshot(kept)
 
+    @cached_property
+    def _genomes(self) -> pl.DataFrame:
+        """The genes of all agents that set numbers, by column."""
+        names = {gene_column(path) for own in self.config.species.values() for path in own.genome.set}
+        return self.run.agents().filter(pl.col("world") == self.world).select("agent_id", *names)
+
+    def _genes(self, ids: pl.Series) -> dict[str, NDArray[np.float32]]:
+        """The genes of agents that set numbers, by column; NaN where a species lacks one."""
+        if not any(own.genome.set for own in self.config.species.values()):
+            return {}
+        rows = pl.DataFrame({"agent_id": ids}).join(self._genomes, on="agent_id", how="left", maintain_order="left")
+        return {name: rows[name].to_numpy() for name in rows.columns if name != "agent_id"}
+
     def _snapshot(self, rows: pl.DataFrame) -> Snapshot:
         config, manifest = self.config, self.run.manifest
         species, foods = list(config.species), list(config.food)
         agents = rows.filter(pl.col("id").is_not_null()).sort("id")
         food = rows.filter(pl.col("id").is_null())
         bodies = list(config.species.values())
+        of = np.array([species.index(kind) for kind in agents["kind"]], np.int32)
         obstacles = manifest.obstacle_places[self.world] if manifest.obstacle_places else np.zeros((0, 3, 2))
         return Snapshot(
             world=self.world,
@@ -99,7 +116,8 @@ class Footage:
             agent_id=agents["id"].to_numpy(),
             **{name: agents[name].to_numpy() for name in ("x", "y", "angle", "energy")},
             rays=np.zeros((len(agents), 0, 0)),
-            species=np.array([species.index(kind) for kind in agents["kind"]], np.int32),
+            species=of,
+            own=own_bodies(config, of, self._genes(agents["id"])),
             food_kind=np.array([foods.index(kind) for kind in food["kind"]], np.int32),
             food_x=food["x"].to_numpy(),
             food_y=food["y"].to_numpy(),

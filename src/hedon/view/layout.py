@@ -9,6 +9,7 @@ from typing import Any
 from hedon.config.arena import walls
 from hedon.config.color import OBSTACLE_COLOR, meal_colors, species_color, weight_colors
 from hedon.config.config import Config
+from hedon.config.expression import gene_column, kind_of, limits_of
 from hedon.config.layout import Gene, SpeciesLayout, gene_columns, layouts
 from hedon.config.species import SpeciesConfig
 from hedon.config.title import weight_title
@@ -22,10 +23,11 @@ def describe(config: Config) -> dict[str, Any]:
         `species`: of each its name, color, capacity, radius [u], mouth_degrees (on each side of its middle),
         mouth_center_degrees, rays (count, spread_degrees on each side of the heading, length [u]), sees (indices into
         `types`, by channel), noses (count, degrees between the heading and each of two, decay [1/u] of smell with
-        distance), smells (indices into `types`, by channel), genes (indices into `genes`, in genome order), starts
-        (mean of the founders, by gene), drifts (whether its neutral markers mutate like the gene, so that they show its
-        drift), reward (see `_reward`), stores (name and capacity of each, energy first) and observed (name, unit, scale
-        and meaning of what it observes beside rays and touch);
+        distance), smells (indices into `types`, by channel), sets (numbers that genes multiply by 10^gene: place, the
+        path of the setting; gene, an index into `genes`; low and high, its limits), genes (indices into `genes`, in
+        genome order), starts (mean of the founders, by gene), drifts (whether its neutral markers mutate like the gene,
+        so that they show its drift), reward (see `_reward`), stores (name and capacity of each, energy first) and
+        observed (name, unit, scale and meaning of what it observes beside rays and touch);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
         `genes`: of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none), title in
@@ -87,6 +89,10 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
             "decay": species.sensor.smell_decay,
         },
         "smells": [every.index(smelled) for smelled in layout.smells],
+        "sets": [
+            {"place": path, "gene": columns.index(gene_column(path)), "low": low, "high": high}
+            for path, (low, high) in ((path, limits_of(kind_of(path))) for path in species.genome.set)
+        ],
         "genes": [columns.index(gene) for gene in layout.gene_names],
         "starts": [gene.law.initial_mean for gene in layout.genes],
         "drifts": [gene.mutation == neutral for gene in layout.genes],

@@ -122,6 +122,7 @@ RICH = (
     "genome.learning.gamma={}",
     "genome.family.threshold={}",
     "genome.extra.kindness={}",
+    "genome.set.store.water.basic_cost={}",
     "neighbor.near={}",
     'reward.rule="my.py:pay"',
     'genome.mutation.w_action={law="normal"}',
@@ -135,7 +136,7 @@ RICH = (
     "reward.pay.moved={}",
     "sensor.observes.age=100",
     "reward.drive_reduction_coef=1",
-    "store.water.capacity=3",
+    "store.water={capacity=3, basic_cost=0.1}",
     "food.normal.gives.water=1",
     "food.normal.needs.water=1",
     "genome.action={initial_mean=1.0, initial_sd=0.2}",
@@ -151,7 +152,10 @@ def rich() -> Config:
 def put(section: Any, path: list[str], value: Any) -> Any:
     """A section with another value at a path below it."""
     name, *below = path
-    inner = section[name] if isinstance(section, dict) else getattr(section, name)
+    if isinstance(section, dict):  # whose names may have points
+        name = next((each for each in section if path[: each.count(".") + 1] == each.split(".")), name)
+        below = path[name.count(".") + 1 :]
+    inner = section.get(name) if isinstance(section, dict) else getattr(section, name)
     new = put(inner, below, value) if below else value
     return section | {name: new} if isinstance(section, dict) else dataclasses.replace(section, **{name: new})
 

@@ -34,6 +34,7 @@ CONFIG = load_config(
         "genome.learning.gamma.initial_sd=0.1",
         'reward.rule="my.py:pay"',
         "genome.extra.kindness.initial_sd=0.2",
+        "genome.set.sensor.ray_length.initial_sd=0.2",
         "neighbor.near.range=30",
         "genome.mutation.w_action.scale=0.1",
     ],
@@ -61,7 +62,9 @@ OTHER: dict[str, Any] = {
 def changed(config: Any, path: str, value: Any) -> Any:
     """A config, or a part of one, with one setting replaced, unchecked."""
     name, _, rest = path.partition(".")
-    if isinstance(config, dict):
+    if isinstance(config, dict):  # whose names may have points
+        name = max((each for each in config if f"{path}.".startswith(f"{each}.")), key=len)
+        rest = path[len(name) + 1 :]
         return {**config, name: changed(config[name], rest, value) if rest else value}
     return replace(config, **{name: changed(getattr(config, name), rest, value) if rest else value})
 

@@ -22,6 +22,7 @@ schedule.scale.points = [[0, 1.0]]
 learning.gamma = {}
 family.threshold = {}
 extra.kindness = {}
+set.sensor.ray_length = {}
 mutation.w_action = {}
 [reward]
 family = "above"
@@ -55,6 +56,7 @@ KINDS = {
     "hazard.schedule.<kind>": "hazard.schedule.scale",
     "genome.learning.<kind>": "genome.learning.gamma",
     "genome.family.<kind>": "genome.family.threshold",
+    "genome.set.<kind>": "genome.set.sensor.ray_length",
     "genome.extra.<kind>": "genome.extra.kindness",
     "genome.mutation.<kind>": "genome.mutation.w_action",
     "reward.see.<kind>": "reward.see.fungus",
