@@ -4,6 +4,7 @@ Zig's Clang, a pinned package, compiles for all of them; g++ for ARM is there as
 of ARM, Wine those of Windows; what is for macOS can only be compiled.
 """
 
+import os
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from project_files import ROOT
 from release.wheel import zig
 
 NATIVE = ROOT / "tests" / "native"
-OPTIONS = ("-std=c++20", "-O2", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", "-fno-math-errno", "-Iengine")
+OPTIONS = ("-std=c++20", "-O3", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", "-fno-math-errno", "-Iengine")
 LANES = {
     "avx512": ("-mavx512f", "-mavx512dq", "-mavx512bw", "-mavx512vl", "-mfma"),
     "avx2": ("-mavx2", "-mfma"),
@@ -121,7 +122,9 @@ def run(machine: Machine | None, program: Path, *arguments: str) -> list[str]:
 
 
 def _call(*command: str) -> str:
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    # Of Wine: its own folder, made at its first call, and no words beside those of the program.
+    environment = os.environ | {"WINEPREFIX": str(ROOT / "build" / "machine" / "wine"), "WINEDEBUG": "-all"}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout[-2000:]}{done.stderr[-4000:]}"
     return done.stdout
 

@@ -1,6 +1,10 @@
 /// Chooses among the kernels that this processor can run.
 #include "kernel/kernel.h"
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 #include <cstring>
 
 namespace hedon {
@@ -17,6 +21,27 @@ namespace {
 
 constexpr int MAX_KERNELS = 3;
 
+#if defined(__x86_64__)
+/// What the processor can compute with, if the system keeps its registers, too. Not `__builtin_cpu_supports`: not every
+/// compiler's library has what that calls. Source: Intel's manual, volume 1, sections 14.3 and 15.2.
+struct Processor {
+  bool avx2 = false;    ///< with fused multiply-add
+  bool avx512 = false;  ///< F, DQ, BW, VL
+
+  Processor() {
+    constexpr unsigned FMA = 1u << 12, OSXSAVE = 1u << 27, AVX2 = 1u << 5;
+    constexpr unsigned AVX512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
+    constexpr unsigned YMM = 0x06, ZMM = 0xe6;  // bits of the registers that the system keeps
+    unsigned a, b, c, d, kept, upper;
+    if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & OSXSAVE) == 0 || (c & FMA) == 0) return;
+    asm volatile("xgetbv" : "=a"(kept), "=d"(upper) : "c"(0));
+    if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0) return;
+    avx2 = (kept & YMM) == YMM && (b & AVX2) != 0;
+    avx512 = avx2 && (kept & ZMM) == ZMM && (b & AVX512) == AVX512;
+  }
+};
+#endif
+
 /// The kernels that this processor can run, best first, and their names; both end with null.
 struct KernelList {
   const Kernel* kernels[MAX_KERNELS + 1] = {};
@@ -31,13 +56,9 @@ struct KernelList {
 
   KernelList() {
 #if defined(__x86_64__)
-    __builtin_cpu_init();
-    const bool has_fma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (has_fma && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")) {
-      add(AVX512_KERNEL);
-    }
-    if (has_fma) add(AVX2_KERNEL);
+    const Processor processor;
+    if (processor.avx512) add(AVX512_KERNEL);
+    if (processor.avx2) add(AVX2_KERNEL);
 #elif defined(__aarch64__)
     add(NEON_KERNEL);
 #endif
