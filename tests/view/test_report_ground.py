@@ -28,5 +28,6 @@ def test_the_report_has_the_ground_of_the_screen(ground, report, browser):
     found = Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"]
     assert [node["target"] for each in found for node in each["nodes"]] == []
     # Figures have dark letters, so they keep their white ground.
-    ground = page.evaluate("getComputedStyle(document.querySelector('figure img')).backgroundColor")
-    assert ground == "rgb(255, 255, 255)"
+    assert (
+        page.evaluate("getComputedStyle(document.querySelector('figure img')).backgroundColor") == "rgb(255, 255, 255)"
+    )
