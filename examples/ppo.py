@@ -1,7 +1,8 @@
-"""Trains one policy for all agents by PPO of Stable-Baselines3, and compares it with random actions.
+"""Trains one policy for all agents by PPO of Stable-Baselines3, compares it with random actions, and records its world.
 
-    pip install stable-baselines3
-    uv run python examples/ppo.py [--seeds 5] [--steps 120000]
+    pip install "hedon[env]" stable-baselines3
+    python examples/ppo.py [--seeds 5] [--steps 120000] [--out runs/ppo]
+    hedon view runs/ppo
 
 All agents of all worlds share one network: to the library, each slot is an environment of its own. It sees what the
 engine's networks see, and is paid 1 for each food. Torch for the processor only is 200 MB (`--index-url
@@ -9,24 +10,21 @@ https://download.pytorch.org/whl/cpu`); as PyPI gives it, with libraries for gra
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from gymnasium.spaces import Box
 from stable_baselines3 import PPO
-from stable_baselines3.common.vec_env import VecEnv
 
 import hedon
-import hedon.env
+from hedon.env import SlotVecEnv, VectorEnv
 
 WORLDS = 8
 STEPS = 300
 HOLD = 4
 """Steps for which an action is held: food is rare, so each decision should count."""
-LIMIT = 4.0
-"""Largest action before the sigmoid, which is 0.98 there."""
 UNSEEN = 1_000_000
 """Seeds of worlds from here on are for tests only."""
 SETTINGS = (
@@ -34,89 +32,32 @@ SETTINGS = (
     *("food.normal.gene.initial_mean=1", "food.normal.gene.initial_sd=0", "reward.action_coef=0"),
 )
 """Nobody is born or dies, every slot has an agent, and the reward is what it eats."""
+Policy = Callable[[Any], Any]
+"""Actions (agents, 2) from observations (agents, entries)."""
 
 
-class Foragers(VecEnv):
-    """All agents of some worlds, each as an environment of Stable-Baselines3; an episode is `STEPS` steps."""
-
-    def __init__(self, first_seed: int, worlds: int = WORLDS) -> None:
-        config = hedon.load_config("baseline", overrides=SETTINGS)
-        self.worlds = hedon.env.vector_env(config, range(first_seed, first_seed + worlds), threads=1)
-        self.agents = self.worlds.groups["agent"]
-        self.next_seed, self.step_count = first_seed, 0
-        slots = self.agents.ids.size
-        entries = len(self.agents.columns)
-        super().__init__(slots, Box(-np.inf, np.inf, (entries,)), Box(-LIMIT, LIMIT, (2,)))
-
-    def reset(self) -> Any:
-        """Begins in worlds that were not seen yet: (agents, entries)."""
-        count = len(self.worlds.simulation.seeds)
-        self.worlds.reset(range(self.next_seed, self.next_seed + count))
-        self.next_seed, self.step_count = self.next_seed + count, 0
-        return self._seen()
-
-    def step_async(self, actions: Any) -> None:
-        """Tells every agent what to do: (agents, 2)."""
-        self.agents.actions[...] = actions.reshape(self.agents.actions.shape)
-
-    def step_wait(self) -> Any:
-        """Holds the actions for some steps; all episodes end at once."""
-        rewards = np.zeros(self.num_envs, np.float32)
-        for _ in range(HOLD):
-            self.worlds.step()
-            rewards += self.agents.rewards.ravel()
-        self.step_count += HOLD
-        over = self.step_count >= STEPS
-        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        seen = self._seen()
-        if over:
-            infos = [{"terminal_observation": row, "TimeLimit.truncated": True} for row in seen]
-            seen = self.reset()
-        return seen, rewards, np.full(self.num_envs, over), infos
-
-    def _seen(self) -> Any:
-        return self.agents.observations.reshape(self.num_envs, -1).copy()
-
-    def close(self) -> None:
-        """Has nothing to close."""
-
-    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """The same for all agents."""
-        return [getattr(self, attr_name)] * self.num_envs
-
-    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """No agent has attributes of its own."""
-        raise NotImplementedError("the agents share what they are")
-
-    def env_method(self, method_name: str, *arguments: Any, indices: Any = None, **options: Any) -> list[Any]:
-        """No agent has methods of its own."""
-        raise NotImplementedError("the agents share what they do")
-
-    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        """None is."""
-        return [False] * self.num_envs
+def make(worlds: int, seed: int, **options: Any) -> VectorEnv:
+    """Worlds in which agents forage for some hundred steps, and then in the next worlds."""
+    config = hedon.load_config("baseline", overrides=SETTINGS)
+    return hedon.make(config, worlds, seed, repeat=HOLD, threads=1, **options)
 
 
-def foods(choose: Any, worlds: int = 16) -> float:
-    """Foods per agent in an episode of worlds that no training saw; `choose(observations)` gives the actions."""
-    test = Foragers(UNSEEN, worlds)
-    seen, eaten = test.reset(), 0.0
+def forage(worlds: VectorEnv, choose: Policy) -> float:
+    """Foods per agent in an episode."""
+    eaten = 0.0
     for _ in range(STEPS // HOLD):
-        test.step_async(choose(seen))
-        for _ in range(HOLD):
-            test.worlds.step()
-            eaten += float(test.agents.rewards.sum())
-        seen = test._seen()
-    return eaten / test.num_envs
+        seen = worlds.observations.reshape(-1, worlds.observations.shape[-1])
+        worlds.step(choose(seen))
+        eaten += float(worlds.rewards.sum())
+    return eaten / worlds.alive.sum()
 
 
 def train(seed: int, steps: int) -> PPO:
     """A policy that has learned for a number of decisions of agents."""
-    decisions = STEPS // HOLD
     model = PPO(
         "MlpPolicy",
-        Foragers(10_000 * seed),
-        n_steps=decisions,
+        SlotVecEnv(make(WORLDS, 10_000 * seed, max_steps=STEPS)),
+        n_steps=STEPS // HOLD,
         batch_size=1500,
         n_epochs=4,
         gamma=0.95,
@@ -127,16 +68,24 @@ def train(seed: int, steps: int) -> PPO:
     return model.learn(steps)
 
 
-def compare(seeds: Sequence[int], steps: int) -> tuple[list[float], float]:
-    """Foods per agent with the policy of each seed, and with random actions."""
+def policy_of(model: PPO) -> Policy:
+    """What a trained model does, with the noise with which it learned."""
+    return lambda seen: model.predict(seen)[0]
+
+
+def compare(models: Sequence[PPO], worlds: int = 16) -> tuple[list[float], float]:
+    """Foods per agent in worlds that no training saw: with the policy of each model, and with random actions."""
     rng = np.random.default_rng(1)
-    random = foods(lambda seen: rng.standard_normal((len(seen), 2), np.float32))
-    policies = [train(seed, steps) for seed in seeds]
-    return [foods(partial(_act, policy)) for policy in policies], random
+    random = forage(make(worlds, UNSEEN), lambda seen: rng.uniform(-1, 1, (len(seen), 2)).astype(np.float32))
+    return [forage(make(worlds, UNSEEN), policy_of(model)) for model in models], random
 
 
-def _act(policy: PPO, seen: Any) -> Any:
-    return policy.predict(seen)[0]
+def record(model: PPO, out: Path, steps: int = STEPS) -> None:
+    """Writes what the agents of one world do, as `hedon run` writes a run: `hedon view` and `report` read it."""
+    config = hedon.load_config("baseline", overrides=SETTINGS)
+    with hedon.make(config, seed=UNSEEN, repeat=HOLD, record=out, frames=HOLD) as world:
+        for _ in range(steps // HOLD):
+            world.step(policy_of(model)(world.observations[0])[None])
 
 
 def main() -> None:
@@ -144,11 +93,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--steps", type=int, default=120_000)
+    parser.add_argument("--out", type=Path, help="folder for the record of a world of the first policy")
     given = parser.parse_args()
-    trained, random = compare(range(1, given.seeds + 1), given.steps)
+    models = list(map(partial(train, steps=given.steps), range(1, given.seeds + 1)))
+    trained, random = compare(models)
     factors = np.array(trained) / random
     print("foods per agent: " + ", ".join(f"{each:.2f}" for each in trained) + f"; random {random:.2f}")
     print(f"trained over random: {factors.mean():.2f}, from {factors.min():.2f} to {factors.max():.2f} by seed")
+    if given.out is not None:
+        record(models[0], given.out)
+        print(f"look at it: hedon view {given.out}")
 
 
 if __name__ == "__main__":

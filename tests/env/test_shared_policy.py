@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from hedon.check import check_run
+from hedon.view.index import RunIndex
+
 pytestmark = pytest.mark.long
 
 
-def test_a_shared_policy_of_a_library_forages_better_than_chance():
+def test_a_shared_policy_of_a_library_forages_better_than_chance_and_can_be_looked_at(tmp_path):
     reason = "needs 5 GB that the project does not install: pip install stable-baselines3"
     pytest.importorskip("stable_baselines3", reason=reason)
     spec = spec_from_file_location("ppo", Path(__file__).parents[2] / "examples" / "ppo.py")
@@ -16,5 +19,9 @@ def test_a_shared_policy_of_a_library_forages_better_than_chance():
     assert spec.loader is not None
     ppo = module_from_spec(spec)
     spec.loader.exec_module(ppo)
-    (trained,), random = ppo.compare([1], steps=120_000)
+    model = ppo.train(1, 120_000)
+    (trained,), random = ppo.compare([model])
     assert trained > 1.4 * random > 0
+    ppo.record(model, tmp_path / "run")
+    assert not check_run(tmp_path / "run").findings
+    assert RunIndex(tmp_path / "run").describe()["steps"] == [ppo.STEPS]

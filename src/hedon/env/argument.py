@@ -3,12 +3,18 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hedon.config.config import Config
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
 from hedon.experiment.simulation import MAX_WORLD_SEED
 from hedon.text import brief
+
+RESET_MASK = "reset_mask"
+"""The option of `reset` that Gymnasium's vector environments have too."""
 
 
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
@@ -91,3 +97,23 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
     near = nearest(value, known) if isinstance(value, str) else None
     hint = f"; did you mean {near}?" if near else ""
     raise ArgumentError(f"{name} = {brief(repr(value))}: must be {' or '.join(known)}{hint}")
+
+
+def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
+    """The worlds that begin again, (worlds,).
+
+    Args:
+        options: Of `reset`; None for all worlds.
+        worlds: How many there are.
+
+    Raises:
+        ArgumentError: There is no such option, or it is no such mask.
+    """
+    given = dict(options or {})
+    mask = np.asarray(given.pop(RESET_MASK, np.ones(worlds, np.bool_)))
+    if given:
+        unknown = next(iter(given))
+        raise ArgumentError(f"options: there is no {brief(str(unknown))!r}; there is {RESET_MASK!r}")
+    if mask.shape != (worlds,) or mask.dtype != np.bool_ or not mask.any():
+        raise ArgumentError(f"options[{RESET_MASK!r}]: must be ({worlds},) bool, true for at least one world")
+    return mask

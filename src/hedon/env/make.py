@@ -20,6 +20,8 @@ def make(
     render_mode: str | None = None,
     threads: int = 0,
     backend: str = "",
+    record: Path | str | None = None,
+    frames: int = 0,
 ) -> VectorEnv:
     """Makes worlds that a program drives, as arrays: how other programs train agents in hedon.
 
@@ -39,12 +41,18 @@ def make(
         render_mode: `rgb_array` to have pictures by `render`.
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
+        record: Folder for what `hedon run` would write, which reports, analyses and the page then read; None for none.
+            Recorded worlds cannot be begun again. Call `close` at the end, or use `with`.
+        frames: Steps of the worlds between two frames of the records, for the page; 0 for none.
 
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
         EngineError: As in `hedon.Simulation`.
+        RecordError: The folder holds a run already, is in use, or cannot be written.
     """
     if isinstance(config, str | Path):
         config = load_config(config)
-    return VectorEnv(config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend)
+    return VectorEnv(
+        config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend, record, frames
+    )

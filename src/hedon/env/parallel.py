@@ -28,8 +28,8 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     agents: nobody knows who will be born.
 
     Libraries that want such a list, as SuperSuit does, get slots for agents: `agent_slot_3` stands for all who live in
-    a slot, is there from the beginning to the end, and observes zeros and earns 0 while nobody lives there. Its info
-    says whether someone lives there now (`alive`), and whether someone has died (`died`) or was born (`born`) there in the
+    a slot, is there from the beginning to the end, and observes zeros and earns 0 while it is empty. Its info says
+    whether someone lives there now (`alive`), and whether someone has died (`died`) or was born (`born`) there in the
     step. All terminate when nobody is left.
 
     Args:

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 
+from hedon.env.argument import RESET_MASK
 from hedon.env.group import Group
-from hedon.env.vector import RESET_MASK, VectorEnv
+from hedon.env.vector import VectorEnv
 from hedon.error import ArgumentError
 
 
@@ -37,7 +38,7 @@ class SlotVecEnv(VecEnv):
 
     def reset(self) -> Any:
         """Begins all worlds: (slots, entries)."""
-        seed = next((each for each in self._seeds if each is not None), None)
+        seed = next((each for each in self._seeds if each is not None), None)  # of the first world
         self.worlds.reset(seed=seed)
         self._reset_seeds()
         return self._table(self.group.observations)

@@ -5,6 +5,7 @@ The engine reads and writes the arrays that the groups of agents hold: a step ma
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -12,18 +13,18 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
-from hedon.env.argument import chosen, driven, with_callers, world_seeds
+from hedon.env.argument import chosen, driven, reset_mask, with_callers, world_seeds
 from hedon.env.group import FORMS, Form, Group
 from hedon.env.keep import arrays_in, text_of
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
+from hedon.experiment.rule import pinned, rules
 from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
 RENDER_MODES = ("rgb_array",)
-RESET_MASK = "reset_mask"
-"""The option of `reset` that Gymnasium's vector environments have too."""
+RECORDED = "worlds that are recorded only go on: make others, with another folder or without records"
 
 
 class VectorEnv:
@@ -44,6 +45,8 @@ class VectorEnv:
         render_mode: What `render` gives.
         threads: As in `hedon.Simulation`.
         backend: As in `hedon.Simulation`.
+        record: Folder for the records of the worlds.
+        frames: Steps of the worlds between two frames of the records.
 
     Attributes:
         config: The config, with the policy `external` for the species that are driven.
@@ -77,6 +80,8 @@ class VectorEnv:
         render_mode: str | None = None,
         threads: int = 0,
         backend: str = "",
+        record: Path | str | None = None,
+        frames: int = 0,
     ) -> None:
         names = driven(config, species)
         seeds = world_seeds(seed, integer("worlds", worlds, 1, MAX_WORLDS))
@@ -84,9 +89,20 @@ class VectorEnv:
         self.max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
         self.render_mode = chosen("render_mode", render_mode, RENDER_MODES, empty=True)
         form = chosen("actions", actions, FORMS)
-        simulation = Simulation(with_callers(config, names), seeds, threads, backend)
+        config = with_callers(config, names)
+        found = rules(config) if record is not None else ()
+        if record is None and frames:
+            raise ArgumentError(
+                f"frames = {brief(repr(frames))}: are of records: give record, the folder for them, too"
+            )
+        texts = tuple(rule.source for rule in found)
+        simulation = Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)
         self._made(simulation, names, form)
         self._open(np.ones(len(seeds), np.bool_))
+        if record is not None:
+            from hedon.env.record import Record  # loads what writes tables
+
+            self._record = Record(simulation, record, frames)
 
     def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
         self.simulation, self.config = simulation, simulation.config
@@ -108,6 +124,7 @@ class VectorEnv:
         self._next_seed = (max(simulation.seeds) + 1) % (MAX_WORLD_SEED + 1)
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
         self._film: Any = None
+        self._record: Any = None  # also of a copy: it has no records
 
     @property
     def observations(self) -> Any:
@@ -169,7 +186,9 @@ class VectorEnv:
             EngineError: There is no room for the initial agents or foods of a world.
         """
         count = len(self.simulation.worlds)
-        mask = self._mask(options)
+        mask = reset_mask(options, count)
+        if self._record is not None and not (self._fresh and seed is None and mask.all()):
+            raise ArgumentError(f"reset: {RECORDED}")
         if seed is not None:
             seeds = world_seeds(seed, count)
             self._next_seed = (max(seeds) + 1) % (MAX_WORLD_SEED + 1)
@@ -248,7 +267,19 @@ class VectorEnv:
         return self._film.picture(self.simulation.worlds[index])
 
     def close(self) -> None:
-        """Has nothing to close."""
+        """Ends the records, if there are some; as a context manager, an environment does so at its end.
+
+        Raises:
+            RecordError: They cannot be written.
+        """
+        if self._record is not None:
+            self._record.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        self.close()
 
     def save(self) -> bytes:
         """All worlds and all arrays as they are now, as `hedon.Simulation.save` has it.
@@ -265,8 +296,11 @@ class VectorEnv:
             saved: From an environment, not from a `hedon.Simulation`, which knows nothing of actions and rewards.
 
         Raises:
-            ArgumentError: It is something else, or is damaged. Everything then stays as it is.
+            ArgumentError: It is something else, or is damaged, or the worlds are recorded. Everything then stays as it
+                is.
         """
+        if self._record is not None:
+            raise ArgumentError(f"restore: {RECORDED}")
         found = arrays_in(self.simulation._unpack(saved), self._about(), self._arrays())
         self.simulation._restore(saved)
         for name, group in self.groups.items():
@@ -275,7 +309,7 @@ class VectorEnv:
         (self._next_seed,), (self._fresh,) = found["", "next_seed"].tolist(), found["", "fresh"].tolist()
 
     def clone(self) -> Self:
-        """A copy with worlds and arrays of its own, which goes on as this one does."""
+        """A copy with worlds and arrays of its own, which goes on as this one does; it is not recorded."""
         made = type(self).__new__(type(self))
         made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
         return made
@@ -346,7 +380,10 @@ class VectorEnv:
 
     def _advance(self) -> None:
         """One step of the worlds."""
-        self.simulation.run(1)
+        if self._record is None:
+            self.simulation.run(1)
+        else:
+            self._record.advance()
 
     def _judge(self, steps: int) -> None:
         """Says whose time is over."""
@@ -361,14 +398,3 @@ class VectorEnv:
         for group in self.groups.values():
             group._open(self.simulation.engine, worlds)
         self._steps[worlds] = 0
-
-    def _mask(self, options: Any) -> NDArray[np.bool_]:
-        count = len(self.simulation.worlds)
-        given = dict(options or {})
-        mask = np.asarray(given.pop(RESET_MASK, np.ones(count, np.bool_)))
-        if given:
-            unknown = next(iter(given))
-            raise ArgumentError(f"options: there is no {brief(str(unknown))!r}; there is {RESET_MASK!r}")
-        if mask.shape != (count,) or mask.dtype != np.bool_ or not mask.any():
-            raise ArgumentError(f"options[{RESET_MASK!r}]: must be ({count},) bool, true for at least one world")
-        return mask

@@ -137,7 +137,7 @@ def _without_caller(config: Config) -> Config:
             place = f"species.{name}.learning.policy" if len(config.species) > 1 else "learning.policy"
             raise ArgumentError(
                 f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
-                'hedon.env (docs/guide/environment.md), or choose "ppo", "fixed", "random" or "idle"'
+                'hedon.make (docs/guide/environment.md), or choose "ppo", "fixed", "random" or "idle"'
             )
     return config
 

@@ -33,6 +33,9 @@ def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...
         return (), f"not computed again: the run's status is {run.manifest.status}, so there is no end to compare with"
     if not kept or kept[0] >= steps:
         return (), "not computed again: there is no checkpoint before the end"
+    config = parse_config(run.config_text, str(run.path))
+    if any(species.learning.policy == "external" for species in config.species.values()):
+        return (), "not computed again: another program told its agents what to do"
     start = kept[0]
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:
         try:

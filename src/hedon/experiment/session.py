@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import asdict, replace
+from typing import Protocol
 
 from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, digest
@@ -17,7 +18,31 @@ from hedon.record.schema import columns_of
 from hedon.record.writer import Writer
 
 
-def first_manifest(plan: RunPlan, simulation: Simulation, from_step: int = 0) -> Manifest:
+class Planned(Protocol):
+    """What a manifest says of a plan: a `RunPlan`, or what another program drives."""
+
+    @property
+    def config(self) -> Config:
+        """Of the worlds."""
+        ...
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """One per world."""
+        ...
+
+    @property
+    def steps(self) -> int:
+        """Total steps of each world."""
+        ...
+
+    @property
+    def frames(self) -> int:
+        """Steps between two frames; 0 for none."""
+        ...
+
+
+def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0) -> Manifest:
     """The manifest of a run that begins now, at step 0 or, for a branch, at a later one.
 
     Args:

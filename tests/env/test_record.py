@@ -1,0 +1,113 @@
+"""Records of driven worlds: the folder of a run, which everything that reads runs takes."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+from command import hedon
+from worlds import QUICK
+
+from hedon import ArgumentError, RecordError, load_config, make, open_run, resume
+from hedon.check import check_run
+from hedon.experiment.replay import replay_run
+from hedon.report import write_report
+from hedon.report.analysis import analyze, write_analysis
+from hedon.view.index import RunIndex
+
+LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=30", "population.initial_count=20")
+CONFIG = load_config("baseline", overrides=LIVELY)
+PAIR = load_config("predator", overrides=QUICK)
+
+
+def drive(out: Path, config: Any, steps: int, **options: Any) -> list[str]:
+    rng = np.random.default_rng(0)
+    with make(config, 2, seed=4, threads=1, record=out, frames=8, **options) as worlds:
+        worlds.reset()
+        for _ in range(steps):
+            for group in worlds.groups.values():
+                group.actions[...] = rng.uniform(-1, 1, group.actions.shape)
+            worlds.step(worlds.actions)
+        return [world.digest() for world in worlds.simulation.worlds]
+
+
+@pytest.mark.parametrize(("config", "species", "repeat"), [(CONFIG, None, 1), (CONFIG, None, 3), (PAIR, "predator", 2)])
+def test_a_folder_is_that_of_a_run(config, species, repeat, tmp_path):
+    out = tmp_path / "run"
+    digests = drive(out, config, 200 // repeat, species=species, repeat=repeat)
+    run = open_run(out)
+    steps = 200 // repeat * repeat
+    assert run.manifest.status == "finished"
+    assert (run.manifest.steps_done, run.manifest.steps_asked) == ((steps, steps), steps)
+    assert list(run.manifest.world_digests) == digests
+    found = check_run(out).findings
+    assert not found, [f"{each.where}: {each.what}" for each in found]
+    assert replay_run(out) == ((), "not computed again: another program told its agents what to do")
+    frames = run.frames().collect()
+    assert sorted(set(frames["step"])) == list(range(8, steps + 1, 8))
+    agents = run.agents()
+    assert agents.filter(pl.col("death_step").is_not_null()).height > 3
+    rows = run.population()
+    assert sorted(set(rows["step"])) == [64, 128, 192, *([steps] if steps > 192 else [])]
+    assert rows["births"].sum() == agents.filter(pl.col("birth_step") > 0).height
+    write_analysis(analyze([run]), tmp_path / "analysis")
+    assert all(file.stat().st_size for file in write_report(run, folder=tmp_path / "report"))
+    assert RunIndex(out).describe()["status"] == "finished"
+
+
+def test_records_change_nothing(tmp_path):
+    plain, rng = make(CONFIG, 2, seed=4, threads=1), np.random.default_rng(0)
+    for _ in range(150):
+        plain.step(rng.uniform(-1, 1, plain.actions.shape))
+    assert drive(tmp_path / "run", CONFIG, 150) == [world.digest() for world in plain.simulation.worlds]
+
+
+def test_every_death_is_there_however_many_die(tmp_path):
+    few = CONFIG.with_("population.initial_count", 8).with_("population.capacity", 10)
+    crowd = few.with_("birth.kappa", 1.0).with_("hazard.alpha_age", 0.5).with_("energy.initial", 40.0)
+    drive(tmp_path / "run", crowd, 300, repeat=1)
+    run = open_run(tmp_path / "run")
+    dead = run.agents().filter(pl.col("death_step").is_not_null()).height
+    assert dead == run.population()["deaths"].sum() > 16 * 10
+    assert not check_run(tmp_path / "run").findings
+
+
+def test_a_folder_can_be_read_while_its_worlds_go_on(tmp_path):
+    out = tmp_path / "run"
+    worlds = make(CONFIG, seed=1, threads=1, record=out, repeat=64)
+    worlds.step(worlds.actions)
+    assert open_run(out).manifest.status == "running"
+    assert open_run(out).population()["step"].to_list() == [64]
+    with pytest.raises(RecordError, match="is in use by another run"):
+        make(CONFIG, record=out)
+    for call_of in (lambda: worlds.reset(), lambda: worlds.restore(worlds.save())):
+        with pytest.raises(ArgumentError, match="worlds that are recorded only go on"):
+            call_of()
+    other = worlds.clone()
+    other.step(other.actions)  # is not recorded
+    worlds.close()
+    worlds.close()
+    assert open_run(out).manifest.steps_done == (64,)
+    assert not check_run(out).findings
+
+
+def test_a_run_of_a_driver_cannot_be_resumed_and_says_so(tmp_path):
+    drive(tmp_path / "run", CONFIG, 10)
+    with pytest.raises(ArgumentError, match='"external" takes actions from a program, so a run cannot have it'):
+        resume(tmp_path / "run", 100)
+    done = hedon("check", tmp_path / "run")
+    assert done.returncode == 0, done.stderr
+
+
+def test_wrong_arguments_of_records_are_named(tmp_path):
+    wrong: Any = make
+    for says, options in {
+        "frames = 5: are of records: give record": {"frames": 5},
+        "frames = -1: must be": {"frames": -1, "record": tmp_path / "a"},
+        "record = 5: must be the path of a folder": {"record": 5},
+        "seeds: 3 appears twice": {"record": tmp_path / "b", "worlds": 2, "seed": [3, 3]},
+    }.items():
+        with pytest.raises(ArgumentError, match=says):
+            wrong(CONFIG, **options)
+    assert not list(tmp_path.iterdir())
