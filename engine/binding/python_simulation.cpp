@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
+#include <mutex>
+#include <thread>
 
 #include "base/float_mode.h"
 #include "base/platform.h"
@@ -61,6 +64,18 @@ std::vector<Segment> to_segments(const WallsIn& walls) {
   return segments;
 }
 
+/// The simulations of this process by their ids. Those that a thread uses without Python stay while it does.
+struct Registry {
+  std::mutex mutex;
+  std::map<int64_t, PythonSimulation*> held;
+  int64_t last = 0;
+};
+
+Registry& registry() {
+  static Registry all;
+  return all;
+}
+
 /// Marks a simulation as free again at the end of a call, also after an exception.
 struct Running {
   std::atomic<bool>& mark;
@@ -98,6 +113,33 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
                       " threads: use fewer, or check the limits `ulimit -u` and `ulimit -v`");
   raise_faults();
   need_working();
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  id_ = ++all.last;
+  all.held[id_] = this;
+}
+
+PythonSimulation::~PythonSimulation() {
+  Registry& all = registry();
+  {
+    const std::lock_guard lock(all.mutex);
+    all.held.erase(id_);
+  }
+  while (running_.load()) std::this_thread::yield();  // a thread without Python is at work; no other can come
+}
+
+std::string PythonSimulation::with(int64_t id, const std::function<std::string(PythonSimulation&)>& use) {
+  Registry& all = registry();
+  PythonSimulation* found = nullptr;
+  {
+    const std::lock_guard lock(all.mutex);
+    const auto at = all.held.find(id);
+    if (at == all.held.end()) return "the worlds are gone: keep the environment for as long as its programs run";
+    if (at->second->running_.exchange(true)) return "busy: the simulation is running in another thread";
+    found = at->second;
+  }
+  const Running mark{found->running_};
+  return use(*found);
 }
 
 Simulation& PythonSimulation::get() {

@@ -6,11 +6,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "binding/batch.h"
 #include "simulation/simulation.h"
 
 namespace hedon {
@@ -26,6 +28,20 @@ class PythonSimulation {
   PythonSimulation(nanobind::dict config, WallsIn walls, int64_t outer_walls, const std::vector<uint64_t>& seeds,
                    int threads, const std::string& kernel, const std::vector<int32_t>& slot_order, bool flush_denormals,
                    const std::string& device);
+
+  ~PythonSimulation();
+  PythonSimulation(const PythonSimulation&) = delete;
+  PythonSimulation& operator=(const PythonSimulation&) = delete;
+
+  /// A number that no other simulation of this process has or had.
+  int64_t id() const { return id_; }
+
+  /// Calls use(simulation) for the one with this id, from any thread, without Python; it cannot go away meanwhile.
+  /// Returns what `use` returns, or why it could not be called.
+  static std::string with(int64_t id, const std::function<std::string(PythonSimulation&)>& use);
+
+  /// See `hedon::step_batch`.
+  std::string step_batch(const BatchCall& call, const BatchIn& in, const BatchOut& out, int64_t rows);
 
   static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
 
@@ -63,6 +79,8 @@ class PythonSimulation {
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
+  int64_t id_ = 0;
+  uint32_t turn_ = 0;  ///< counts calls of `step_batch`
   int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
 };
 

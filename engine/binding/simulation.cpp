@@ -250,6 +250,9 @@ void bind_simulation(nb::module_& module) {
   module.def("physical_memory", &physical_memory, nb::sig("def physical_memory() -> int"),
              "Bytes of memory of this machine.");
   module.def(
+      "batch_address", [] { return reinterpret_cast<uintptr_t>(&step_batch); },
+      "Address of a function that steps driven worlds without Python: `engine/binding/batch.h`.");
+  module.def(
       "open_device", [](const std::string& file) { open_device(file); }, nb::arg("file"),
       "Loads the library of a device and finds the device. EngineError: why it cannot be used.");
   nb::class_<PythonFloatMode>(module, "FloatMode",
@@ -379,6 +382,8 @@ void bind_simulation(nb::module_& module) {
             return out;
           },
           "Seconds that devices spent in each kernel, and copying; zeros where there is no device.")
+      .def_prop_ro(
+          "id", [](S& s) { return s.id(); }, "A number that no other simulation of this process has, for `step_batch`.")
       .def_prop_ro("device_count", [](S& s) { return s.get().device_count(); })
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })

@@ -77,7 +77,7 @@ std::string Simulation::missing_rule() const {
 
 int64_t Simulation::set_actions(int32_t species, const float* actions, ActionForm form) {
   const Species& own = shape_.of[species];
-  const ActionBounds bounds = action_bounds(*own.layout, form);
+  const ActionBounds bounds = action_bounds(own.layout, form);
   const auto for_each = [&](auto&& visit) {
     int64_t at = 0;
     for (World& world : worlds_) {

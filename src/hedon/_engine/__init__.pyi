@@ -26,6 +26,11 @@ def memory_needed(config: dict[str, Any], walls: int, worlds: int, threads: int)
 def physical_memory() -> int:
     """Bytes of memory of this machine."""
 
+def batch_address() -> int:
+    """
+    Address of a function that steps driven worlds without Python: `engine/binding/batch.h`.
+    """
+
 def open_device(file: str) -> None:
     """
     Loads the library of a device and finds the device. EngineError: why it cannot be used.
@@ -148,6 +153,12 @@ class Simulation:
     def device_seconds(self) -> dict:
         """
         Seconds that devices spent in each kernel, and copying; zeros where there is no device.
+        """
+
+    @property
+    def id(self) -> int:
+        """
+        A number that no other simulation of this process has, for `step_batch`.
         """
 
     @property

@@ -13,13 +13,15 @@ from hedon.env.vector import VectorEnv
 
 if TYPE_CHECKING:
     from hedon.env.agent import AgentEnv
+    from hedon.env.jax import JaxEnv
     from hedon.env.parallel import ParallelEnv
     from hedon.env.slot import SlotVecEnv
 
-__all__ = ["AgentEnv", "Group", "ParallelEnv", "SlotVecEnv", "VectorEnv", "make"]
+__all__ = ["AgentEnv", "Group", "JaxEnv", "ParallelEnv", "SlotVecEnv", "VectorEnv", "make"]
 
 _PLACES = {
     "AgentEnv": ("agent", "hedon[env]"),
+    "JaxEnv": ("jax", "hedon[jax]"),
     "ParallelEnv": ("parallel", "hedon[env]"),
     "SlotVecEnv": ("slot", "stable-baselines3"),
 }

@@ -1,0 +1,188 @@
+"""Worlds inside programs of JAX: steps in `jit`, `lax.scan` and `vmap`, on the processor, without Python between them.
+
+The worlds themselves stay in the engine. What JAX carries is a handle: which world, and its turn, which every step
+raises. So steps happen in their order, and a state that a later step has used is refused.
+"""
+
+import ctypes
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jax
+import jaxlib
+import numpy as np
+from jax import numpy as jnp
+
+from hedon import _engine
+from hedon.config.config import Config
+from hedon.config.layout import observation_columns
+from hedon.config.load import load_config
+from hedon.env.argument import chosen, driven, with_callers
+from hedon.env.group import ACTIONS, FORMS, NOBODY, Form
+from hedon.error import ArgumentError, HedonError
+from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
+from hedon.experiment.simulation import Simulation
+
+TARGET = "hedon_step"
+SOURCE = Path(__file__).with_name("xla.cpp")
+
+
+class State(NamedTuple):
+    """A handle of a world, for `JaxEnv.step`.
+
+    Attributes:
+        world: () int32, its index.
+        turn: () uint32, which step it is of: each state can be gone on from once.
+        agent_id: (slots,) int32, who lives in each slot; -1 where nobody does.
+    """
+
+    world: jax.Array
+    turn: jax.Array
+    agent_id: jax.Array
+
+
+class JaxEnv:
+    """Worlds that a program of JAX drives, with functions of one world as gymnax has them.
+
+    With several worlds, call the functions by `jax.vmap` over all of them. A world begins again by itself, with a seed
+    from the key of the step, when no driven agent is left, or at `max_steps`.
+
+    Args:
+        config: Settings of the worlds, as for `hedon.make`, like all that follow.
+        worlds: How many.
+        species: Whose agents the program drives: one name; None for the only one, or the only external one.
+        actions: What their numbers are.
+        repeat: Steps of the worlds in one step.
+        max_steps: Steps of a world after which it begins again; 0 for no end.
+        threads: As in `hedon.Simulation`; changes no result.
+        backend: As in `hedon.Simulation`.
+
+    Attributes:
+        columns: Names of the entries of an observation.
+        slots: Of the species in a world.
+        simulation: The worlds themselves, to be read while no program runs.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: Another argument is wrong.
+        HedonError: There is no C++ compiler, which the first use needs.
+
+    Example:
+        >>> import jax
+        >>> from hedon.env import JaxEnv
+        >>> env = JaxEnv("baseline", worlds=4)
+        >>> keys = jax.random.split(jax.random.key(0), 4)
+        >>> observations, state = jax.jit(jax.vmap(env.reset))(keys)
+    """
+
+    def __init__(
+        self,
+        config: Config | str | Path,
+        worlds: int = 1,
+        species: str | Sequence[str] | None = None,
+        actions: Form = "unit",
+        repeat: int = 1,
+        max_steps: int = 0,
+        threads: int = 0,
+        backend: str = "",
+    ) -> None:
+        config = load_config(config) if isinstance(config, str | Path) else config
+        names = driven(config, species)
+        if len(names) > 1:
+            raise ArgumentError(f"species: must be one of {', '.join(names)}")
+        count = integer("worlds", worlds, 1, MAX_WORLDS)
+        self._form = FORMS.index(chosen("actions", actions, FORMS))
+        self._repeat = integer("repeat", repeat, 1, MAX_STEPS)
+        self._max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
+        self.simulation = Simulation(with_callers(config, names), range(count), threads, backend)
+        self._species = list(config.species).index(names[0])
+        self.columns = observation_columns(config, names[0])
+        self.slots = config.species[names[0]].population.capacity
+        _register()
+
+    def reset(self, key: jax.Array) -> tuple[jax.Array, State]:
+        """Begins a world.
+
+        Args:
+            key: From which its seed is taken.
+
+        Returns:
+            The observations (slots, entries), zeros where nobody lives, and the state.
+        """
+        nobody = jnp.full((self.slots,), NOBODY, jnp.int32)
+        before = State(jnp.int32(0), jnp.uint32(0), nobody)
+        still = jnp.zeros((self.slots, len(ACTIONS)), jnp.float32)
+        state, (seen, *_) = self._call(key, before, still, begins=True)
+        return seen, state
+
+    def step(
+        self, key: jax.Array, state: State, action: jax.Array
+    ) -> tuple[jax.Array, State, jax.Array, jax.Array, dict[str, jax.Array]]:
+        """Advances a world by `repeat` steps.
+
+        Args:
+            key: From which the seed is taken where the world begins again.
+            state: The last one.
+            action: (slots, 2) left and right motor; rows without an agent are not read.
+
+        Returns:
+            The observations (slots, entries), the next state, rewards (slots,) of who was there before, whether the
+            world was over and has begun again, and a dictionary: `terminated` (slots,), who of them died, and `alive`
+            (slots,), where an agent lives now.
+
+            When the program runs, an error of JAX says what is wrong with an action, or that the state is stale.
+        """
+        state, (seen, paid, died, done) = self._call(key, state, jnp.asarray(action, jnp.float32), begins=False)
+        return seen, state, paid, done, {"terminated": died, "alive": state.agent_id != NOBODY}
+
+    def _call(self, key: jax.Array, state: State, action: jax.Array, *, begins: bool) -> tuple[State, Any]:
+        if action.shape != (self.slots, len(ACTIONS)):
+            raise ArgumentError(f"action: must be of shape {(self.slots, len(ACTIONS))}, not {action.shape}")
+        numbers = (self.simulation.engine.id, self._species, self._form, self._repeat, self._max_steps, int(begins))
+        call = np.array([_engine.batch_address(), *numbers], np.int64)
+        slots = (self.slots,)
+        shapes = [((), jnp.int32), ((), jnp.uint32), (slots, jnp.int32), ((*slots, len(self.columns)), jnp.float32)]
+        shapes += [(slots, jnp.float32), (slots, jnp.bool_), ((), jnp.bool_)]
+        results = [jax.ShapeDtypeStruct(shape, kind) for shape, kind in shapes]
+        step = jax.ffi.ffi_call(TARGET, results, has_side_effect=True, vmap_method="broadcast_all")
+        seed = jax.random.key_data(key).astype(jnp.uint32)[-2:]
+        world, turn, ids, *rest = step(state.world, state.turn, seed, state.agent_id, action, call=call)
+        return State(world, turn, ids), rest
+
+
+@cache
+def _register() -> None:
+    """Makes the call known to JAX."""
+    library = ctypes.CDLL(str(_library()))
+    jax.ffi.register_ffi_target(TARGET, jax.ffi.pycapsule(library.hedon_step), platform="cpu")
+
+
+def _library() -> Path:
+    """The compiled call, made on first use and kept in the user's cache."""
+    said = f"{SOURCE.read_text()} {jaxlib.__version__}"
+    digest = hashlib.sha256(said.encode()).hexdigest()[:16]
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hedon"
+    library = folder / f"xla-{digest}.so"
+    if library.is_file():
+        return library
+    compiler = os.environ.get("CXX") or next((each for each in ("c++", "g++", "clang++") if shutil.which(each)), None)
+    if compiler is None:
+        raise HedonError("hedon.env.JaxEnv needs a C++ compiler on first use, and finds none: install g++, or set CXX")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder) as place:
+            made = Path(place) / library.name
+            words = [*compiler.split(), "-std=c++17", "-O2", "-shared", "-fPIC", f"-I{jax.ffi.include_dir()}"]
+            subprocess.run([*words, str(SOURCE), "-o", str(made)], check=True, capture_output=True, text=True)
+            made.replace(library)
+    except (OSError, subprocess.CalledProcessError) as error:
+        why = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
+        raise HedonError(f"hedon.env.JaxEnv cannot compile {SOURCE}: {why[0] if why else error}") from error
+    return library

@@ -1,0 +1,181 @@
+"""Worlds inside programs of JAX, against a plain loop over the same worlds."""
+
+import gc
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from worlds import QUICK
+
+from hedon import ArgumentError, HedonError, env, load_config, make
+
+jax: Any = pytest.importorskip("jax", reason='needs the optional package: pip install "hedon[jax]"')
+
+LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=12", "population.initial_count=8")
+CONFIG = load_config("baseline", overrides=LIVELY)
+PAIR = load_config("predator", overrides=QUICK)
+STEPS = 40
+
+
+def act(weights: Any, seen: Any) -> Any:
+    """A policy that needs no function that NumPy and XLA compute differently."""
+    return np.float32(0.5) * (seen[..., :2] + weights).clip(-1, 1)
+
+
+def rollout(worlds: Any, weights: Any, steps: int = STEPS) -> Any:
+    """A program: worlds begin, and a scan advances them; returns all that was seen, and the digests at the end."""
+
+    def advance(carry: Any, key: Any) -> Any:
+        seen, state = carry
+        keys = jax.random.split(key, len(seen))
+        seen, state, paid, done, info = jax.vmap(worlds.step)(keys, state, act(weights, seen))
+        return (seen, state), (seen, state.agent_id, paid, done, info["terminated"], info["alive"])
+
+    @jax.jit
+    def program(key: Any) -> Any:
+        begin, go_on = jax.random.split(key)
+        count = len(worlds.simulation.worlds)
+        seen, state = jax.vmap(worlds.reset)(jax.random.split(begin, count))
+        (_, state), told = jax.lax.scan(advance, (seen, state), jax.random.split(go_on, steps))
+        return seen, told, state
+
+    seen, told, state = jax.block_until_ready(program(jax.random.key(3)))
+    return np.asarray(seen), [np.asarray(each) for each in told], state
+
+
+def seeds_of(keys: Any) -> list[int]:
+    data = np.asarray(jax.random.key_data(keys)).astype(np.uint64)
+    return [int(high) << 32 | int(low) for high, low in data]
+
+
+@pytest.mark.parametrize(
+    ("config", "species", "count", "repeat", "max_steps"),
+    [(CONFIG, None, 3, 1, 0), (CONFIG, None, 1, 1, 0), (CONFIG, None, 2, 3, 45), (PAIR, "predator", 2, 2, 0)],
+)
+def test_a_scan_is_a_plain_loop(config, species, count, repeat, max_steps):
+    worlds = env.JaxEnv(config, count, species, repeat=repeat, max_steps=max_steps, threads=1)
+    weights = np.linspace(-0.4, 0.4, 2, dtype=np.float32)
+    first, (seen, ids, paid, done, died, alive), _ = rollout(worlds, weights)
+    begin, go_on = jax.random.split(jax.random.key(3))
+    plain = make(config, count, seeds_of(jax.random.split(begin, count)), species, repeat=repeat, threads=2)
+    group = next(iter(plain.groups.values()))
+    np.testing.assert_array_equal(first, plain.observations)
+    ends = deaths = 0
+    for i, key in enumerate(jax.random.split(go_on, STEPS)):
+        plain.step(act(weights, plain.observations))
+        np.testing.assert_array_equal(paid[i], plain.rewards)
+        np.testing.assert_array_equal(died[i], group.terminated)
+        steps = np.array([world.step for world in plain.simulation.worlds])
+        over = ~group.alive.any(axis=1) | (bool(max_steps) & (steps >= max_steps))
+        np.testing.assert_array_equal(done[i], over)
+        deaths += group.terminated.sum()
+        ends += over.sum()
+        seeds = seeds_of(jax.random.split(key, count))
+        for w in np.flatnonzero(over):
+            plain.simulation.engine.reset(int(w), seeds[w])
+        if over.any():
+            plain._open(over)
+        np.testing.assert_array_equal(seen[i], plain.observations)
+        np.testing.assert_array_equal(ids[i], group.ids)
+        np.testing.assert_array_equal(alive[i], group.alive)
+    mine, theirs = ([world.digest() for world in each.simulation.worlds] for each in (worlds, plain))
+    assert mine == theirs
+    assert (ends > 0) == bool(max_steps)
+    assert deaths > 0 or species
+
+
+def test_worlds_begin_again_where_nobody_is_left():
+    doomed = CONFIG.with_("hazard.alpha_age", 1.0).with_("birth.kappa", 0.0)
+    worlds = env.JaxEnv(doomed, 2, threads=1)
+    _, (_, ids, _, done, died, alive), _ = rollout(worlds, np.zeros(2, np.float32))
+    assert done.sum() > 4
+    assert died.any()
+    for i, w in zip(*np.nonzero(done), strict=True):
+        assert alive[i, w].sum() == 8
+        assert set(ids[i, w][alive[i, w]]) == set(range(8)), "a new world has new ids"
+
+
+def test_a_seed_gives_the_same_program_on_any_number_of_threads():
+    told = [rollout(env.JaxEnv(CONFIG, 3, threads=threads), np.ones(2, np.float32)) for threads in (1, 2)]
+    for mine, theirs in zip(told[0][1], told[1][1], strict=True):
+        np.testing.assert_array_equal(mine, theirs)
+
+
+def test_a_stale_state_is_an_error_by_its_name():
+    worlds = env.JaxEnv(CONFIG, threads=1)
+    step, key = jax.jit(worlds.step), jax.random.key(0)
+    action = np.zeros((12, 2), np.float32)
+    _, first = jax.jit(worlds.reset)(key)
+    _, second, *_ = step(key, first, action)
+    with pytest.raises(Exception, match=r"hedon: stale state: it is of turn 1, and its worlds are at turn 2"):
+        jax.block_until_ready(step(key, first, action))
+    jax.block_until_ready(step(key, second, action))  # the worlds are as they were
+    assert worlds.simulation.worlds[0].step == 2
+
+
+def test_what_is_wrong_is_named_and_changes_nothing():
+    worlds = env.JaxEnv(CONFIG, 2, threads=1)
+    keys = jax.random.split(jax.random.key(0), 2)
+    _, state = jax.vmap(worlds.reset)(keys)
+    slot = int(np.flatnonzero(np.asarray(state.agent_id)[1] >= 0)[0])
+    wrong = np.zeros((2, 12, 2), np.float32)
+    wrong[1, slot, 1] = 1.5
+    before = [world.digest() for world in worlds.simulation.worlds]
+    with pytest.raises(Exception, match=rf"hedon: action\[1, {slot}, 1\] = 1\.5: is not an action"):
+        jax.block_until_ready(jax.vmap(worlds.step)(keys, state, wrong))
+    with pytest.raises(Exception, match=r"hedon: called for 1 worlds, and there are 2: use jax\.vmap"):
+        jax.block_until_ready(worlds.reset(keys[0]))
+    swapped = jax.tree.map(lambda each: each[::-1], state)
+    with pytest.raises(Exception, match="hedon: the states are not in the order of the worlds"):
+        jax.block_until_ready(jax.vmap(worlds.step)(keys, swapped, wrong * 0))
+    with pytest.raises(ArgumentError, match=r"action: must be of shape \(12, 2\), not \(3, 2\)"):
+        worlds.step(keys[0], state, np.zeros((3, 2)))
+    assert [world.digest() for world in worlds.simulation.worlds] == before
+    with pytest.raises(ArgumentError, match="species: must be one of prey, predator"):
+        env.JaxEnv("predator")
+
+
+def test_a_program_whose_worlds_are_gone_says_so():
+    worlds = env.JaxEnv(CONFIG, threads=1)
+    program = jax.jit(worlds.reset)
+    jax.block_until_ready(program(jax.random.key(0)))
+    del worlds.simulation
+    gc.collect()
+    with pytest.raises(Exception, match="hedon: the worlds are gone: keep the environment"):
+        jax.block_until_ready(program(jax.random.key(1)))
+
+
+def test_a_state_knows_nothing_of_other_worlds():
+    one, other = env.JaxEnv(CONFIG, threads=1), env.JaxEnv(CONFIG, threads=1)
+    key = jax.random.key(0)
+    _, mine = one.reset(key)
+    _, theirs = other.reset(key)
+    action = np.zeros((12, 2), np.float32)
+    seen = [np.asarray(each.step(key, state, action)[0]) for each, state in ((one, mine), (other, theirs))]
+    np.testing.assert_array_equal(*seen)
+
+
+def test_without_a_compiler_it_says_so(monkeypatch, tmp_path):
+    from hedon.env import jax as module
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    monkeypatch.setattr(module.shutil, "which", lambda name: None)
+    with pytest.raises(HedonError, match="needs a C\\+\\+ compiler on first use, and finds none"):
+        module._library()
+    monkeypatch.setenv("CXX", "false")
+    with pytest.raises(HedonError, match="cannot compile"):
+        module._library()
+
+
+def test_a_policy_that_was_trained_in_a_scan_forages_better_than_chance():
+    """The example, with fewer generations."""
+    spec = spec_from_file_location("scan", Path(__file__).parents[2] / "examples" / "scan.py")
+    assert spec is not None
+    assert spec.loader is not None
+    scan = module_from_spec(spec)
+    spec.loader.exec_module(scan)
+    trained, random = scan.Trainer().compare(generations=4)
+    assert trained.mean() > 1.5 * random.mean() > 0
