@@ -3,8 +3,8 @@
     pip install "hedon[jax]"
     python examples/scan.py [--generations 12]
 
-The policy is linear, as in foraging.py: two motors from what the rays read of food. Each world tries one candidate in all
-of its agents; the cross-entropy method (Rubinstein 1999) makes the next ones of the best quarter.
+The policy is linear, as in foraging.py: two motors from what the rays read of food. Each world tries one candidate in
+all of its agents; the cross-entropy method (Rubinstein 1999) makes the next ones of the best quarter.
 """
 
 import argparse

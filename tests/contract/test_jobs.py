@@ -14,7 +14,7 @@ from hedon.config import load_config
 from hedon.experiment.plan import Moment, RunPlan
 from hedon.jobs.process import make_here, next_share
 from hedon.jobs.run import RunJob
-from hedon.jobs.work import Outcome
+from hedon.jobs.work import Job, Outcome
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
 
@@ -29,7 +29,7 @@ class Interrupting(JobDisplay):
         self._at_step = at_step
         self.pressed = False
 
-    def update(self, job: RunJob, moment: Moment) -> None:
+    def update(self, job: Job, moment: Moment) -> None:
         super().update(job, moment)
         if moment.step >= self._at_step and not self.pressed:
             self.pressed = True

@@ -82,7 +82,7 @@ def test_rays_read_by_the_fault_what_plain_python_says():
             read, right, false = read + (seen[0] >= 0).sum(), right + (seen[1] >= 0).sum(), false + 1
     assert min(read, right) > 0.05 * false * 32
     # What is read has nothing to do with what is there, as a run of the sequel's program has shown: 0.01 to 0.08.
-    assert abs(np.corrcoef(*np.stack(both, axis=1).reshape(2, -1))[0, 1]) < 0.15
+    assert abs(np.corrcoef(np.stack(both, axis=1).reshape(2, -1))[0, 1]) < 0.15
 
 
 def test_what_is_nearer_hides_what_the_fault_reads():

@@ -10,8 +10,8 @@ from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scen
 from hedon import load_config
 from hedon.config import ConfigError
 from hedon.config.layout import layouts
+from hedon.config.title import weight_title
 from hedon.experiment.rule import RuleError
-from hedon.figure.style import weight_title
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze
 
@@ -165,7 +165,7 @@ def test_records_and_analyses_name_the_gene_and_its_role(file, tmp_path):
     small_run(tmp_path / "run", 200, seeds=(1,), overrides=settings)
     found = open_run(tmp_path / "run")
     assert found.reward_names == ("w_normal", "w_action", "extra_kindness")
-    assert found.agents()["extra_kindness"].std() > 0.1
+    assert np.std(found.agents()["extra_kindness"].to_numpy()) > 0.1
     assert weight_title("extra_kindness") == "kindness, read by a rule"
     tables = analyze([found], ["drift", "price"]).tables
     for name in ("drift", "price"):

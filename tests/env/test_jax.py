@@ -131,7 +131,7 @@ def test_what_is_wrong_is_named_and_changes_nothing():
     with pytest.raises(Exception, match="hedon: the states are not in the order of the worlds"):
         jax.block_until_ready(jax.vmap(worlds.step)(keys, swapped, wrong * 0))
     with pytest.raises(ArgumentError, match=r"action: must be of shape \(12, 2\), not \(3, 2\)"):
-        worlds.step(keys[0], state, np.zeros((3, 2)))
+        worlds.step(keys[0], state, jax.numpy.zeros((3, 2)))
     assert [world.digest() for world in worlds.simulation.worlds] == before
     with pytest.raises(ArgumentError, match="species: must be one of prey, predator"):
         env.JaxEnv("predator")
@@ -152,9 +152,9 @@ def test_a_state_knows_nothing_of_other_worlds():
     key = jax.random.key(0)
     _, mine = one.reset(key)
     _, theirs = other.reset(key)
-    action = np.zeros((12, 2), np.float32)
+    action = jax.numpy.zeros((12, 2), jax.numpy.float32)
     seen = [np.asarray(each.step(key, state, action)[0]) for each, state in ((one, mine), (other, theirs))]
-    np.testing.assert_array_equal(*seen)
+    np.testing.assert_array_equal(seen[0], seen[1])
 
 
 def test_without_a_compiler_it_says_so(monkeypatch, tmp_path):

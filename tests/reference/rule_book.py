@@ -77,7 +77,7 @@ def neighbors(rules: Rules, world: World, agent: Agent, query: Any) -> dict[str,
         if other is not agent and ("*" in query.of or rules.of(other).name in query.of)
     ]
     near = sorted(each for each in found if each[0] <= query.range)
-    told = {"count": len(near), "kin": sum(are_kin(agent, other) for *_, other in near)}
+    told: dict[str, float] = {"count": len(near), "kin": sum(are_kin(agent, other) for *_, other in near)}
     if not near:
         return told | {"distance": query.range, "bearing": 0.0}
     distance, _, other = near[0]

@@ -25,7 +25,9 @@ def test_the_page_is_small():
     """Compressed, without records; a server or a code host compresses like this."""
     import gzip
 
-    assert sum(len(gzip.compress(path.read_bytes())) for path in page_files().values()) < 400_000
+    assert (
+        sum(len(gzip.compress(path.read_bytes())) for path in page_files().values()) < 500_000
+    )  # of the page and the article, with both modules
 
 
 @pytest.mark.skipif(

@@ -1,7 +1,10 @@
 """The gallery: places of the article with a picture and a sentence. `HEDON_PICTURES=1` makes its pages and pictures."""
 
+import csv
 import os
+import re
 from dataclasses import dataclass, field
+from urllib.parse import parse_qsl
 
 import pytest
 from project_files import ROOT
@@ -12,6 +15,7 @@ from hedon.view.story import PAGE, SCENES
 
 pytest_plugins = ("view_fixture",)
 
+TEACHING = ROOT / "docs" / "teaching"
 GALLERY = ROOT / "docs" / "gallery"
 PICTURES = os.environ.get("HEDON_PICTURES")
 LARGEST = 300_000  # bytes of one picture
@@ -106,3 +110,20 @@ def test_each_place_of_the_gallery_has_its_picture(name, server, watch):
         watched.until(f"hedon.pictures > {drawn} + 3")
         path.write_bytes(watched.page.locator(f"#{PLACES[name].scene} .view").screenshot())
     assert 10_000 < path.stat().st_size < LARGEST
+
+
+def test_the_exercises_have_places_that_exist_and_a_data_sheet():
+    text = (TEACHING / "README.md").read_text()
+    places = [dict(parse_qsl(address)) for address in re.findall(r"`#(scene=[^`]+)`", text)]
+    assert {place["scene"] for place in places} >= {"creature", "family", "contest", "chance"}
+    for place in places:
+        settings = [f"{path}={value}" for path, value in place.items() if "." in path]
+        if place["scene"] != "chance":
+            load_config(SCENES / f"{place['scene']}.toml", overrides=settings)
+        assert set(place) - {"scene", "seed", "step"} == {setting.partition("=")[0] for setting in settings}
+    for part in ("**Misconception**", "**Before**", "**Task**", "**After**", "**For the teacher**"):
+        assert text.count(part) == 3
+    with (TEACHING / "data-sheet.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["exercise"] for row in rows] == ["1", "2", "3"]
+    assert {"pair", "seed", "step", "reward", "energy", "blue", "orange", "vote_before"} <= set(rows[0])

@@ -61,13 +61,13 @@ def view(
     index = None if live or run is None else _index(run)
     front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:
-        # The worlds of all presets take seconds to describe: meanwhile there is a link.
+        # The worlds of all presets take seconds to describe: meanwhile there is a link, and the article before them.
+        scenes = pool.submit(story) if article else None
         worlds = pool.submit(_worlds, source)
         data: dict[str, Any] = {"page": lambda: {"run": index is not None, "worlds": worlds.result()}}
         if index is not None:
             data["run"] = index.describe
-        if article:
-            scenes = pool.submit(story)
+        if scenes is not None:
             data["story"] = scenes.result
         if export is None:
             _serve(Server(data, index.files if index else dict, port), front, index, open_browser)

@@ -12,11 +12,11 @@ import subprocess
 import tempfile
 from collections.abc import Sequence
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
-import jaxlib
 import numpy as np
 from jax import numpy as jnp
 
@@ -95,7 +95,7 @@ class JaxEnv:
     ) -> None:
         config = load_config(config) if isinstance(config, str | Path) else config
         names = driven(config, species)
-        if len(names) > 1:
+        if len(names) != 1:
             raise ArgumentError(f"species: must be one of {', '.join(names)}")
         count = integer("worlds", worlds, 1, MAX_WORLDS)
         self._form = FORMS.index(chosen("actions", actions, FORMS))
@@ -166,7 +166,7 @@ def _register() -> None:
 
 def _library() -> Path:
     """The compiled call, made on first use and kept in the user's cache."""
-    said = f"{SOURCE.read_text()} {jaxlib.__version__}"
+    said = f"{SOURCE.read_text()} {version('jaxlib')}"
     digest = hashlib.sha256(said.encode()).hexdigest()[:16]
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hedon"
     library = folder / f"xla-{digest}.so"

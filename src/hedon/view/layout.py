@@ -124,7 +124,12 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, .
 def _genes(config: Config, made: dict[str, SpeciesLayout]) -> list[dict[str, str]]:
     known: dict[str, Gene] = {gene.name: gene for layout in made.values() for gene in layout.genes}
     linear = {name: layout for name, layout in made.items() if config.species[name].reward.family == "linear"}
-    eaten = {each.gene for layout in linear.values() for each in layout.terms if (each.input, each.coef) == ("food", 1)}
+    eaten = {
+        each.gene
+        for layout in linear.values()
+        for each in layout.terms
+        if (each.channel.source, each.coef) == ("meals", 1)
+    }
     columns = gene_columns(config)
     colors = weight_colors(columns, meal_colors(config, list(config.species)))
     return [

@@ -88,7 +88,8 @@ def test_the_picture_of_a_family() -> None:
 def test_no_birth_is_drawn_across_a_life(seed: int) -> None:
     """Random families: a line from parent to child meets no life between them."""
     rng = np.random.default_rng(seed)
-    parents, births = [None] * 4, [0] * 4
+    parents: list[int | None] = [None] * 4
+    births = [0] * 4
     for step in range(10, 400, 10):
         parents.append(int(rng.integers(0, len(parents))))
         births.append(step)

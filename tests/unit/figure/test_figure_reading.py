@@ -108,7 +108,7 @@ def test_what_stands_below_the_curves_of_a_sweep_can_be_read(values: list) -> No
     assert all(left[1] < right[0] for left, right in pairwise(spans))
     if len(upright) < len(written):  # aslant ones have the height of a line between them
         ends = sorted(label.get_window_extent().x1 for label in written)
-        assert min(np.diff(ends)) > 1.2 * written[0].get_fontsize() * figure.dpi / 72
+        assert min(np.diff(ends)) > 1.2 * float(written[0].get_fontsize()) * figure.dpi / 72
 
 
 def survival(analysis: Analysis) -> Figure:

@@ -14,6 +14,7 @@ from hedon.experiment.run import run
 from hedon.jobs.plan import folder_name, plan_jobs
 from hedon.jobs.requirement import find_runs, part_of, setting_name
 from hedon.jobs.run import RunJob
+from hedon.record.folder import MANIFEST
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.study.catalogue import StudyError, choose
 from hedon.study.gather import gather
@@ -67,12 +68,17 @@ def test_an_arm_has_its_own_fidelity_or_that_of_the_request() -> None:
     assert own.config.fidelity == "text"
 
 
+def begun(job: RunJob) -> bool:
+    """Whether it goes on with a run that is there."""
+    return (job.folder / MANIFEST).is_file()
+
+
 def test_the_longest_job_comes_first_and_no_two_share_a_folder(tmp_path: Path) -> None:
     items = (an_item("a", BASE, FAST, seeds=(1, 5)), an_item("b", FAST, seeds=(2, 7), steps=512))
     jobs = planned(Request(items, "corrected"), tmp_path)
     assert [job.world_steps for job in jobs] == [1024, 512, 512]
     assert len({job.folder for job in jobs}) == 3
-    assert not any(job.begun for job in jobs)
+    assert not any(begun(job) for job in jobs)
 
 
 def test_what_is_there_is_used_and_what_is_too_short_is_gone_on_with(tmp_path: Path) -> None:
@@ -81,10 +87,10 @@ def test_what_is_there_is_used_and_what_is_too_short_is_gone_on_with(tmp_path: P
     assert planned(Request((item,), "corrected"), tmp_path) == []
     assert planned(Request((item,), "corrected", steps=128), tmp_path) == []
     (further,) = planned(Request((item,), "corrected", steps=384), tmp_path)
-    assert (further.folder, further.begun, further.plan.steps) == (tmp_path / "mine", True, 384)
+    assert (further.folder, begun(further), further.plan.steps) == (tmp_path / "mine", True, 384)
     assert further.world_steps == 2 * 128
     (more,) = planned(Request((item,), "corrected", seeds=(1, 2, 3, 4)), tmp_path)
-    assert (more.plan.seeds, more.begun) == ((3, 4), False)
+    assert (more.plan.seeds, begun(more)) == ((3, 4), False)
 
 
 def test_a_run_that_was_killed_is_as_long_as_its_records(tmp_path: Path) -> None:
@@ -93,7 +99,7 @@ def test_a_run_that_was_killed_is_as_long_as_its_records(tmp_path: Path) -> None
     save_manifest(tmp_path / "mine", replace(manifest, status="running", steps_done=(0, 0)))
     assert planned(Request((an_item("a", BASE),), "corrected"), tmp_path) == []
     (job,) = planned(Request((an_item("a", BASE, steps=512),), "corrected"), tmp_path)
-    assert (job.begun, job.world_steps) == (True, 512)
+    assert (begun(job), job.world_steps) == (True, 512)
 
 
 def test_worlds_that_died_out_are_not_made_again(tmp_path: Path) -> None:
@@ -193,7 +199,7 @@ def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Pa
     for world in worlds:
         assert world.agents["death_step"].null_count() == world.population["alive"][-1]
     (job,) = planned(request, tmp_path)
-    assert job.begun
+    assert begun(job)
 
 
 def test_a_word_that_names_nothing_is_told_with_the_nearest() -> None:
