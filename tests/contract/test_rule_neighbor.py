@@ -151,7 +151,7 @@ def test_a_neutral_marker_is_refused_with_what_to_use(file):
         (['reward.rule="a.py:b"', *(f"neighbor.n{i}={{}}" for i in range(5))], r"neighbor: there must be at most 4"),
         (
             ['reward.rule="a.py:b"', "food.n_count.gives.energy=1", "neighbor.n={}"],
-            r"called n_count: rename a food or a query",
+            r"called n_count: rename a food, a query or a term",
         ),
     ],
 )
