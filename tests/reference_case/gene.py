@@ -30,6 +30,7 @@ GENES = {
             *genes("sensor.smell_decay", "sensor.nose_angle", "motor.force_scale", "motor.angle"),
             'birth.network="learned"',
             *genes("birth.network_noise"),
+            "genome.set.motor.angle.initial_mean=0.05",
         ),
         {"births": 20, "eaten": 20, "smelled": 100},
     ),

@@ -213,6 +213,7 @@ def test_an_agent_shows_its_stores_and_what_it_observes(watch):
         for i in range(0, world.alive, 9):
             watched.get(f"hedon.choose({lives['agent_id'][i]})")
             watched.until(f"document.querySelector('#agent h2')?.textContent === 'Agent {lives['agent_id'][i]}'")
+            watched.until("document.querySelector('#agent').textContent.includes('what else it observes')")
             rows = shown_pairs(watched)
             (held,) = (text for name, text in rows if name == "water" and " of " in text)
             assert [float(number) for number in held.split(" of ")] == pytest.approx([lives["water"][i], 7], abs=6e-3)
