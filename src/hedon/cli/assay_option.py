@@ -62,7 +62,7 @@ class AssayOptions:
         """
         from hedon.assay.option import assay_worlds
 
-        return assay_worlds(config, parse_seeds(self.seeds), self.steps, founders, part)
+        return assay_worlds(config, parse_seeds(self.seeds, "--seeds"), self.steps, founders, part)
 
     def answer(
         self, kind: str, wanted: "Sequence[RunRequirement]", ask: "Callable[[Sequence[Sample]], Answer]"

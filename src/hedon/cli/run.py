@@ -91,7 +91,7 @@ def run(
 
     require_backend(backend)
     config = load_config(source, fidelity, overrides or ())
-    world_seeds = parse_seeds(seeds)
+    world_seeds = parse_seeds(seeds, "--seeds")
     folder = out or default_folder(config, world_seeds)
     require_no_run(folder)
     begin_with = None if founders is None else read_founders(founders, config)

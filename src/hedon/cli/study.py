@@ -211,7 +211,7 @@ def _request(
         raise RunsError("--quick: has seeds and steps of its own: leave out --seeds and --steps")
     studies = choose(names)
     items = tuple(item for study in studies for item in study.items)
-    own = QUICK if quick else (parse_seeds(seeds) if seeds is not None else None, steps)
+    own = QUICK if quick else (parse_seeds(seeds, "--seeds") if seeds is not None else None, steps)
     return studies, Request(items, fidelity, *own)
 
 

@@ -75,8 +75,12 @@ def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
     return seeds
 
 
-def different(seeds: tuple[int, ...]) -> tuple[int, ...]:
+def different(seeds: tuple[int, ...], place: str = "seeds") -> tuple[int, ...]:
     """The same seeds, which must differ.
+
+    Args:
+        seeds: of worlds.
+        place: what messages call them.
 
     Raises:
         ArgumentError: One appears twice.
@@ -84,13 +88,17 @@ def different(seeds: tuple[int, ...]) -> tuple[int, ...]:
     seen: set[int] = set()
     for seed in seeds:
         if seed in seen:
-            raise ArgumentError(f"seeds: {seed} appears twice; equal seeds give equal worlds")
+            raise ArgumentError(f"{place}: {seed} appears twice; equal seeds give equal worlds")
         seen.add(seed)
     return seeds
 
 
-def parse_seeds(text: str) -> tuple[int, ...]:
+def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
     """Seeds from "7", "1-5", "1,4,7-9" or "[1, 4]".
+
+    Args:
+        text: as a user gives it.
+        place: what messages call it.
 
     Raises:
         ArgumentError: The text is not such a list, a seed is out of range, there are too many, or one appears twice.
@@ -99,18 +107,18 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     for item in map(str.strip, text.strip().removeprefix("[").removesuffix("]").split(",")):
         first, dash, last = item.partition("-")
         if not first and last.isdecimal():
-            raise ArgumentError(f"seeds: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
+            raise ArgumentError(f"{place}: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
         if not first.isdecimal() or (dash and not last.isdecimal()):
-            raise ArgumentError(f"seeds: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+            raise ArgumentError(f"{place}: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
         if max(len(first), len(last)) > MAX_DIGITS:
-            raise ArgumentError(f"seeds: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
+            raise ArgumentError(f"{place}: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
         low, high = int(first), int(last or first)
         if high < low or high > MAX_SEED or high - low >= MAX_WORLDS:
             raise ArgumentError(
-                f"seeds: {item!r} is not a range of seeds from 0 to {MAX_SEED}, at most {MAX_WORLDS:,} of them"
+                f"{place}: {item!r} is not a range of seeds from 0 to {MAX_SEED}, at most {MAX_WORLDS:,} of them"
             )
         seeds += range(low, high + 1)
-    return different(seed_list(seeds))
+    return different(seed_list(seeds), place)
 
 
 def folder(name: str, value: Any) -> Path:
