@@ -41,6 +41,7 @@ myst_heading_anchors = 4
 
 default_role = "code"  # of `names` in docstrings
 autodoc_member_order = "bysource"
+autodoc_mock_imports = ["stable_baselines3"]  # with PyTorch, some gigabytes
 autodoc_typehints_format = "short"
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
@@ -67,7 +68,8 @@ def add_contents(app: Any, docname: str, source: list[str]) -> None:
     if docname == root_doc:
         source[0] += "\n" + (HERE / "contents.md").read_text(encoding="utf-8")
     elif docname.startswith("docs/") and docname.endswith("/README"):
-        source[0] += FOLDER
+        if len(list((ROOT / docname).parent.glob("*.md"))) > 1:
+            source[0] += FOLDER
     elif (docname.startswith("docs/results/") and docname.count("/") > 2) or docname.endswith("/expected"):
         source[0] = ALONE + source[0]
 

@@ -43,7 +43,7 @@ def test_its_links_lead_somewhere(site: Path) -> None:
             target = (page.parent / path.partition("?")[0]).resolve() if path else page
             if not target.is_file():
                 broken.append((page.name, link))
-            elif anchor and target.suffix == ".html":
+            elif anchor and "=" not in anchor and target.suffix == ".html":  # with "=", a state of the live page
                 if target not in names:
                     names[target] = set(re.findall(r'\bid="([^"]*)"', target.read_text(encoding="utf-8")))
                 if anchor not in names[target]:
