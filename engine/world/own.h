@@ -52,7 +52,7 @@ HEDON_FN float radius_by(const Species& common, const float* genome, const BodyS
 }
 
 /// Whether genes set the shapes of the bodies of a species.
-inline bool sets_body(const SpeciesLayout& layout) {
+HEDON_FN bool sets_body(const SpeciesLayout& layout) {
   bool found = false;
   for (int32_t i = 0; i < layout.sets.count; ++i)
     found |= layout.sets[i].sets == GenomeSet::body_radius || layout.sets[i].sets == GenomeSet::body_density;
@@ -61,7 +61,7 @@ inline bool sets_body(const SpeciesLayout& layout) {
 
 /// A species with all genes that set numbers at one end of their limits. It is large: not for a step.
 /// sign   -1 for the least of each number, 1 for the largest
-inline Species extreme(const Species& common, float sign) {
+HEDON_FN Species extreme(const Species& common, float sign) {
   Species own = common;
   const SpeciesLayout& layout = common.layout;
   for (int32_t i = 0; i < layout.sets.count; ++i)
