@@ -8,6 +8,7 @@
 #include "base/device.h"
 #include "base/fields.h"
 #include "config/schema.h"
+#include "config/settable.h"
 
 namespace hedon {
 

@@ -65,7 +65,7 @@ def test_records_change_nothing(tmp_path):
 
 def test_every_death_is_there_however_many_die(tmp_path):
     few = CONFIG.with_("population.initial_count", 8).with_("population.capacity", 10)
-    crowd = few.with_("birth.kappa", 1.0).with_("hazard.alpha_age", 0.5).with_("energy.initial", 40.0)
+    crowd = few.with_("birth.kappa", 1.0).with_("hazard.alpha_age", 0.2).with_("energy.initial", 40.0)
     drive(tmp_path / "run", crowd, 300, repeat=1)
     run = open_run(tmp_path / "run")
     dead = run.agents().filter(pl.col("death_step").is_not_null()).height

@@ -44,7 +44,9 @@ def test_ids_are_unique_and_genealogy_has_no_gap(preset):
         simulation.run(64)
         dead.append(simulation.engine.take_rows(0))
     living = simulation.worlds[0].agents()
-    every = {name: np.concatenate([*(rows[name] for rows in dead), living[name]]) for name in dead[0]}
+    every = {
+        name: np.concatenate([*(rows[name] for rows in dead), living[name]]) for name in dead[0].keys() & living.keys()
+    }
     order = np.argsort(every["agent_id"])
     every = {name: values[order] for name, values in every.items()}
     counters = simulation.worlds[0].counters

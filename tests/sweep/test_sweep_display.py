@@ -26,10 +26,11 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
         display.end(told, Outcome("failed", "it broke"))
         display.end(untold, Outcome("finished"))
     text = stream.getvalue()
+    lines = "".join(text.split())  # a long name of a folder goes on in the next line
     assert "30.0 %, 0 of 2 runs done" in text, "both worlds of the first are at step 600"
     assert re.search(r"[1-9][\d,]* world-steps/s, .* left", text)
-    assert f"{told.folder}: failed, step 600, it broke" in text
-    assert f"{untold.folder}: finished" in text
+    assert f"{told.folder}:failed,step600,itbroke" in lines
+    assert f"{untold.folder}:finished" in lines
 
 
 def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_path):

@@ -97,7 +97,7 @@ def expressed(species: SpeciesConfig, path: str, gene: "float | NDArray[np.float
     Args:
         species: of the agents.
         path: of a number that a gene sets, in the species.
-        gene: the gene, or an array of them.
+        gene: the gene, or an array of them, any shape.
 
     Returns:
         A number, or an array of the shape of `gene`; in the unit of the setting.

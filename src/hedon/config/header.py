@@ -13,7 +13,6 @@ from typing import Any, get_args
 from hedon.config import room
 from hedon.config.channel import LAST, SEVERAL, SOURCES
 from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
-from hedon.config.expression import CONVERTED, engine_name, limits_of, settable
 from hedon.config.field import Setting, engine_sections, engine_settings
 from hedon.config.settings import Settings
 from hedon.config.species import RULE_USES
@@ -27,7 +26,6 @@ _HEAD = """\
 #include <cstdint>
 
 #include "base/array.h"
-#include "base/device.h"
 #include "base/fields.h"
 #include "base/vec2.h"
 #include "config/setting.h"
@@ -63,24 +61,7 @@ def _structs() -> Iterator[str]:
     each = ", ".join(f"ChannelOf::{word}" for word in several.values())
     yield _wrapped(f"HEDON_ENUM(ChannelSource, {', '.join(several)})")
     yield _wrapped(f"HEDON_ENUM(ChannelOf, {', '.join(words)})")
-    yield _wrapped(f"inline constexpr ChannelOf CHANNEL_OF[] = {{{each}}};")
-    yield _wrapped(f"HEDON_ENUM(GenomeSet, {', '.join(map(engine_name, settable()))})") + "\n"
-    yield from _settable()
-
-
-def _settable() -> Iterator[str]:
-    """The function that finds a number of a species by its name."""
-    yield "/// A number that a gene sets, with its limits."
-    yield "struct SettableNumber {\n  float* number;\n  float low, high;\n};\n"
-    yield "/// Where a species has the number that genes of this name set; those that are converted have no such place."
-    yield "HEDON_FN SettableNumber settable(SpeciesConfig& config, GenomeSet which, int32_t store) {"
-    yield "  StoreConfig& own = store == 0 ? config.energy : config.store.items[store - 1];"
-    yield "  switch (which) {"
-    for path, (low, high) in ((path, limits_of(path)) for path in settable()):
-        where = path.replace("store.<kind>", "own") if path.startswith("store") else f"config.{path}"
-        yield f"    case GenomeSet::{engine_name(path)}:"
-        yield "      break;" if path in CONVERTED else f"      return {{&{where}, {float(low)!r}f, {float(high)!r}f}};"
-    yield "  }\n  return {nullptr, 0.0f, 0.0f};\n}\n"
+    yield _wrapped(f"inline constexpr ChannelOf CHANNEL_OF[] = {{{each}}};") + "\n"
 
 
 def _add(section: type, made: dict[str, list[str]]) -> str:

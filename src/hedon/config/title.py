@@ -24,6 +24,8 @@ def weight_title(name: str) -> str:
         return "weight of action"
     if name.startswith(EXTRA):
         return f"{name.removeprefix(EXTRA)}, read by a rule"
+    if name.startswith("g_"):
+        return f"{name.removeprefix('g_').replace('_', ' ')}, power of ten"
     what = name.removeprefix("w_")
     if what.startswith("see_"):
         return f"weight of seeing {what.removeprefix('see_')}"

@@ -32,7 +32,8 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         actions: What their numbers are.
         repeat: Steps of the world in one step.
         max_steps: Steps of the world after which the episode is truncated.
-        others: Acts for the others of the species; None to leave their motors in the middle of their range.
+        others: Acts for the others of the species, from observations (slots, entries) to actions (slots, 2);
+            None to leave their motors in the middle of their range.
         render_mode: What `render` gives.
         threads: One world of usual size is fastest on one.
 

@@ -33,6 +33,9 @@ def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
         about: What they must belong to.
         like: Arrays of the types and shapes that they must have.
 
+    Returns:
+        Arrays by name, of the shapes of `like`.
+
     Raises:
         ArgumentError: It is something else.
     """

@@ -57,13 +57,15 @@ class VectorEnv:
         render_mode: What `render` gives.
         spaces: What observations and actions can be, for `single_observation_space` and the others.
 
+    Raises:
+        ArgumentError: An argument is not what it can be, or `frames` is given without `record`.
+
     Example:
         >>> import hedon
         >>> worlds = hedon.make("baseline", worlds=4, seed=1)
         >>> observations, info = worlds.reset()
         >>> worlds.actions[...] = 0.5  # or a policy of the observations
         >>> observations, rewards, terminated, truncated, info = worlds.step(worlds.actions)
-        >>> rewards[info["alive"]].mean()
     """
 
     metadata: Mapping[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 30}
@@ -92,9 +94,7 @@ class VectorEnv:
         config = with_callers(config, names)
         found = rules(config) if record is not None else ()
         if record is None and frames:
-            raise ArgumentError(
-                f"frames = {brief(repr(frames))}: are of records: give record, the folder for them, too"
-            )
+            raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
         texts = tuple(rule.source for rule in found)
         simulation = Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)
         self._made(simulation, names, form)

@@ -1,5 +1,5 @@
-// What a program of XLA calls: it hands the memory of a call to the engine. Compiled on first use against the headers of
-// the jaxlib that is there, since their layout changes with it.
+/// What a program of XLA calls: it hands the memory of a call to the engine. Compiled on first use against the headers of
+/// the jaxlib that is there, since their layout changes with it.
 #include <cstdint>
 
 #include "xla/ffi/api/ffi.h"

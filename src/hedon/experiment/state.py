@@ -19,11 +19,17 @@ class State:
     none, such as `food_stock.eaten`, `World.view` gives.
 
     Args:
-        view: Gives an array by its path.
+        view: Gives an array by its path, of any shape.
         paths: Of all arrays.
     """
 
     def __init__(self, view: Callable[[str], NDArray[Any]], paths: Sequence[str]) -> None:
+        """A world makes its own.
+
+        Args:
+            view: gives the array of a path, of any shape.
+            paths: of all arrays.
+        """
         self._view = view
         self._paths = {
             name: path

@@ -10,7 +10,7 @@ from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
 CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_physics": ("Bodies and physics", ("arena", "body", "physics", "obstacle")),
-    "parameters_sense": ("Motors and senses", ("motor", "sensor")),
+    "parameters_sense": ("Motors and senses", ("motor", "sensor", "neighbor")),
     "parameters_food": ("Food", ("food", "diet")),
     "parameters_life": ("Energy, birth and death", ("population", "energy", "store", "hazard", "birth")),
     "parameters_evolution": ("Genome and reward", ("genome", "reward")),

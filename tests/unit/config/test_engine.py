@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from two_stores import FED
 
-from hedon.config import engine_config, load_config, walls
+from hedon.config import engine_config, load_config, settable, walls
 from hedon.config.config import Config
 from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
@@ -87,8 +87,9 @@ def value_of(path: str) -> Any:
 
 
 def test_the_engines_structs_are_those_of_the_settings() -> None:
-    """After a change of settings: `python -m hedon.config.header > engine/config/schema.h`."""
+    """After a change of settings: `python -m hedon.config.header > engine/config/schema.h`, and so for settable."""
     assert (ENGINE / "config" / "schema.h").read_text() == header()
+    assert (ENGINE / "config" / "settable.h").read_text() == settable.header()
 
 
 @pytest.mark.parametrize("path", LEAVES)

@@ -77,7 +77,7 @@ class JobDisplay(Screen):
             words += [f"seed {seed} died out" for seed, step in _ends(job, moment).items() if step is not None]
         if outcome.fault:
             words.append(outcome.fault)
-        self._console.print(printable(", ".join(words)), soft_wrap=True)
+        self._console.print(printable(", ".join(words)), soft_wrap=True, highlight=False)
 
     def _show(self) -> None:
         now = time.monotonic()
