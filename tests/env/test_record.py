@@ -103,7 +103,7 @@ def test_a_run_of_a_driver_cannot_be_resumed_and_says_so(tmp_path):
 def test_wrong_arguments_of_records_are_named(tmp_path):
     wrong: Any = make
     for says, options in {
-        "frames = 5: are of records: give record": {"frames": 5},
+        "frames = 5: give record": {"frames": 5},
         "frames = -1: must be": {"frames": -1, "record": tmp_path / "a"},
         "record = 5: must be the path of a folder": {"record": 5},
         "seeds: 3 appears twice": {"record": tmp_path / "b", "worlds": 2, "seed": [3, 3]},
