@@ -30,7 +30,9 @@ REPORTED = 20
 SHOWN = 3
 """Failures that are told in full."""
 FULL = 100
-"""Of so many worlds at most one may be refused since its first agents and foods find no room in it."""
+"""Of so many worlds at most one may be refused, by name and with a remedy, since it is too full."""
+REFUSED = ("initial_placement", "neighbor_overflow")
+"""First agents and foods find no room; more walls are near the bodies than the list of pairs can hold."""
 
 
 def tried() -> Iterator[tuple[int, Mixture]]:
@@ -70,7 +72,7 @@ def test_every_door_takes_every_combination(part, tmp_path, capsys):
         with tempfile.TemporaryDirectory(dir=tmp_path) as folder:
             trial = Trial(world, Path(folder), random.Random(number), seen)
             for failure in failures(trial, every, number):
-                if "EngineError: initial_placement" in failure:
+                if any(f"EngineError: {refused}" in failure for refused in REFUSED):
                     full += 1
                     continue
                 again = f"HEDON_WORLD={number} uv run --extra rules pytest {os.path.relpath(__file__)}"
@@ -81,5 +83,5 @@ def test_every_door_takes_every_combination(part, tmp_path, capsys):
         covered = f"pairs covered {len(pairs)} of {len(possible_pairs())} in {count} worlds"
         print(f"\n{covered}, {len(failed)} failed, {full} had no room")
     assert not failed, "\n\n".join(failed[:SHOWN])
-    assert full * FULL <= count, f"{full} of {count} worlds had no room to begin"
+    assert full <= max(1, count // FULL), f"{full} of {count} worlds had no room"
     assert ONLY or WORLDS or pairs == possible_pairs()
