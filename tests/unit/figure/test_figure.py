@@ -167,7 +167,7 @@ def _without_agents(snapshot: Snapshot) -> Snapshot:
         ("w_normal_old", "weight of normal food, when old"),
         ("w_action_scale", "weight of action, power of ten"),
         ("w_see_prey", "weight of seeing prey"),
-        ("g_gamma", "gene g_gamma"),
+        ("g_gamma", "gamma, power of ten"),
         ("set_point", "gene set_point"),
     ],
 )
