@@ -155,7 +155,8 @@ struct PhysicsCapacity {
 /// overlap. Around a circle there are fewer than 24 bodies. In a convex corner, a body is near its chords and two
 /// walls. With the solver jacobi, a crowd can burst: for one substep a body moves at up to 250 u/s, which needs a skin
 /// of 50 u and more. There is room for all pairs of up to 200 bodies, and for the same number of neighbors of each body
-/// in a larger world. Among obstacles there are more sides near a body than the two of a corner.
+/// in a larger world. Among obstacles there are more sides near a body than the two of a corner, and a body that genes
+/// made large is near more of the chords of a round corner.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
                                           const BodyTable& table, const PhysicsConfig& config) {
   const bool bursts = config.solver == PhysicsSolver::jacobi;
@@ -170,7 +171,8 @@ HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64
   const auto least = [](int64_t a, int64_t b) { return a < b ? a : b; };
   capacity.body_pairs = least((bursts ? 100 : 16) * wide * bodies, bodies * (bodies - 1) / 2) + 1;
   capacity.circle_pairs = least((bursts ? 200 : 24) * wide * circles, bodies * circles) + 1;
-  capacity.wall_pairs = least((bursts || table.first_obstacle < walls ? 32 : 8) * bodies, bodies * walls) + 1;
+  const bool crowded = bursts || table.first_obstacle < walls || table.own != 0;
+  capacity.wall_pairs = least((crowded ? 32 : 8) * bodies, bodies * walls) + 1;
   // Cells as wide as the search range, but at most a few per item in an almost empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
   const float search = 2.0f * table.max_radius() + skin;
