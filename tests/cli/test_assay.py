@@ -50,6 +50,7 @@ def effects(path: Path) -> dict[tuple[str, str], dict]:
     return {(row["fitness"], row["gene"]): row for row in rows}
 
 
+@pytest.mark.long
 def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None:
     found = effects(folder / "whole" / "landscape.json")
     for measure in ("descendants", "lifespan"):
@@ -101,6 +102,7 @@ def test_an_assay_grows_by_seeds_and_keeps_what_it_has(folder: Path) -> None:
     assert "3 worlds, 3,072 steps" in (folder / "grown" / "landscape.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: Path) -> None:
     answer = call(folder, "compete", "action=-8", "action=8", *SHORT, "--out", "compete")
     assert answer.returncode == 0, answer.stderr
@@ -124,6 +126,7 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
     assert found["share"]["value"] > 0.2
 
 
+@pytest.mark.long
 def test_fitness_against_frequency_is_told_at_each_share(folder: Path) -> None:
     command = ("frequency", "action=-8", "action=8", *SHORT, "--out", "frequency")
     answer = call(folder, *command, "--shares", "0.5,0.2")

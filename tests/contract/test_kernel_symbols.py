@@ -28,7 +28,7 @@ def unit_flags(name: str) -> list[str]:
     return found[1].split(";")
 
 
-@pytest.mark.parametrize("level", ["-O0", "-O3"])
+@pytest.mark.parametrize("level", [pytest.param("-O0", marks=pytest.mark.long), "-O3"])
 @pytest.mark.parametrize(
     "name",
     [

@@ -19,7 +19,7 @@ from hedon.record.atomic import write_atomically
 from hedon.record.folder import checkpoint_paths, holds_run
 from hedon.record.reader import open_run
 
-KILLS = int(os.environ.get("HEDON_KILLS", "40"))
+KILLS = int(os.environ.get("HEDON_KILLS", "10"))
 DELAY = 0.6
 """Longest time before a signal: about as long as a run takes to start and make some hundred steps [s]."""
 

@@ -170,6 +170,7 @@ def test_without_a_compiler_it_says_so(monkeypatch, tmp_path):
         module._library()
 
 
+@pytest.mark.long
 def test_a_policy_that_was_trained_in_a_scan_forages_better_than_chance():
     """The example, with fewer generations."""
     spec = spec_from_file_location("scan", Path(__file__).parents[2] / "examples" / "scan.py")

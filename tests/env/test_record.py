@@ -32,7 +32,14 @@ def drive(out: Path, config: Any, steps: int, **options: Any) -> list[str]:
         return [world.digest() for world in worlds.simulation.worlds]
 
 
-@pytest.mark.parametrize(("config", "species", "repeat"), [(CONFIG, None, 1), (CONFIG, None, 3), (PAIR, "predator", 2)])
+@pytest.mark.parametrize(
+    ("config", "species", "repeat"),
+    [
+        pytest.param(CONFIG, None, 1, marks=pytest.mark.long),
+        pytest.param(CONFIG, None, 3, marks=pytest.mark.long),
+        (PAIR, "predator", 2),
+    ],
+)
 def test_a_folder_is_that_of_a_run(config, species, repeat, tmp_path):
     out = tmp_path / "run"
     digests = drive(out, config, 200 // repeat, species=species, repeat=repeat)

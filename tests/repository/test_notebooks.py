@@ -18,7 +18,10 @@ def test_there_are_five():
     assert [path.stem for path in NOTEBOOKS] == sorted(PICTURES)
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(each, id=each.stem, marks=[pytest.mark.long] * (each.stem != "first_run")) for each in NOTEBOOKS],
+)
 def test_a_notebook_runs(path: Path, tmp_path: Path):
     if "hedon[rules]" in path.read_text(encoding="utf-8"):
         pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')

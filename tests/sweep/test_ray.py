@@ -26,9 +26,10 @@ from hedon.jobs.store import Store
 from hedon.sweep.plan import load_plan
 from hedon.sweep.work import RUNS, make_task
 
-pytestmark = pytest.mark.skipif(
-    find_spec("ray") is None, reason='needs the optional packages: pip install "hedon[ray]"'
-)
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(find_spec("ray") is None, reason='needs the optional packages: pip install "hedon[ray]"'),
+]
 KILLS = int(os.environ.get("HEDON_NODES", "1"))
 STEPS = 10_240
 """Of each world: some seconds."""

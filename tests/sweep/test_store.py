@@ -82,6 +82,7 @@ def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):
     assert_goes_on_elsewhere(f"file://{tmp_path}/far", tmp_path, 5_120)
 
 
+@pytest.mark.long
 def test_two_processes_that_make_one_sweep_harm_no_row(tmp_path):
     one_batch = '[factor]\n"energy.basic_cost" = [0.001]\n'
     assert_two_make_one(f"file://{tmp_path}/far", tmp_path, one_batch)

@@ -86,6 +86,7 @@ def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path)
     assert "| agents alive" in (Path(place) / "contrast" / "contrast.md").read_text()
 
 
+@pytest.mark.long
 def test_without_an_effect_few_tests_find_one(tmp_path):
     """Of 200 null sweeps about 5 % have p below 0.05, paired and not: the tests keep their level."""
     from hedon.statistic.contrast import independent_contrast, paired_contrast

@@ -152,6 +152,7 @@ def test_a_sweep_grows_by_seeds_and_values_and_makes_what_is_missing_alone(tmp_p
     assert open_batches(again, store) == [], "what is made stays"
 
 
+@pytest.mark.long
 def test_a_sweep_that_grows_while_it_runs_is_made_whole(tmp_path):
     place, small = tmp_path / "running", sweep_file(tmp_path, 3_200, seeds=1)
     begun = command("sweep", "run", small, "--out", place, "--workers", "1")

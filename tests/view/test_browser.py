@@ -227,10 +227,7 @@ def test_an_agent_shows_its_stores_and_what_it_observes(watch):
 def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
     with serving(live_server(preset)) as server:
         watched = watch(server.link)
-        watched.get("hedon.play(false)")
-        watched.until("!hedon.source.busy")
-        watched.get("hedon.source.advance(100, 20000)")
-        watched.until("hedon.source.last >= 100 && !hedon.source.busy")
+        run_live(watched, 100)
         watched.get("hedon.seek(hedon.source.last)")
         watched.until("hedon.frame.step === hedon.source.last")
         seen = 0

@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from view_page import GROUNDS, live_server, run_server, serving
+from view_page import live_server, run_server, serving
 
 from hedon import load_config
 from hedon.config import PRESETS, color
@@ -74,7 +74,7 @@ def pixels(watched):
     return image, places.round().astype(int)
 
 
-@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("ground", ["dark", pytest.param("light", marks=pytest.mark.long)])
 def test_agents_stand_out_whatever_they_are_colored_by(ground, run_folder, watch):
     """At the middle of each body, beside the eye."""
     with serving(run_server(run_folder)) as server:

@@ -81,6 +81,7 @@ VIEWS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", VIEWS)
 def test_the_documentation_has_a_picture_of_each_view(name, watch):
     kind, show = VIEWS[name]

@@ -45,7 +45,7 @@ def species_run(tmp_path_factory):
     return record_species(tmp_path_factory.mktemp("parts") / "run")
 
 
-@pytest.mark.parametrize("world", [0, 1])
+@pytest.mark.parametrize("world", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_every_recorded_step_is_shown_whole(species_run, watch, world):
     """Of one part; then of parts so small that a step goes on in a third one."""
     folder = species_run
@@ -66,6 +66,7 @@ def test_every_recorded_step_is_shown_whole(species_run, watch, world):
             assert dict(zip(*shown, strict=True)) == alive
 
 
+@pytest.mark.long
 def test_the_demo_site_shows_all_agents_at_every_step(watch):
     """Against the table of the lives, which no part of the frames can hide."""
     with serving(demo_server()) as server:

@@ -162,6 +162,7 @@ def test_reward_rises_without_a_meal_if_moving_feels_good(article):
     assert watched.get(texts) == ["0"]
 
 
+@pytest.mark.long
 def test_it_learns_to_eat_more_and_with_a_bad_feeling_to_sit(article):
     watched = article("learning")
     learning = stage("learning")

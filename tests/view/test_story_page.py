@@ -106,8 +106,17 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("pictures")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1400, 1024, 390])
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [
+        (390, "light"),
+        (1400, "dark"),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in ((390, "dark"), (1024, "light"), (1024, "dark"), (1400, "light"))
+        ),
+    ],
+)
 def test_each_scene_fits_each_screen(width, scheme, server, browser, folder):
     axe = pytest.importorskip("axe_playwright_python.base", reason="needs axe: uv sync --group browser")
     context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, has_touch=width < 500)

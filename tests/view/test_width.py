@@ -1,5 +1,7 @@
 """The page on a desk, a tablet and a phone, light and dark: nothing is cut off or jumps, and everybody can use it."""
 
+from itertools import product
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from split_run import record_species
@@ -29,9 +31,14 @@ def violations(watched):
     return [(each["id"], [node["target"] for node in each["nodes"]][:3]) for each in found]
 
 
-@pytest.mark.parametrize("ground", GROUNDS)
-@pytest.mark.parametrize("width", SIZES)
-@pytest.mark.parametrize("kind", ["live", "replay"])
+SCREENS = list(product(("live", "replay"), SIZES, GROUNDS))
+FEW = [("live", 390, "dark"), ("live", 1400, "light"), ("replay", 390, "light"), ("replay", 1400, "dark")]
+
+
+@pytest.mark.parametrize(
+    ("kind", "width", "ground"),
+    [pytest.param(*each, marks=[pytest.mark.long] * (each not in FEW)) for each in SCREENS],
+)
 def test_axe_finds_nothing(servers, kind, width, ground, watch):
     watched = watch(servers[kind], **sized(width, ground))
     rest(watched)

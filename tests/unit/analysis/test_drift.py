@@ -74,6 +74,7 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
     assert law_of("corrected") == MutationLaw(0.0, 0.1, 0.02, 10.0, False, 1024, False)
 
 
+@pytest.mark.long
 def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:
     """Type I error on whole records: 6 markers in each of 60 worlds of no selection."""
     rng = np.random.default_rng(4)

@@ -53,6 +53,7 @@ def test_a_known_negative_dependence_is_found_with_its_slope_and_crossing() -> N
     assert max(slope_missed, crossing_missed) <= 9  # 3 are expected; more than 9 in one of 1000 such tests
 
 
+@pytest.mark.long
 def test_without_dependence_the_slope_is_0_and_nothing_crosses() -> None:
     found = [assay(np.random.default_rng(1000 + trial), lambda p: np.full_like(p, 0.3)) for trial in range(100)]
     missed = sum(not each.slope.low <= 0 <= each.slope.high for each in found)
@@ -64,6 +65,7 @@ def test_without_dependence_the_slope_is_0_and_nothing_crosses() -> None:
     assert found[-1].verdict == NONE
 
 
+@pytest.mark.long
 def test_neutral_groups_cross_nowhere_for_sure() -> None:
     found = [assay(np.random.default_rng(trial), np.zeros_like).verdict for trial in range(100)]
     sure = sum(verdict in (COEXIST, EXCLUDE, NONE) for verdict in found)

@@ -112,6 +112,7 @@ def test_a_birth_death_process_with_known_rates_gives_its_surface() -> None:
         assert estimate.low <= value <= estimate.high
 
 
+@pytest.mark.long
 def test_genes_that_do_nothing_are_found_to_do_something_once_in_twenty() -> None:
     trials, found, flat, tests = 200, 0, 0, 0
     for trial in range(trials):

@@ -64,6 +64,7 @@ def test_cells_count_alike_whatever_their_number_of_worlds() -> None:
     assert {effect.seeds for effect in fit.effects} == {1}  # seed 2 lacks a cell
 
 
+@pytest.mark.long
 def test_intervals_cover_as_often_as_promised() -> None:
     rng = np.random.default_rng(3)
     trials, covered, false_alarms = 400, 0, 0

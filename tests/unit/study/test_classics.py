@@ -133,6 +133,7 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     return tables
 
 
+@pytest.mark.long
 def test_lifespan_and_plasticity_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
     worlds = run_quick(tmp_path, "lifespan-and-plasticity")["lifespan_world"]
     assert len(worlds) == 10
