@@ -4,9 +4,10 @@ UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
 RUN := $(UV) run --no-progress
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
-# Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB; a cluster is made of Ray, 200 MB
-# (80 MB to download): only the tests install them.
-EXTRA := --extra rules --extra video --extra ray
+# Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB: only the tests install them. Long tests
+# make clusters of Ray, 200 MB (80 MB to download), S3 servers, and wheels.
+EXTRA := --extra rules --extra video
+LONG := $(EXTRA) --extra ray --extra remote --group store --group viewer --group cuda --group wheel
 # What the site is made with.
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
@@ -14,7 +15,7 @@ unexport MAKEFLAGS
 # Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-long suite static sanitized sync cuda stubs viewer docs clean
+.PHONY: run test test-long suite static sanitized sync cuda stubs viewer docs wheels clean
 
 # The main job: a short life of the baseline world, about two minutes on two cores.
 run: sync
@@ -43,8 +44,8 @@ sanitized: tools $(UV)
 test-long: sync
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \
 	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
-	  $(RUN) $(BROWSER) $(EXTRA) --extra remote --group store --group viewer --group cuda --group wheel \
-	  pytest --numprocesses auto --dist worksteal -m "long or repeated"
+	  $(RUN) $(BROWSER) $(SITE) $(LONG) pytest --numprocesses auto --dist worksteal -m "long or repeated"
+	$(RUN) --group viewer python tests/matrix.py
 	$(RUN) python tests/soak.py
 	$(RUN) python tests/cuda_step.py
 	$(RUN) python tests/sanitize.py asan --cuda
@@ -90,6 +91,10 @@ viewer: sync
 docs: sync
 	$(RUN) $(SITE) sphinx-build --quiet --fail-on-warning --conf-dir docs/site . build/docs
 	$(RUN) $(SITE) python docs/site/paper.py build/docs/docs/paper/paper.pdf
+
+# The source and the wheels of Linux, in dist, for every Python of 3.11 to 3.13 that is installed.
+wheels: sync
+	$(RUN) --group viewer --group wheel python release/wheel.py
 
 clean:
 	rm -rf build web/node_modules .venv .uv .pytest_cache .ruff_cache

@@ -61,7 +61,6 @@ class Machine:
 MACHINES = {
     each.name: each
     for each in (
-        Machine("x86_64-linux", ("avx2", "portable"), "x86_64-linux-musl"),
         Machine("aarch64-linux", ("neon", "portable"), "aarch64-linux-musl", "", ("qemu-aarch64",), "qemu-user"),
         Machine(
             "aarch64-linux-g++",
@@ -70,7 +69,9 @@ MACHINES = {
             runner=("qemu-aarch64",),
             package="g++-aarch64-linux-gnu qemu-user",
         ),
-        Machine("x86_64-windows", ("avx2", "portable"), "x86_64-windows-gnu", "", ("wine",), "wine64", suffix=".exe"),
+        Machine(
+            "x86_64-windows", ("avx2", "portable"), "x86_64-windows-gnu", "", ("wine",), "wine wine64", suffix=".exe"
+        ),
         Machine("x86_64-macos", ("avx2", "portable"), "x86_64-macos", runs=False),
         Machine("aarch64-macos", ("neon", "portable"), "aarch64-macos", runs=False),
     )
@@ -122,8 +123,7 @@ def run(machine: Machine | None, program: Path, *arguments: str) -> list[str]:
 
 
 def _call(*command: str) -> str:
-    # Of Wine: its own folder, made at its first call, and no words beside those of the program.
-    environment = os.environ | {"WINEPREFIX": str(ROOT / "build" / "machine" / "wine"), "WINEDEBUG": "-all"}
+    environment = os.environ | {"WINEDEBUG": "-all"}  # no words of Wine's beside those of the program
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout[-2000:]}{done.stderr[-4000:]}"
     return done.stdout

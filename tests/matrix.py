@@ -1,0 +1,67 @@
+"""The tests that meet the compiler and the interpreter, with each of both: `python tests/matrix.py`.
+
+For Python 3.11 and 3.13, each with g++ and with Clang: an environment of its own in `build/matrix`, the engine with all
+warnings as errors, then digests, units, and the command line. What is not installed is named and left out. The Clang
+is the first of 15 or newer in the path, else the one of the package `ziglang`.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from itertools import product
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))
+
+from release.wheel import has_python, uv, zig  # noqa: E402
+
+PYTHONS = ("3.11", "3.13")
+OLDEST_CLANG = 15
+TESTS = ("tests/golden", "tests/machine", "tests/unit", "tests/cli", "tests/contract/test_kernel_agreement.py")
+
+
+def clang() -> str:
+    """The command of a Clang that can build the engine; empty if there is none."""
+    for name in ("clang++", *(f"clang++-{number}" for number in range(30, OLDEST_CLANG - 1, -1))):
+        if path := shutil.which(name):
+            said = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=False).stdout
+            if (number := re.match(r"\d+", said)) and int(number[0]) >= OLDEST_CLANG:
+                return path
+    return f"{zig()} c++" if find_spec("ziglang") else ""
+
+
+def passes(python: str, name: str, compiler: str) -> bool:
+    """Builds and tests with one Python and one compiler."""
+    place = ROOT / "build" / "matrix" / f"{python}-{name}"
+    environment = {each: value for each, value in os.environ.items() if each != "VIRTUAL_ENV"}
+    environment |= {"UV_PROJECT_ENVIRONMENT": str(place / "env"), "CXX": compiler}
+    options = ["--config-setting", f"build-dir={place / 'engine'}", "--config-setting", "cmake.define.HEDON_STRICT=ON"]
+    sync = [uv(), "sync", "--quiet", "--python", python, "--extra", "rules", "--reinstall-package", "hedon", *options]
+    test = [uv(), "run", "--no-sync", "--python", python, "pytest", "--numprocesses", "auto", *TESTS]
+    return all(subprocess.run(each, cwd=ROOT, env=environment, check=False).returncode == 0 for each in (sync, test))
+
+
+def main() -> int:
+    """Tries every pair; returns an exit status."""
+    compilers = {"g++": shutil.which("g++") or "", "clang": clang()}
+    advice = {"g++": "apt-get install g++", "clang": "apt-get install clang-16, or uv sync --group viewer"}
+    failed, tried = [], 0
+    for python, (name, compiler) in product(PYTHONS, compilers.items()):
+        if not has_python(python):
+            print(f"matrix: no Python {python} here: uv python install {python}", flush=True)
+        elif not compiler:
+            print(f"matrix: no {name} here: {advice[name]}", flush=True)
+        else:
+            print(f"matrix: Python {python}, {compiler}", flush=True)
+            tried += 1
+            failed += [] if passes(python, name, compiler) else [f"Python {python} with {name}"]
+    print(f"matrix: {tried} of {len(PYTHONS) * len(compilers)} tried, failed: {', '.join(failed) or 'none'}")
+    return 1 if failed or not tried else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
