@@ -140,6 +140,24 @@ struct Batch {
   }
 };
 
+/// Puts a body whose center went through an outer wall back onto it: a small body, in one substep, or one that others
+/// pushed. A wall does not push a center that lies behind it, so the body would leave the arena for good.
+template <class Bodies, class Crew>
+HEDON_FN void keep_inside(const Batch<Bodies, Crew>& batch, int32_t index) {
+  constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
+  const PairList& walls = batch.state.neighbors.walls;
+  Vec2& center = batch.scratch.position[index];
+  for (int32_t pair = walls.start[index]; pair < walls.start[index + 1]; ++pair) {
+    if (walls.second[pair] >= batch.state.outer_walls) continue;
+    const Segment& wall = batch.state.walls[walls.second[pair]];
+    const Vec2 along = wall.b - wall.a;  // the outer walls run clockwise, so the inside is to their right
+    const float inside = cross(center - wall.a, along);
+    if (!(inside < 0.0f)) continue;
+    const float shift = (-inside / length(along) + MARGIN) / length(along);
+    center = center + shift * Vec2{along.y, -along.x};
+  }
+}
+
 /// Squared distances below which two things touch, and below which the solver acts on them [u²].
 struct Reach {
   float touch, solid;

@@ -156,7 +156,9 @@ struct PhysicsCapacity {
 /// walls. With the solver jacobi, a crowd can burst: for one substep a body moves at up to 250 u/s, which needs a skin
 /// of 50 u and more. There is room for all pairs of up to 200 bodies, and for the same number of neighbors of each body
 /// in a larger world. Among obstacles there are more sides near a body than the two of a corner, and a body that genes
-/// made large is near more of the chords of a round corner.
+/// made large is near more of the chords of a round corner. A light body that a heavy one hits can need a wider skin
+/// than these numbers are for, and in a small world that takes in almost everything: each list has room for `few`
+/// pairs.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
                                           const BodyTable& table, const PhysicsConfig& config) {
   const bool bursts = config.solver == PhysicsSolver::jacobi;
@@ -168,11 +170,14 @@ HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64
   // A large disc has more small neighbors.
   const float ratio = table.max_radius() / table.min_radius();
   const int64_t wide = static_cast<int64_t>(ceilf(ratio * ratio));
-  const auto least = [](int64_t a, int64_t b) { return a < b ? a : b; };
-  capacity.body_pairs = least((bursts ? 100 : 16) * wide * bodies, bodies * (bodies - 1) / 2) + 1;
-  capacity.circle_pairs = least((bursts ? 200 : 24) * wide * circles, bodies * circles) + 1;
+  const auto room = [](int64_t usual, int64_t all) {
+    const int64_t few = 8192, enough = usual > few ? usual : few;
+    return (enough < all ? enough : all) + 1;
+  };
+  capacity.body_pairs = room((bursts ? 100 : 16) * wide * bodies, bodies * (bodies - 1) / 2);
+  capacity.circle_pairs = room((bursts ? 200 : 24) * wide * circles, bodies * circles);
   const bool crowded = bursts || table.first_obstacle < walls || table.own != 0;
-  capacity.wall_pairs = least((crowded ? 32 : 8) * bodies, bodies * walls) + 1;
+  capacity.wall_pairs = room((crowded ? 32 : 8) * bodies, bodies * walls);
   // Cells as wide as the search range, but at most a few per item in an almost empty arena.
   const float even = sqrtf(width * height / static_cast<float>(4 * (bodies + circles) + 1));
   const float search = 2.0f * table.max_radius() + skin;
