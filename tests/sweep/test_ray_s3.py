@@ -32,12 +32,21 @@ pytestmark = [
 ]
 
 
-@pytest.fixture
-def url(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A place on a server of this machine, which all that reads the environment finds."""
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    """Where a server of this machine listens."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+        found = free.getsockname()[1]
+    server = import_module("moto.server").ThreadedMotoServer(ip_address="127.0.0.1", port=found, verbose=False)
+    server.start()
+    yield found
+    server.stop()
+
+
+@pytest.fixture
+def url(port: int, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A place on the server, which all that reads the environment finds."""
     for name, value in {
         "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
         "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
@@ -46,13 +55,9 @@ def url(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         "AWS_DEFAULT_REGION": "us-east-1",
     }.items():
         monkeypatch.setenv(name, value)
-    server = import_module("moto.server").ThreadedMotoServer(ip_address="127.0.0.1", port=port, verbose=False)
-    server.start()
-    try:
-        import_module("s3fs").S3FileSystem(skip_instance_cache=True).mkdir("lab")
-        yield f"s3://lab/{secrets.token_hex(8)}"
-    finally:
-        server.stop()
+    lab = f"lab-{secrets.token_hex(8)}"
+    import_module("s3fs").S3FileSystem(skip_instance_cache=True).mkdir(lab)
+    return f"s3://{lab}/sweep"
 
 
 def made_on(raylet: int) -> dict[Path, int]:
