@@ -263,7 +263,6 @@ struct SequentialSolver {
       correct_positions(batch, bodies, position);
       correct_positions(batch, statics, position);
     }
-    batch.each_body([&](int32_t index) { keep_inside(batch, index); });
   }
 };
 
