@@ -17,15 +17,18 @@ from hedon.record.folder import FAULT, checkpoint_paths
 from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 
-# Bodies so small that some slip through a wall within a substep at the speed cap.
-TINY = ("body.radius=1.2", "world.food_radius=0.2", "motor.max_force=300", "motor.min_force=-300")
+# Learning so fast that its numbers end.
+WILD = (
+    *("learning.learning_rate=1", "learning.value_coef=1000", "learning.adam_epsilon=1e-30", "learning.update_epochs=50"),
+    *("reward.action_coef=1000", "genome.weight_limit=1000", "genome.action.initial_mean=1000"),
+)
 
 
 @pytest.fixture
 def failed(tmp_path):
     """A run of two worlds that stopped at a fault that its rules bring about."""
     with pytest.raises(EngineError) as fault:
-        small_run(tmp_path / "run", 100 * WINDOW, overrides=TINY, checkpoint_seconds=0)
+        small_run(tmp_path / "run", 100 * WINDOW, overrides=WILD, checkpoint_seconds=0)
     return tmp_path / "run", str(fault.value)
 
 

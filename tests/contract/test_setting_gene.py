@@ -273,7 +273,7 @@ def test_an_engine_does_not_take_bodies_that_have_no_room():
     from hedon import _engine
     from hedon.config.engine import engine_input
 
-    given = engine_input(load_config("baseline", overrides=["genome.set.body.radius={}", "genome.weight_limit=1"]))
+    given = engine_input(load_config("baseline", overrides=["genome.set.body.radius={}", "genome.weight_limit=0.8"]))
     given.settings["layout"][0]["genes"][2]["mutation"]["limit"] = math.sqrt(2.0)
     with pytest.raises(EngineError, match="a radius that fits into the arena"):
         _engine.Simulation(given.settings, given.walls, given.outer_walls, [1], 1, "", [], True)

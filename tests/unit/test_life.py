@@ -331,13 +331,6 @@ def test_headings_are_wrapped_however_fast_a_body_turns():
         assert np.all((angle >= 0) & (angle < 2 * np.pi))
 
 
-def test_a_body_that_slips_through_a_wall_is_named():
-    # Of radius 0.5, a body passes a wall within one substep at the speed cap of 10 u/s.
-    simulation = make_simulation(*SAFE, "body.radius=0.5", "world.food_radius=0.2", "motor.max_force=1000")
-    with pytest.raises(EngineError, match=r"outside_arena.*World 0, step \d+, value .*, agent \d+.*max_speed"):
-        simulation.run(500)
-
-
 def test_an_agent_whose_numbers_are_not_finite_is_named():
     wild = ("learning.learning_rate=1", "learning.value_coef=1000", "learning.adam_epsilon=1e-30")
     reward = ("reward.action_coef=1000", "genome.weight_limit=1000", "genome.action.initial_mean=1000")

@@ -75,9 +75,17 @@ def _body(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
     check.need(most <= MAX_FORCE, f"{path}motor.force_scale", rule)
     fits = 2 * single(max(species.body.radius, config.world.food_radius)) < single(side)
     check.need(fits, f"{path}body.radius", "a body does not fit into the arena")
+    rule = f"a body of radius {species.body.radius:g} moves {_stride(config):.3g} u in a substep and may pass a wall: "
+    rule += "lower physics.max_speed or physics.dt"
+    check.need(species.body.radius > _stride(config), f"{path}body.radius", rule)
     touched = len(chosen(config, species.body.collides))
     rule = f"must be at most {MAX_TOUCH_BITS // touched} with {touched} types to touch"
     check.need(touched * species.sensor.touch_sectors <= MAX_TOUCH_BITS, f"{path}sensor.touch_sectors", rule)
+
+
+def _stride(config: Settings) -> float:
+    """The farthest that a body moves in a substep [u]: the cap of its speed holds for each axis."""
+    return math.sqrt(2) * config.physics.max_speed * config.physics.dt
 
 
 def _life(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
@@ -281,13 +289,18 @@ def _idle(species: SpeciesConfig) -> dict[str, str]:
 
 
 def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]) -> None:
-    """Bodies that genes set fit into the arena, and have their genes from birth on."""
+    """Bodies that genes set fit into the arena, pass no wall, and have their genes from birth on."""
     side, radius = min(config.arena.width, config.arena.height), value_at(config, f"{path}body.radius")
     for gene in (gene for gene in genes if gene.place.startswith("genome.set.body.")):
         most = radius * 10.0**gene.mutation.limit
         if gene.place.endswith(".radius") and 2 * radius < side <= 2 * single(most):
             rule = f"can make a radius of {most:g}, which does not fit into the arena: give genome.mutation.{gene.name}"
             check.add(f"{path}{gene.place}", f"{rule} a limit below {math.log10(side / 2 / radius):.3g}")
+        least, stride = radius / 10.0**gene.mutation.limit, _stride(config)
+        if gene.place.endswith(".radius") and least <= stride < radius:
+            rule = f"can make a radius of {least:.3g}, which passes walls, as it moves {stride:.3g} u in a substep"
+            limit = f"genome.mutation.{gene.name} a limit below {math.log10(radius / stride):.3g}"
+            check.add(f"{path}{gene.place}", f"{rule}: give {limit}, or lower physics.max_speed")
         rule = 'bodies cannot change in a window: needs world.inheritance = "at_birth"'
         if config.world.inheritance != "at_birth":
             check.add(f"{path}{gene.place}", rule)

@@ -25,6 +25,16 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
         ),
         (["body.radius=300"], "body.radius = 300.0: a body does not fit into the arena"),
         (
+            ["body.radius=1.4"],
+            "body.radius = 1.4: a body of radius 1.4 moves 1.41 u in a substep and may pass a wall: lower "
+            "physics.max_speed or physics.dt",
+        ),
+        (
+            ["genome.set.body.radius={}", "genome.weight_limit=0.9"],
+            "genome.set.body.radius: can make a radius of 1.26, which passes walls, as it moves 1.41 u in a substep: give "
+            "genome.mutation.g_body_radius a limit below 0.849, or lower physics.max_speed",
+        ),
+        (
             ["learning.minibatch_size=100"],
             "learning.minibatch_size = 100: must divide world.rollout_steps = 1024",
         ),
