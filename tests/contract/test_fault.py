@@ -19,7 +19,12 @@ from hedon.record.reader import open_run
 
 # Learning so fast that its numbers end.
 WILD = (
-    *("learning.learning_rate=1", "learning.value_coef=1000", "learning.adam_epsilon=1e-30", "learning.update_epochs=50"),
+    *(
+        "learning.learning_rate=1",
+        "learning.value_coef=1000",
+        "learning.adam_epsilon=1e-30",
+        "learning.update_epochs=50",
+    ),
     *("reward.action_coef=1000", "genome.weight_limit=1000", "genome.action.initial_mean=1000"),
 )
 

@@ -21,7 +21,7 @@ void drive(Simulation& simulation) {
     std::vector<float> actions;
     for (int32_t slot = 0; slot < config.species[s].population.capacity; ++slot)
       actions.insert(actions.end(), ACTION, ACTION + 2);
-    simulation.set_actions(s, actions.data(), ActionForm::unit);
+    simulation.set_actions(s, actions.data(), ActionForm::logit);
   }
 }
 

@@ -46,7 +46,7 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     import json
 
     from hedon.cli.display.step import StepDisplay
-    from hedon.cli.display.summary import summary_table
+    from hedon.cli.display.summary import answer_lines, summary_table
     from hedon.record.reader import open_run
     from hedon.report.run import write_report
 
@@ -55,5 +55,7 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
         files = write_report(*runs, folder=out, tell=tell)
     for file in files[: len(runs)]:
         console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
+    made = next(file for file in files if file.name == "analysis.json")
+    console.print(*(answer_lines(json.loads(made.read_text(encoding="utf-8"))["answers"])), sep="\n")
     for file in files:
         console.print(f"wrote {printable(str(file))}", soft_wrap=True)

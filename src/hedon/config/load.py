@@ -50,7 +50,7 @@ SEQUEL_PRESETS = (
     "pitfall-default-birth",
 )
 """The conditions of its sequel, on predators and prey."""
-OUR_PRESETS = ("seasons",)
+OUR_PRESETS = ("seasons", "appetite")
 """Conditions that are ours."""
 PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
 FIDELITIES = ("corrected", "released", "text")

@@ -14,6 +14,7 @@ from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.summary import plain
 from hedon.report.topic import TOPICS, Tell, run_topics, tell_nobody
+from hedon.report.words import answers
 
 ANALYSIS = "analysis"
 """Folder of the answers within the folder of a single run."""
@@ -27,11 +28,13 @@ class Analysis:
         runs: as they were read.
         conditions: their worlds, by condition.
         tables: by name, in the order of the topics.
+        answers: by condition, in words; empty without the topic drift.
     """
 
     runs: tuple[Run, ...]
     conditions: Mapping[str, Sequence[WorldRecord]]
     tables: Mapping[str, ResultTable]
+    answers: Mapping[str, Sequence[str]]
 
 
 def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody) -> Analysis:
@@ -47,7 +50,9 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
     """
     tell(0, len(topics), "reading the records")
     conditions = by_condition(read_worlds(runs))
-    return Analysis(tuple(runs), conditions, {table.name: table for table in run_topics(conditions, topics, tell)})
+    tables = {table.name: table for table in run_topics(conditions, topics, tell)}
+    told = answers(conditions, tables, runs) if "drift" in topics else {}
+    return Analysis(tuple(runs), conditions, tables, told)
 
 
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
@@ -76,7 +81,7 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
 
 
 def _analysis_json(analysis: Analysis) -> dict[str, Any]:
-    """The content of `analysis.json`: runs with their manifests, worlds, and every table with its rows."""
+    """The content of `analysis.json`: runs with their manifests, worlds, answers, and every table with its rows."""
     worlds = [
         {
             "condition": world.condition,
@@ -93,6 +98,7 @@ def _analysis_json(analysis: Analysis) -> dict[str, Any]:
         {
             "runs": [{"path": str(run.path), "manifest": asdict(run.manifest)} for run in analysis.runs],
             "worlds": worlds,
+            "answers": analysis.answers,
             "tables": {
                 name: {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}
                 for name, table in analysis.tables.items()

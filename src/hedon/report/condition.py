@@ -39,9 +39,9 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
         return mine.get(name, pl.DataFrame())
 
     meals, neutral = (*first.food_kinds, *first.prey), first.neutral_names
-    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
     courses = draw_histories([HistoryRow(population)], first.reward_names, neutral, colors)
     yield figure.HISTORY.drawn(courses)
+    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
     yield figure.POPULATION.drawn(draw_population(population, meals, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))

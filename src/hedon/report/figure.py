@@ -2,6 +2,14 @@
 
 from hedon.figure.named import FigureKind
 
+HISTORY = FigureKind(
+    "history",
+    "When did they evolve, and how much of it is drift?",
+    "Mean weight of the living over time, and that of each neutral gene, which nothing depends on. Thin lines are "
+    "worlds, the thick line is their mean, and the band around it its 95 % interval, from three worlds on. Shaded in "
+    "gray is where 95 % of the neutral genes of all worlds are at that time. A cross marks where a world died out. A "
+    "weight that stays within the gray may have drifted.",
+)
 WEIGHTS = FigureKind(
     "weights",
     "Which rewards evolved?",
@@ -10,14 +18,6 @@ WEIGHTS = FigureKind(
     "axes reach as far as nearly all agents; crosses at the edge stand for the few beyond. Above and beside the axes: "
     "how the weight is distributed over all agents, filled, and how the first neutral marker is, outlined. A weight "
     "that is spread no further than the marker gives no evidence of selection.",
-)
-HISTORY = FigureKind(
-    "history",
-    "When did they evolve, and how much of it is drift?",
-    "Mean weight of the living over time, and that of each neutral gene, which nothing depends on. Thin lines are "
-    "worlds, the thick line is their mean, and the band around it its 95 % interval, from three worlds on. Shaded in "
-    "gray is where 95 % of the neutral genes of all worlds are at that time. A cross marks where a world died out. A "
-    "weight that stays within the gray may have drifted.",
 )
 POPULATION = FigureKind(
     "population",
@@ -71,5 +71,5 @@ WORLD = FigureKind(
     "The last state of one world. A disc is an agent: darker with more energy, a line to its front, a thick arc for "
     "its mouth. One agent is circled, and its rays end at what they see, in that thing's color.",
 )
-FIGURES = (WEIGHTS, HISTORY, POPULATION, REGIME, SURVIVAL, SELECTION, LINEAGE, DEMOGRAPHY, WORLD)
+FIGURES = (HISTORY, WEIGHTS, POPULATION, REGIME, SURVIVAL, SELECTION, LINEAGE, DEMOGRAPHY, WORLD)
 """In the order in which a report shows them."""

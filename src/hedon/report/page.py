@@ -1,4 +1,4 @@
-"""A report as one page: verdicts, what was run, figures, tables, settings and manifests."""
+"""A report as one page: answers in words, verdicts, what was run, figures, tables, settings and manifests."""
 
 import base64
 import json
@@ -87,14 +87,18 @@ def _markdown(value: Any) -> str:
 
 def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any]:
     shown = {name: table_context(table) for name, table in analysis.tables.items() if table.shown}
-    conditions = [
-        condition_context(name, worlds)
-        | {
-            "warnings": setting_warnings(worlds[0].config, worlds[0].species),
-            "figures": [figure for figure in figures if figure.condition == name],
-        }
-        for name, worlds in analysis.conditions.items()
-    ]
+    conditions = []
+    for name, worlds in analysis.conditions.items():
+        drawn = [figure for figure in figures if figure.condition == name]
+        conditions.append(
+            condition_context(name, worlds)
+            | {
+                "answers": analysis.answers.get(name, []),
+                "warnings": setting_warnings(worlds[0].config, worlds[0].species),
+                "picture": drawn[:1],
+                "figures": drawn[1:],
+            }
+        )
     return {
         "title": " · ".join(condition["name"] for condition in conditions),
         "verdict": shown.pop("verdict", None),

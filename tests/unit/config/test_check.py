@@ -31,8 +31,8 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
         ),
         (
             ["genome.set.body.radius={}", "genome.weight_limit=0.9"],
-            "genome.set.body.radius: can make a radius of 1.26, which passes walls, as it moves 1.41 u in a substep: give "
-            "genome.mutation.g_body_radius a limit below 0.849, or lower physics.max_speed",
+            "genome.set.body.radius: can make a radius of 1.26, which passes walls, as it moves 1.41 u in a substep: "
+            "give genome.mutation.g_body_radius a limit below 0.849, or lower physics.max_speed",
         ),
         (
             ["learning.minibatch_size=100"],

@@ -9,7 +9,7 @@ from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.report.run import write_report
 
-FIGURES = ["weights", "history", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
+FIGURES = ["history", "weights", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
 NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.png" for name in FIGURES)]
 
 

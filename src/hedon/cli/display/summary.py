@@ -66,6 +66,17 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
     )
 
 
+def answer_lines(answers: Mapping[str, Sequence[str]]) -> Iterator[Text]:
+    """What `hedon run` and `hedon report` say last: what evolved, in words.
+
+    Args:
+        answers: by condition, as `analysis.json` has them.
+    """
+    for condition, lines in answers.items():
+        yield Text(f"What evolved in {condition}?", style="bold")
+        yield from (Text(f"  {line}") for line in lines)
+
+
 @dataclass(frozen=True)
 class _Part:
     """One species of a summary: its name, empty where there is only one, its means, and how it fares in each world."""

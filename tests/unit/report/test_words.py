@@ -1,0 +1,81 @@
+"""The first sentences of a report: what they say follows from the numbers of the topic drift."""
+
+import math
+import re
+from pathlib import Path
+
+import polars as pl
+import pytest
+from scipy import stats
+from synthetic_run import write_run
+
+from hedon.analysis.result import make_table
+from hedon.record.reader import open_run
+from hedon.report.analysis import Analysis, analyze
+from hedon.report.run import write_report
+from hedon.report.words import UNKNOWN, answers
+
+
+@pytest.fixture(scope="module")
+def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
+    return analyze([open_run(write_run(tmp_path_factory.mktemp("words") / "run", intervals=10, worlds=1))])
+
+
+def told(analysis: Analysis, score: float, p: float, means: tuple[float, ...] = (0.5,)) -> str:
+    """What is said of the weight of food with this outcome, beside five other tests."""
+    condition = next(iter(analysis.conditions))
+    row = {"condition": condition, "weight": "w_normal"}
+    outcome = {"test": "direction", "effect": score, "p_holm": p}
+    others = [
+        {"condition": condition, "weight": "w_action", "test": f"{i}", "effect": 0.0, "p_holm": 1.0} for i in range(5)
+    ]
+    ends = [row | {"mean": mean, "null_low": -0.2, "null_high": 0.3} for mean in means]
+    tables = {
+        "drift": make_table("drift", "", [row | outcome, *others]),
+        "drift_world": make_table("drift_world", "", ends),
+    }
+    return answers(analysis.conditions, tables, analysis.runs)[condition][0]
+
+
+def test_a_weight_beyond_chance_is_selected(analysis):
+    said = told(analysis, 3.5, 0.003)
+    assert said == (
+        "The weight of normal food ended at +0.50, and chance alone reaches -0.20 to +0.30: selected for "
+        "(p = 0.003, corrected for 6 tests)."
+    )
+    assert "selected against (" in told(analysis, -3.5, 0.003, (-0.5,))
+
+
+def test_a_weight_that_may_have_drifted_says_how_long_would_decide(analysis):
+    said = told(analysis, 1.5, 0.8)
+    times = (stats.norm.isf(0.05 / 12) / 1.5) ** 2  # the run took ten seconds
+    assert f"about {times:.2g} times the steps, {math.ceil((times - 1) * 10)} seconds more on this machine" in said
+    assert "nothing speaks for it" in told(analysis, 0.0, 1.0)
+    assert "nothing speaks for it" in told(analysis, 0.1, 1.0)
+
+
+def test_several_worlds_tell_how_many_went_beyond_chance(analysis):
+    said = told(analysis, 3.5, 0.003, (0.5, 0.1, -0.4))
+    assert "ended between -0.40 and +0.50 in 3 worlds, on average at +0.07" in said
+    assert "and 2 of them lie outside: selected for" in said
+
+
+def test_what_is_not_known_is_said(analysis):
+    assert answers(analysis.conditions, {}, analysis.runs) == {name: [UNKNOWN] for name in analysis.conditions}
+    assert analyze(analysis.runs, ["food"]).answers == {}
+
+
+def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analysis: Analysis):
+    files = {file.name: file for file in write_report(*analysis.runs, folder=tmp_path)}
+    said = next(iter(analysis.answers.values()))
+    assert len(said) == 2
+    rows = analysis.tables["drift_world"].rows
+    for name, line in zip(("w_normal", "w_action"), said, strict=True):
+        assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+.2f}" in line
+    page, text = (files[name].read_text(encoding="utf-8") for name in ("report.html", "report.md"))
+    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>The weight", page)
+    order = [
+        text.index(part)
+        for part in ("- The weight of normal", "figures/history.png", "figures/weights.png", "## Tables")
+    ]
+    assert order == sorted(order)
