@@ -74,14 +74,14 @@ from hedon.jobs.store import Store
 from hedon.sweep.work import make_task
 
 url, folder = sys.argv[3:]
-write = UrlStore.write
+write = Store.write
 
 def told_write(self, name, content):
     die(f"before {name.partition('/')[0]}")
     write(self, name, content)
     die(f"after {name.partition('/')[0]}")
 
-UrlStore.write = told_write
+Store.write = told_write
 plan = load_plan(Store(url))
 make_task(url, plan, next(plan.batches()), Path(folder), 0.0).make(1, None)
 """
