@@ -17,9 +17,9 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test test-long suite static sanitized sync cuda stubs viewer docs wheels clean
 
-# The main job: a short life of the baseline world, about two minutes on two cores.
+# The main job: a world in which a reward evolves within a minute on two cores.
 run: sync
-	$(RUN) hedon run baseline --frames 64
+	$(RUN) hedon run appetite --steps 40960 --frames 64
 
 # All three side by side: each leaves a processor idle at times. What they install comes first.
 test: sync

@@ -1,17 +1,19 @@
-"""Agent-steps per second of `hedon.make` beside JaxMARL's simple spread, in turns, each on one core.
+"""Agent-steps per second of `hedon.make` and `JaxEnv` beside JaxMARL's simple spread, in turns, each on one core.
 
     python -m venv /tmp/jaxmarl && /tmp/jaxmarl/bin/pip install "jax[cpu]" jaxmarl
     uv run python benchmarks/environment.py /tmp/jaxmarl/bin/python
 
-Both act at random, and show every agent's observation and reward in every step. JaxMARL runs as its users run it: many
-environments by `vmap`, many steps by `scan`, compiled before the clock starts. The best of five turns counts, since
-other programs only slow things down.
+All act at random, and show every agent's observation and reward in every step. JaxMARL runs as its users run it: many
+environments by `vmap`, many steps by `scan`, compiled before the clock starts; so does `JaxEnv`. The best of five turns
+counts, since other programs only slow things down.
 """
 
 import argparse
 import os
 import subprocess
 import time
+from collections.abc import Callable
+from functools import partial
 
 SPREAD = """
 import sys, time
@@ -41,27 +43,31 @@ print(agents * worlds * steps / (time.perf_counter() - begun))
 """
 TURNS = 5
 SECONDS = 3.0
-"""How long hedon is measured in each turn."""
-AGENTS, WORLDS, STEPS = 3, 1024, 100
-"""Of JaxMARL in each turn: agents of a world (its default), worlds at once, steps."""
+"""How long `hedon.make` is measured in each turn."""
+SPREADS = {3: (1024, 100), 50: (64, 20)}
+"""Agents of simple spread, the first its default, each with worlds at once and steps: pairs grow with the square."""
+WORLDS, SCANNED = (1, 16, 256), (16, 500)
+"""Worlds of `hedon.make`; worlds and steps of `JaxEnv`."""
+SETTINGS = ("hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0", "population.capacity=50")
+"""Fifty agents that neither die nor breed."""
 
 
-def spread(python: str) -> float:
+def spread(python: str, agents: int) -> float:
     """Agent-steps per second of JaxMARL, in a process of its own."""
-    command = [python, "-c", SPREAD, str(AGENTS), str(WORLDS), str(STEPS)]
+    worlds, steps = SPREADS[agents]
+    command = [python, "-c", SPREAD, str(agents), str(worlds), str(steps)]
     where = os.environ | {"JAX_PLATFORMS": "cpu"}
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=where)
     return float(done.stdout.split()[-1])
 
 
-def hedon_batch(worlds: int = 4) -> float:
-    """Agent-steps per second of `hedon.make`, in worlds of 50 agents that neither die nor breed."""
+def made(worlds: int) -> float:
+    """Agent-steps per second of `hedon.make`."""
     import numpy as np
 
     import hedon
 
-    settings = ("hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0", "population.capacity=50")
-    driven = hedon.make(hedon.load_config("baseline", overrides=settings), worlds, actions="logit", threads=1)
+    driven = hedon.make(hedon.load_config("baseline", overrides=SETTINGS), worlds, actions="logit", threads=1)
     rng, count = np.random.default_rng(1), 0
     begun = time.perf_counter()
     while time.perf_counter() - begun < SECONDS:
@@ -71,16 +77,43 @@ def hedon_batch(worlds: int = 4) -> float:
     return count / (time.perf_counter() - begun)
 
 
+def scanned() -> float:
+    """Agent-steps per second of `JaxEnv` within `jit`, `vmap` and `scan`."""
+    import jax
+
+    import hedon
+    from hedon.env import JaxEnv
+
+    worlds, steps = SCANNED
+    env = JaxEnv(hedon.load_config("baseline", overrides=SETTINGS), worlds, actions="logit", threads=1)
+
+    def advance(state, key):  # of JAX
+        act, go = jax.random.split(key)
+        actions = jax.random.normal(act, (worlds, env.slots, 2))
+        _, state, reward, _, told = jax.vmap(env.step)(jax.random.split(go, worlds), state, actions)
+        return state, (reward.sum(), told["alive"].sum())
+
+    run = jax.jit(lambda state, key: jax.lax.scan(advance, state, jax.random.split(key, steps)))
+    _, state = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), worlds))
+    state, _ = jax.block_until_ready(run(state, jax.random.key(1)))
+    begun = time.perf_counter()
+    _, (_, alive) = jax.block_until_ready(run(state, jax.random.key(2)))
+    return int(alive.sum()) / (time.perf_counter() - begun)
+
+
 def main() -> None:
     """Measures in turns and prints the best of each."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("python", help="an interpreter that has jaxmarl and jax[cpu]")
     python = parser.parse_args().python
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})  # the processes that it starts inherit it
-    rates: dict[str, list[float]] = {"hedon.make": [], "simple spread": []}
+    cases: dict[str, Callable[[], float]] = {f"hedon.make, worlds: {count}": partial(made, count) for count in WORLDS}
+    cases[f"JaxEnv in scan, worlds: {SCANNED[0]}"] = scanned
+    cases |= {f"simple spread, agents: {count}": partial(spread, python, count) for count in SPREADS}
+    rates: dict[str, list[float]] = {name: [] for name in cases}
     for turn in range(TURNS):
-        rates["hedon.make"].append(hedon_batch())
-        rates["simple spread"].append(spread(python))
+        for name, measure in cases.items():
+            rates[name].append(measure())
         print(f"turn {turn + 1} of {TURNS}: {', '.join(f'{each[-1]:,.0f}' for each in rates.values())}", flush=True)
     for name, values in rates.items():
         print(f"{name}: {max(values):,.0f} agent-steps/s")

@@ -41,7 +41,7 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "no world": (lambda w: make(CONFIG, 0), "worlds = 0: must be a whole number from 1"),
     "half a life": (lambda w: make(CONFIG, max_steps=0.5), r"max_steps = 0\.5: must be"),
     "other actions": (lambda w: make(CONFIG, actions="units"), "actions = 'units': must be .*; did you mean unit"),
-    "another picture": (lambda w: make(CONFIG, render_mode="ansi"), "render_mode = 'ansi': must be rgb_array"),
+    "another picture": (lambda w: make(CONFIG, render_mode="ansi"), "render_mode = 'ansi': must be rgb_array or human"),
     "species as a number": (lambda w: make(CONFIG, species=5), "species: must be a name, or a list of them, not 5"),
     "species of numbers": (lambda w: make(CONFIG, species=[5]), "species '5': there is no such species"),
     "a config of numbers": (lambda w: make(3), "config: must be a Config, as load_config gives it, a preset or a file"),

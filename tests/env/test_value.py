@@ -92,6 +92,26 @@ def test_another_process_goes_on(tmp_path):
     assert done.stdout.strip() == simulation.worlds[0].digest()
 
 
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_a_world_with_a_rule_goes_on_by_its_text(way, tmp_path):
+    """Also where the file is gone, or says something else by then."""
+    pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
+    file = tmp_path / "own.py"
+    file.write_text("def pay(agent):\n    return agent.linear + 0.5 * agent.moved\n")
+    one = make_simulation(*LIVELY, f'reward.rule="{file}:pay"')
+    one.run(70)
+    file.write_text("def pay(agent):\n    return 0.0\n")
+    other = way(one)
+    for simulation in (one, other):
+        simulation.run(90)
+    assert digests(other) == digests(one)
+    file.unlink()
+    again = way(other)
+    for simulation in (one, again):
+        simulation.run(30)
+    assert digests(again) == digests(one)
+
+
 def play(worlds: VectorEnv, steps: int, seed: int) -> list[Any]:
     """Everything that worlds say in some steps."""
     rng, told = np.random.default_rng(seed), []

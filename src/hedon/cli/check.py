@@ -37,9 +37,15 @@ def check(
             continue
         findings, notes = list(verdict.findings), list(verdict.notes)
         if replay and not findings:
-            from hedon.experiment.replay import replay_run
+            from rich.console import Console
 
-            found, note = replay_run(run)
+            from hedon.cli.display.run import RunDisplay
+            from hedon.experiment.replay import replay_run
+            from hedon.record.reader import open_run
+
+            opened = open_run(run)
+            with RunDisplay(Console(stderr=True), opened.columns, opened.manifest.seeds) as display:
+                found, note = replay_run(run, display=display)
             findings += found
             notes.append(note)
         elif replay:

@@ -38,7 +38,7 @@ def make(
         repeat: Steps of the worlds in one step, with the same actions.
         max_steps: Steps of a world after which its agents are truncated; 0 for no end. A world goes on if it is not
             begun again.
-        render_mode: `rgb_array` to have pictures by `render`.
+        render_mode: `rgb_array` to have pictures by `render`; `human` to see world 0 in a window, with pygame.
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
         record: Folder for what `hedon run` would write, which reports, analyses and the page then read; None for none.

@@ -23,7 +23,7 @@ from hedon.experiment.rule import pinned, rules
 from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
-RENDER_MODES = ("rgb_array",)
+RENDER_MODES = ("rgb_array", "human")
 RECORDED = "worlds that are recorded only go on: make others, with another folder or without records"
 
 
@@ -124,6 +124,7 @@ class VectorEnv:
         self._next_seed = (max(simulation.seeds) + 1) % (MAX_WORLD_SEED + 1)
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
         self._film: Any = None
+        self._window: Any = None
         self._record: Any = None  # also of a copy: it has no records
 
     @property
@@ -202,6 +203,8 @@ class VectorEnv:
             self.simulation.engine.reset(i, seeds[i])
         self._open(mask)
         self._fresh = False
+        if self.render_mode == "human":
+            self.render()
         return self._told[0], self._told[4]
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
@@ -247,16 +250,21 @@ class VectorEnv:
         self._judge(done)
         if stopped is not None:
             raise stopped
+        if self.render_mode == "human":
+            self.render()
         return self._told
 
     def render(self, world: int = 0) -> NDArray[np.uint8] | None:
-        """A picture of a world as it is now: (height, width, 3), or None without a `render_mode`.
+        """A picture of a world as it is now: (height, width, 3); None without a `render_mode`.
+
+        With `human`, the picture is shown in a window instead, as each step and reset does with world 0. Closing the
+        window ends that; the steps go on.
 
         Args:
             world: Its index.
 
         Raises:
-            ArgumentError: There is no such world.
+            ArgumentError: There is no such world; or pygame, which shows windows, is not installed.
         """
         if self.render_mode is None:
             return None
@@ -264,16 +272,25 @@ class VectorEnv:
 
         index = integer("world", world, 0, len(self.simulation.worlds) - 1)
         self._film = self._film or Camera(self.config)
-        return self._film.picture(self.simulation.worlds[index])
+        picture = self._film.picture(self.simulation.worlds[index])
+        if self.render_mode != "human":
+            return picture
+        from hedon.env.window import Window  # loads pygame
+
+        self._window = self._window or Window()
+        self._window.show(picture)
+        return None
 
     def close(self) -> None:
-        """Ends the records, if there are some; as a context manager, an environment does so at its end.
+        """Ends the records and closes the window, if there are some; as a context manager, it does so at its end.
 
         Raises:
             RecordError: They cannot be written.
         """
         if self._record is not None:
             self._record.close()
+        if self._window is not None:
+            self._window.close()
 
     def __enter__(self) -> Self:
         return self

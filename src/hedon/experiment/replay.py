@@ -10,17 +10,19 @@ from hedon.check.finding import Finding
 from hedon.config.load import parse_config
 from hedon.error import HedonError
 from hedon.experiment.branch import plan_branch, start_branch
+from hedon.experiment.plan import Display
 from hedon.record.folder import checkpoint_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 
 
-def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...], str]:
+def replay_run(folder: Path | str, threads: int = 0, display: Display | None = None) -> tuple[tuple[Finding, ...], str]:
     """Computes a run again, from its oldest checkpoint to its end, and compares.
 
     Args:
         folder: Folder of a run that has ended and in which nothing is wrong; it is only read.
         threads: Threads to use; 0 for all processors.
+        display: Shows progress.
 
     Returns:
         What differs, and one sentence on what was compared.
@@ -40,7 +42,7 @@ def replay_run(folder: Path | str, threads: int = 0) -> tuple[tuple[Finding, ...
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:
         try:
             again = Path(place) / "run"
-            manifest = start_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads))
+            manifest = start_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads), display)
             findings = tuple(_compare(run, open_run(again), manifest, start))
         except HedonError as error:
             return (Finding(f"checkpoint of step {start:,}", f"cannot be computed again: {error}"),), "not compared"
