@@ -17,6 +17,7 @@ import { Settings } from "./settings";
 import { Tabs } from "./tabs";
 import { events, Timeline } from "./timeline";
 import { Tools } from "./tools";
+import { Tree } from "./tree";
 import { Twin } from "./twin";
 import type { Source } from "./source";
 import type { Event, Frame, LiveWorld, Setting } from "./types";
@@ -40,6 +41,7 @@ export class App {
   pictures = 0;
   private coloring!: Coloring;
   private colors: Coloring[] = [];
+  tree: Tree | undefined;
   private plots: Plots | undefined;
   private tools: Tools | undefined;
   private goal: { step: number; agent: number } | undefined; // where the link of a live world leads
@@ -52,7 +54,7 @@ export class App {
   private readonly notice = new Notice();
   private readonly panel = new AgentPanel((id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
-  private readonly tabs = new Tabs(["agent", "plots", "settings", "world-panel"], (name) => this.opened(name));
+  private readonly tabs = new Tabs(["agent", "plots", "tree", "settings", "world-panel"], (name) => this.opened(name));
   private worlds: LiveWorld[] = [];
 
   async open(): Promise<void> {
@@ -237,6 +239,8 @@ export class App {
     by("color").replaceChildren(...this.colors.map((each) => option(each.name, each.label)));
     this.paint(this.coloring?.name ?? "");
     this.plots = new Plots(source, (step) => this.seek(step));
+    this.arena.marked = new Set();
+    this.tree = new Tree(source, (bearers) => (this.arena.marked = bearers), () => this.chosen);
     const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
     this.tools = new Tools(source, beside, () => this.twin.close());
     this.panel.forget();
@@ -324,6 +328,7 @@ export class App {
     this.marks = events(source);
     this.timeline.draw(source, this.now, this.marks);
     this.plots?.update(this.frame, this.now);
+    this.tree?.update(this.frame);
     this.panel.update(source, this.frame, this.chosen);
     by("status").textContent = this.goal ? `going to step ${show(this.goal.step)} …` : source.status();
     const skipped = this.skipped > 0 ? `${counted(Math.round(this.skipped), "step")} skipped` : "";

@@ -25,6 +25,7 @@ export class Arena {
   showRays = true;
   showTrail = true;
   follow = false;
+  marked = new Set<number>(); // agents of the branch that is chosen in the tree
   drawMilliseconds = 0; // of the last frame, on the page's side
   private colors = new Uint32Array(256);
   private trail: [number, number, number][] = []; // step, x, y
@@ -127,6 +128,7 @@ export class Arena {
       this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouth, known ? 0 : 0.3, middle);
       if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
     }
+    if (this.marked.size > 0) this.markBranch(source, frame);
     if (at >= 0) this.markKin(source, frame, at);
     return legend;
   }
@@ -170,6 +172,13 @@ export class Arena {
       const color = ray.type < 0 ? nothing : pack(parse(typeColor(layout, ray.type) || wall));
       this.scene.line(ray.x0, ray.y0, ray.x1, ray.y1, color);
       if (ray.type >= 0) this.scene.disc(ray.x1, ray.y1, 1.4, color);
+    }
+  }
+
+  private markBranch(source: Source, frame: Frame): void {
+    const color = pack(parse(styleColor("--branch")));
+    for (let i = 0; i < frame.id.length; i++) {
+      if (this.marked.has(frame.id[i]!)) this.scene.disc(frame.x[i]!, frame.y[i]!, bodyOf(source, frame, i).radius * 1.5, color, 0, 2, 0.16);
     }
   }
 

@@ -1,5 +1,7 @@
 // The time line: population over time, births and deaths, events, and the place of the moment that is shown.
+import { drift } from "./drift";
 import { styleColor } from "./element";
+import { columnOf } from "./series";
 import type { Source } from "./source";
 import type { Event } from "./types";
 
@@ -22,6 +24,28 @@ export function events(source: Source): Event[] {
   }
   const peak = alive.indexOf(most);
   if (peak > 0) found.push({ step: step[peak]!, text: `most agents alive: ${most}` });
+  const least = alive.reduce((a, b) => Math.min(a, b), Infinity);
+  const trough = alive.indexOf(least);
+  if (least > 0 && trough > 0 && trough < step.length - 1) found.push({ step: step[trough]!, text: `fewest agents alive: ${least}` });
+  return [...found, ...departures(source)];
+}
+
+/** From when on each weight of the reward is outside what drift alone does, if it still is at the end. */
+function departures(source: Source): Event[] {
+  const { layout, series } = source;
+  const found: Event[] = [];
+  for (const species of layout.species) {
+    const owner = layout.species.length > 1 ? `${species.name}: ` : "";
+    species.genes.forEach((g, i) => {
+      const gene = layout.genes[g]!;
+      const band = gene.role === "reward" ? drift(source, species, i) : "";
+      if (typeof band === "string") return;
+      const means = series.get(columnOf(layout, species, `${gene.name}_mean`));
+      const inside = series.step.findLastIndex((_, at) => band.low[at] == null || !(means[at]! < band.low[at]! || means[at]! > band.high[at]!));
+      const step = series.step[inside + 1];
+      if (step !== undefined) found.push({ step, text: `${owner}${gene.title}: outside drift from here on` });
+    });
+  }
   return found;
 }
 
