@@ -68,7 +68,7 @@ def show_settings(watched):
 def show_plots(watched):
     watched.until("hedon.source.series.step.length > 1 && hedon.source.lives.size > 0")
     watched.get("(hedon.play(false), hedon.seek(hedon.source.last * 0.7))")
-    watched.page.locator("#color").select_option("species")
+    watched.page.locator("#color").select_option("w_normal")
     watched.get("hedon.tab('plots')")
 
 

@@ -72,8 +72,9 @@ def test_the_demo_site_shows_all_agents_at_every_step(watch):
     with serving(demo_server()) as server:
         watched = watch(f"http://127.0.0.1:{server.server_port}/index.html")
         watched.until("hedon.source.lives.size > 0")
-        last = watched.get("hedon.source.last")
-        for step in range(64, last + 1, 64):
+        last, frames = watched.get("hedon.source.last"), watched.get("hedon.source.index.frames")
+        assert last // frames >= 50
+        for step in range(frames, last + 1, frames):
             watched.rest_at(step)
             alive = f"(life) => life.birth <= {step} && (life.death < 0 || life.death > {step})"
             watched.until(f"hedon.frame.id.length === [...hedon.source.lives.all()].filter({alive}).length")

@@ -77,7 +77,9 @@ def test_a_click_on_a_branch_rings_who_bears_it(watch, replay, run_folder):
     )
     watched.page.locator("canvas.tree").click(position={"x": place[0], "y": place[1]})
     assert watched.get(RINGED) == family
-    assert watched.get("document.querySelector('#tree .said').innerText").startswith(f"{len(family)} agents of {len(living)}")
+    assert watched.get("document.querySelector('#tree .said').innerText").startswith(
+        f"{len(family)} agents of {len(living)}"
+    )
     watched.until("document.getElementById('legend').innerText.includes('of the chosen branch')")
     watched.rest_at(1024)  # the branch stays, and who bears it is who lived then
     watched.until(f"{RINGED}.join() === '{','.join(map(str, below(*pedigree(run_folder, 1024), branch)))}'")
@@ -103,7 +105,8 @@ def test_a_live_world_and_several_species_have_trees(watch, tmp_path):
         watched = watch(server.link)
         watched.get("hedon.tab('tree')")
         run_live(watched, 300)
-        watched.until(f"{TREE}.branches.filter((b) => b.end === 300).length === hedon.frame.id.length")
+        watched.get("hedon.seek(hedon.source.last)")
+        watched.until(f"hedon.frame.step === 300 && {TREE}.branches.filter((b) => b.end === 300).length === hedon.frame.id.length")
     run = open_run(record_species(tmp_path / "run", steps=640, seeds=(1,)))
     with serving(run_server(run.path)) as server:
         watched = opened(watch, server, 640)

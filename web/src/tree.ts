@@ -167,6 +167,7 @@ export class Tree {
       if (parent) pen.fillRect(x - 0.5, Math.min(this.toY(parent.row), y), 1, Math.abs(this.toY(parent.row) - y));
     }
     pen.globalAlpha = 1;
+    pen.textAlign = "left";
     pen.fillStyle = quiet;
     pen.fillText(`step ${show(this.source.first)}`, PAD, canvas.clientHeight - 4);
     pen.textAlign = "right";

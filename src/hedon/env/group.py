@@ -115,6 +115,14 @@ class Group:
         self.births, self.deaths = np.zeros(worlds, np.int64), np.zeros(worlds, np.int64)
         self.meals = np.zeros((worlds, len(meal_names)), np.int64)
         self._index, self._form = index, form
+        # None of these is ever replaced: looked up once, since steps of few agents are short.
+        self._shared = {
+            "actions": self.actions,
+            "observations": self.observations,
+            "rewards": self.rewards,
+            "ids": self.ids,
+        }
+        self._derived = (self.ids, self.ids_before, self.alive, self.born, self.terminated)
         self._eaten = self.meals.copy()
         # Within a repeat: rewards of who was born in it, by slot, and rows of those who were born and died in it.
         self._late = np.zeros_like(self.rewards)
@@ -144,8 +152,7 @@ class Group:
 
     def _tell(self, engine: Any) -> None:
         """Gives the actions to the agents."""
-        for name in ("actions", "observations", "rewards", "ids"):
-            array = getattr(self, name)
+        for name, array in self._shared.items():
             if not (array.flags.c_contiguous and array.flags.writeable):
                 raise ArgumentError(f"{name}: must be as it was made, writeable and contiguous")
         bad = engine.set_actions(self._index, self.actions, self._form)
@@ -190,17 +197,23 @@ class Group:
 
     def _finish(self, engine: Any) -> None:
         """What is derived from the ids of now and of before the steps."""
-        np.not_equal(self.ids, NOBODY, out=self.alive)
-        np.not_equal(self.ids, self.ids_before, out=self.born)
-        np.logical_and(self.born, self.ids_before != NOBODY, out=self.terminated)
-        self.born &= self.alive
-        self.born.sum(axis=1, out=self.births)
-        self.terminated.sum(axis=1, out=self.deaths)
+        ids, before, alive, born, terminated = self._derived
+        np.not_equal(ids, NOBODY, out=alive)
+        np.not_equal(ids, before, out=born)
+        if born.any():
+            np.logical_and(born, before != NOBODY, out=terminated)
+            born &= alive
+            born.sum(axis=1, out=self.births)
+            terminated.sum(axis=1, out=self.deaths)
+            self.actions[born] = self._middle
+        else:  # nobody came or went, as in most steps of few worlds
+            terminated.fill(False)
+            self.births.fill(0)
+            self.deaths.fill(0)
         if len(self._gone):
-            short = np.bincount(self._gone["world"], minlength=len(self.ids))
+            short = np.bincount(self._gone["world"], minlength=len(ids))
             self.births += short
             self.deaths += short
-        self.actions[self.born] = self._middle
         eaten = engine.meals(self._index)
         np.subtract(eaten, self._eaten, out=self.meals)
         self._eaten[...] = eaten
