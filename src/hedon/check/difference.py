@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import polars as pl
 
@@ -108,11 +108,11 @@ def _parting(seed: int, first: dict[str, WorldRecord], second: dict[str, WorldRe
         pair = first[name].until(until), second[name].until(until)
         cut = max(first[name].last_step, second[name].last_step) > until
         species = name if len(first) > 1 else ""
-        windows = _first_row(pair[0].population, pair[1].population, "step", "step")
+        windows = _first_row(pair[0].population, pair[1].population, "step", "step", how="inner")
         if windows is not None:
             found.append(Parting(seed, species, windows[0], None, windows[2], until))
             continue
-        lives = _first_row(*_lives(*pair, cut=cut), "agent_id", "birth_step")
+        lives = _first_row(*_lives(*pair, cut=cut), "agent_id", "birth_step", how="full")
         if lives is not None:
             found.append(Parting(seed, species, *lives, until))
     return min(found, key=lambda each: each.step or 0, default=Parting(seed, "", None, None, {}, until))
@@ -130,11 +130,14 @@ def _lives(one: WorldRecord, two: WorldRecord, *, cut: bool) -> tuple[pl.DataFra
 
 
 def _first_row(
-    one: pl.DataFrame, two: pl.DataFrame, key: str, order: str
+    one: pl.DataFrame, two: pl.DataFrame, key: str, order: str, how: Literal["inner", "full"]
 ) -> tuple[int, int, dict[str, tuple[Any, Any]]] | None:
-    """The first row in which two tables differ: its order, its key, and the values that differ; None if none does."""
+    """The first row in which two tables differ: its order, its key, and the values that differ; None if none does.
+
+    Of windows only those count that both have: a run that ends within one has a row there that a longer one lacks.
+    """
     columns = [name for name in one.columns if name in two.columns and name not in (*_NAMES, key)]
-    both = one.select(key, *columns).join(two.select(key, *columns), on=key, how="full", coalesce=True, suffix=" 2")
+    both = one.select(key, *columns).join(two.select(key, *columns), on=key, how=how, coalesce=True, suffix=" 2")
     differs = [(pl.col(name).ne_missing(pl.col(f"{name} 2"))).alias(name) for name in columns]
     rows = both.filter(pl.any_horizontal(differs)) if columns else both.clear()
     if rows.is_empty():

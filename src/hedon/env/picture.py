@@ -1,9 +1,10 @@
-"""Pictures of worlds that a program drives, as films of runs have them."""
+"""Pictures of worlds that a program drives, as films of runs have them: for the program, or in a window."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.env.window import Window
 from hedon.experiment.sample import snapshot
 from hedon.experiment.world import World
 from hedon.figure.film import Film
@@ -12,24 +13,41 @@ WIDTH = 640
 """Of a picture [pixel]."""
 
 
-class Camera:
-    """Takes pictures of worlds of one config.
+class Eye:
+    """Looks at worlds of one config.
 
     Args:
         config: Of the worlds.
+        mode: `rgb_array` for pictures, `human` for a window.
+
+    Raises:
+        ArgumentError: What shows windows is not installed.
     """
 
-    def __init__(self, config: Config) -> None:
+    def __init__(self, config: Config, mode: str) -> None:
+        self._window = Window() if mode == "human" else None
         self._colors = {kind: food.color for kind, food in config.food.items()}
         self._top = max(species.energy.capacity for species in config.species.values())
         self._films: dict[tuple[int, int], Film] = {}
 
-    def picture(self, world: World) -> NDArray[np.uint8]:
-        """What a world looks like now: (height, width, 3), red, green, blue.
+    def see(self, world: World) -> NDArray[np.uint8] | None:
+        """What a world looks like now: (height, width, 3), red, green, blue; None where a window shows it.
 
         Args:
             world: To look at.
         """
+        picture = self._picture(world)
+        if self._window is None:
+            return picture
+        self._window.show(picture)
+        return None
+
+    def close(self) -> None:
+        """Closes the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+
+    def _picture(self, world: World) -> NDArray[np.uint8]:
         seen = snapshot(world)
         place = (world.index, world.seed)  # obstacles depend on the seed
         if place not in self._films:

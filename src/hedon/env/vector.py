@@ -123,8 +123,7 @@ class VectorEnv:
         self._form, self._fresh = form, True
         self._next_seed = (max(simulation.seeds) + 1) % (MAX_WORLD_SEED + 1)
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
-        self._film: Any = None
-        self._window: Any = None
+        self._eye: Any = None
         self._record: Any = None  # also of a copy: it has no records
 
     @property
@@ -237,7 +236,7 @@ class VectorEnv:
         done, stopped = 0, None
         while done < self.repeat and stopped is None:
             try:
-                self._advance()
+                self._record.advance() if self._record else self.simulation.run(1)
             except KeyboardInterrupt as interrupt:  # raised by the engine when the step was done
                 stopped = interrupt
             done += 1
@@ -257,8 +256,7 @@ class VectorEnv:
     def render(self, world: int = 0) -> NDArray[np.uint8] | None:
         """A picture of a world as it is now: (height, width, 3); None without a `render_mode`.
 
-        With `human`, the picture is shown in a window instead, as each step and reset does with world 0. Closing the
-        window ends that; the steps go on.
+        With `human` a window shows it instead, as each step and reset does with world 0, until somebody closes it.
 
         Args:
             world: Its index.
@@ -268,18 +266,11 @@ class VectorEnv:
         """
         if self.render_mode is None:
             return None
-        from hedon.env.picture import Camera  # loads matplotlib
+        from hedon.env.picture import Eye  # loads matplotlib
 
         index = integer("world", world, 0, len(self.simulation.worlds) - 1)
-        self._film = self._film or Camera(self.config)
-        picture = self._film.picture(self.simulation.worlds[index])
-        if self.render_mode != "human":
-            return picture
-        from hedon.env.window import Window  # loads pygame
-
-        self._window = self._window or Window()
-        self._window.show(picture)
-        return None
+        self._eye = self._eye or Eye(self.config, self.render_mode)
+        return self._eye.see(self.simulation.worlds[index])
 
     def close(self) -> None:
         """Ends the records and closes the window, if there are some; as a context manager, it does so at its end.
@@ -287,10 +278,8 @@ class VectorEnv:
         Raises:
             RecordError: They cannot be written.
         """
-        if self._record is not None:
-            self._record.close()
-        if self._window is not None:
-            self._window.close()
+        for each in filter(None, (self._record, self._eye)):
+            each.close()
 
     def __enter__(self) -> Self:
         return self
@@ -394,13 +383,6 @@ class VectorEnv:
             )
         for name, array in actions.items():
             self.groups[name]._take(array)
-
-    def _advance(self) -> None:
-        """One step of the worlds."""
-        if self._record is None:
-            self.simulation.run(1)
-        else:
-            self._record.advance()
 
     def _judge(self, steps: int) -> None:
         """Says whose time is over."""

@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import polars as pl
 from scipy import stats
 
+from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
 from hedon.config.title import weight_title
@@ -13,8 +15,11 @@ from hedon.record.reader import Run
 
 LEVEL = 0.05
 """Chance at or below which a weight is called selected, corrected for all weights and tests."""
-HOPELESS = 100.0
-"""So many times the steps, or more, are not called a way to decide it."""
+HINT = 0.2
+"""Chance of the test alone above which nothing speaks for selection, so that no time is told that would decide it."""
+UNLEARNED = (
+    "These agents do not learn from their rewards, so selection cannot see the weights, unless a program acts by them."
+)
 UNKNOWN = (
     "What chance alone does to the weights is not known here: it is computed where children have one parent, founders "
     "are drawn from a law, mutations are independent, and the records are whole."
@@ -39,14 +44,14 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
     tests, scores = (_rows(tables.get(name), worlds[0].condition) for name in ("drift", "drift_world"))
     if tests.is_empty() or scores.is_empty():
         return [UNKNOWN]
-    corrected = tests.filter(pl.col("p_holm").is_not_null())
+    corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # another family of tests
     seconds = _seconds(worlds, runs)
-    told = []
+    told = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
     for name in worlds[0].reward_names:
         row = corrected.filter((pl.col("weight") == name) & (pl.col("test") == "direction"))
         if not row.is_empty():
             ended = _ended(name, scores.filter(pl.col("weight") == name))
-            told.append(f"{ended}: {_verdict(row['effect'][0], row['p_holm'][0], corrected.height, seconds)}")
+            told.append(f"{ended}: {_verdict(row.row(0, named=True), corrected.height, seconds)}")
     return told or [UNKNOWN]
 
 
@@ -57,34 +62,33 @@ def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
 
 
 def _ended(name: str, scores: pl.DataFrame) -> str:
-    """Where a weight ended, and how far chance alone carries it."""
+    """Where a weight of the agents born last ended, and how far chance alone carries it."""
     title, means = weight_title(name), scores["mean"]
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
     chance = f"chance alone reaches {low:+.2f} to {high:+.2f}"
+    last = f"Of the agents born last (at most {LAST_AGENTS:,}), the mean {title}"
     if scores.height == 1:
-        return f"The {title} ended at {means[0]:+.2f}, and {chance}"
+        return f"{last} is {means[0]:+.2f}, and {chance}"
     outside = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
-    where = f"ended between {means.min():+.2f} and {means.max():+.2f} in {scores.height} worlds, on average at"
-    return f"The {title} {where} {means.mean():+.2f}; {chance}, and {outside} of them lie outside"
+    where = f"is {means.min():+.2f} to {means.max():+.2f} in {scores.height} worlds, on average"
+    return f"{last} {where} {means.mean():+.2f}; {chance}, and {outside} of them lie outside"
 
 
-def _verdict(score: float, p: float, tests: int, seconds: float | None) -> str:
+def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
     """What the test says; where it does not decide, how many times the steps would, if all goes on like this.
 
     Args:
-        score: mean over worlds, in standard deviations of drift.
-        p: corrected chance of it.
-        tests: for how many p is corrected.
+        test: row of the table drift: mean score over worlds, in standard deviations of drift, p, and p corrected.
+        tests: for how many that is.
         seconds: that the steps took; None if it is not known.
     """
-    chance = f"p = {p:.2g}, corrected for {tests} tests"
-    if p <= LEVEL:
+    score, chance = test["effect"], f"p = {test['p_holm']:.2g}, corrected for {tests} tests against drift"
+    if test["p_holm"] <= LEVEL:
         return f"selected {'for' if score > 0 else 'against'} ({chance})."
-    # What selection adds grows with time, what drift adds with its square root.
-    needed = float(stats.norm.isf(LEVEL / 2 / tests))
-    times = (needed / score) ** 2 if score else math.inf
-    if times >= HOPELESS:
+    if test["p"] > HINT:
         return f"selection is not shown ({chance}), and nothing speaks for it so far."
+    # What selection adds grows with time, what drift adds with its square root; worlds add up likewise.
+    times = (float(stats.norm.isf(LEVEL / 2 / tests)) / score) ** 2 / test["worlds"]
     after = f"about {max(times, 1.1):.2g} times the steps"
     wait = "" if seconds is None else f", {_minutes((max(times, 1.1) - 1) * seconds)} more on this machine,"
     return f"selection is not shown ({chance}). If it goes on like this, {after}{wait} decide it."

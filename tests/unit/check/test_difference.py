@@ -47,6 +47,15 @@ def change(folder: Path, table: str, rows: pl.Expr, column: str, value: float) -
         read.with_columns(changed).write_parquet(part)
 
 
+@pytest.mark.parametrize("steps", [3 * WINDOW - 20, 20])
+def test_runs_that_end_within_a_window_are_equal_as_far_as_they_go(runs, tmp_path, steps):
+    small_run(tmp_path / "cut", steps)
+    for pair in ((runs / "a", tmp_path / "cut"), (tmp_path / "cut", runs / "a")):
+        found = compare_runs(*pair)
+        assert found.same
+        assert {each.until for each in found.partings} == {steps}
+
+
 def test_the_first_window_and_quantity_that_part_are_named(runs, tmp_path):
     shutil.copytree(runs / "a", tmp_path / "changed")
     late = (pl.col("world") == 1) & (pl.col("step") >= 3 * WINDOW)

@@ -13,7 +13,7 @@ from hedon.analysis.result import make_table
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze
 from hedon.report.run import write_report
-from hedon.report.words import UNKNOWN, answers
+from hedon.report.words import UNKNOWN, UNLEARNED, answers
 
 
 @pytest.fixture(scope="module")
@@ -21,13 +21,15 @@ def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
     return analyze([open_run(write_run(tmp_path_factory.mktemp("words") / "run", intervals=10, worlds=1))])
 
 
-def told(analysis: Analysis, score: float, p: float, means: tuple[float, ...] = (0.5,)) -> str:
-    """What is said of the weight of food with this outcome, beside five other tests."""
+def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) -> str:
+    """What is said of the weight of food with this mean score, beside five other tests."""
     condition = next(iter(analysis.conditions))
     row = {"condition": condition, "weight": "w_normal"}
-    outcome = {"test": "direction", "effect": score, "p_holm": p}
+    p = float(2 * stats.norm.sf(abs(score) * len(means) ** 0.5))
+    outcome = {"test": "direction", "worlds": len(means), "effect": score, "p": p, "p_holm": min(6 * p, 1.0)}
+    other = {"condition": condition, "weight": "another", "worlds": 1, "effect": 0.0, "p": 1.0, "p_holm": 1.0}
     others = [
-        {"condition": condition, "weight": "w_action", "test": f"{i}", "effect": 0.0, "p_holm": 1.0} for i in range(5)
+        other | {"test": test} for test in ("direction", "distance", "held", "distance", "held", "marker", "marker")
     ]
     ends = [row | {"mean": mean, "null_low": -0.2, "null_high": 0.3} for mean in means]
     tables = {
@@ -38,26 +40,33 @@ def told(analysis: Analysis, score: float, p: float, means: tuple[float, ...] = 
 
 
 def test_a_weight_beyond_chance_is_selected(analysis):
-    said = told(analysis, 3.5, 0.003)
-    assert said == (
-        "The weight of normal food ended at +0.50, and chance alone reaches -0.20 to +0.30: selected for "
-        "(p = 0.003, corrected for 6 tests)."
+    assert told(analysis, 3.5) == (
+        "Of the agents born last (at most 5,000), the mean weight of normal food is +0.50, and chance alone reaches "
+        "-0.20 to +0.30: selected for (p = 0.0028, corrected for 6 tests against drift)."
     )
-    assert "selected against (" in told(analysis, -3.5, 0.003, (-0.5,))
+    assert "selected against (" in told(analysis, -3.5, (-0.5,))
 
 
 def test_a_weight_that_may_have_drifted_says_how_long_would_decide(analysis):
-    said = told(analysis, 1.5, 0.8)
+    said = told(analysis, 1.5)
     times = (stats.norm.isf(0.05 / 12) / 1.5) ** 2  # the run took ten seconds
     assert f"about {times:.2g} times the steps, {math.ceil((times - 1) * 10)} seconds more on this machine" in said
-    assert "nothing speaks for it" in told(analysis, 0.0, 1.0)
-    assert "nothing speaks for it" in told(analysis, 0.1, 1.0)
+    assert "nothing speaks for it" in told(analysis, 0.0)
+    assert "nothing speaks for it" in told(analysis, 1.2)  # not even without correction
 
 
 def test_several_worlds_tell_how_many_went_beyond_chance(analysis):
-    said = told(analysis, 3.5, 0.003, (0.5, 0.1, -0.4))
-    assert "ended between -0.40 and +0.50 in 3 worlds, on average at +0.07" in said
+    said = told(analysis, 2.0, (0.5, 0.1, -0.4))
+    assert "is -0.40 to +0.50 in 3 worlds, on average +0.07" in said
     assert "and 2 of them lie outside: selected for" in said
+
+
+def test_agents_that_do_not_learn_are_named(tmp_path: Path):
+    still = write_run(tmp_path / "run", intervals=5, worlds=1)
+    (still / "config.toml").write_text('preset = "baseline"\n[learning]\npolicy = "random"\n')
+    said = next(iter(analyze([open_run(still)], ["drift"]).answers.values()))
+    assert said[0] == UNLEARNED
+    assert len(said) == 3
 
 
 def test_what_is_not_known_is_said(analysis):
@@ -73,9 +82,9 @@ def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analy
     for name, line in zip(("w_normal", "w_action"), said, strict=True):
         assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+.2f}" in line
     page, text = (files[name].read_text(encoding="utf-8") for name in ("report.html", "report.md"))
-    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>The weight", page)
+    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Of the agents", page)
     order = [
         text.index(part)
-        for part in ("- The weight of normal", "figures/history.png", "figures/weights.png", "## Tables")
+        for part in ("- Of the agents born last", "figures/history.png", "figures/weights.png", "## Tables")
     ]
     assert order == sorted(order)

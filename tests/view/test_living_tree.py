@@ -106,7 +106,9 @@ def test_a_live_world_and_several_species_have_trees(watch, tmp_path):
         watched.get("hedon.tab('tree')")
         run_live(watched, 300)
         watched.get("hedon.seek(hedon.source.last)")
-        watched.until(f"hedon.frame.step === 300 && {TREE}.branches.filter((b) => b.end === 300).length === hedon.frame.id.length")
+        watched.until(
+            f"hedon.frame.step === 300 && {TREE}.branches.filter((b) => b.end === 300).length === hedon.frame.id.length"
+        )
     run = open_run(record_species(tmp_path / "run", steps=640, seeds=(1,)))
     with serving(run_server(run.path)) as server:
         watched = opened(watch, server, 640)

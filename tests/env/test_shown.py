@@ -66,7 +66,7 @@ def test_copies_have_no_window_of_another():
         worlds.reset()
         other = copy.deepcopy(worlds)
         other.step(other.actions)
-        assert other._window is not worlds._window
+        assert other._eye is not worlds._eye
 
 
 def test_one_agent_is_shown_too():
