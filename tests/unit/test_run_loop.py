@@ -27,3 +27,17 @@ def test_deaths_are_kept_however_many_a_window_has(tmp_path):
     assert dead["agent_id"].n_unique() == len(dead)
     population = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet")
     assert population["deaths"].sum() == len(dead)
+
+
+def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
+    class Shown:
+        def update(self, moment):
+            self.last = moment
+
+    display = Shown()
+    run(RunPlan(load_config("baseline", overrides=BRIEF), (1,), 500, tmp_path / "run", threads=1), display)
+    row = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet").sort("step").row(-1, named=True)
+    assert (display.last.step, row["step"]) == (500, 500)
+    assert {name: display.last.rows[0][name] for name in ("alive", "births", "deaths")} == {
+        name: row[name] for name in ("alive", "births", "deaths")
+    }

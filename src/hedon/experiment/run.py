@@ -159,6 +159,8 @@ def advance(
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
         recorder.checkpoint(step, seconds)
         recorder.interval()
+        if display is not None:
+            display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
         status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
     except EngineError as error:
         manifest = replace(manifest, fault=str(error))
