@@ -83,6 +83,10 @@ def test_a_click_on_a_branch_rings_who_bears_it(watch, replay, run_folder):
     watched.until("document.getElementById('legend').innerText.includes('of the chosen branch')")
     watched.rest_at(1024)  # the branch stays, and who bears it is who lived then
     watched.until(f"{RINGED}.join() === '{','.join(map(str, below(*pedigree(run_folder, 1024), branch)))}'")
+    watched.get("hedon.tab('plots')")  # also where the tree is not seen
+    watched.rest_at(1536)
+    watched.until(f"{RINGED}.join() === '{','.join(map(str, below(*pedigree(run_folder, 1536), branch)))}'")
+    watched.get("hedon.tab('tree')")
     watched.page.get_by_role("button", name="No branch").click()
     assert watched.get(RINGED) == []
 

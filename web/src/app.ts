@@ -239,7 +239,6 @@ export class App {
     by("color").replaceChildren(...this.colors.map((each) => option(each.name, each.label)));
     this.paint(this.coloring?.name ?? "");
     this.plots = new Plots(source, (step) => this.seek(step));
-    this.arena.marked = new Set();
     this.tree = new Tree(source, (bearers) => (this.arena.marked = bearers), () => this.chosen);
     const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
     this.tools = new Tools(source, beside, () => this.twin.close());
@@ -341,22 +340,8 @@ export class App {
     if (source instanceof Live) this.twin.caption(source, this.now);
     by("look-follow").setAttribute("aria-pressed", String(this.arena.follow));
     by("look-full").setAttribute("aria-pressed", String(document.fullscreenElement !== null));
-    this.showNotice();
+    this.notice.about(source, this.now, this.arena.scene.lost, (live, seed) => this.start(live.world, live.changes, seed), () => this.play(true));
     if (legend) this.legend.update(source, this.arena, this.coloring, legend, this.chosen >= 0);
-  }
-
-  /** What is wrong or over, with a way on. */
-  private showNotice(): void {
-    const { source } = this;
-    const again = (seed: number) => source instanceof Live && this.start(source.world, source.changes, seed);
-    const begin = { "Begin again": () => again((source as Live).seed) };
-    if (this.arena.scene.lost) this.notice.show("The browser took the graphics away. They come back by themselves, or with the page.", { "Load the page again": () => location.reload() });
-    else if (source instanceof Live && source.error) this.notice.show(source.error, begin);
-    else if (source instanceof Live && source.over && this.now >= source.last) {
-      const look = { "Look back": () => this.play(true) };
-      const other = { "Another seed": () => again((source as Live).seed + 1) };
-      this.notice.show(`The world died out at step ${show(source.last)}.`, { ...look, ...begin, ...other });
-    } else this.notice.show("");
   }
 
   private bind(): void {

@@ -1,9 +1,21 @@
 // A notice over the arena: what is wrong or over, and what can be done.
-import { by, element } from "./element";
+import { by, element, show } from "./element";
+import { Live } from "./live";
+import type { Source } from "./source";
 
 export class Notice {
   private readonly host = by<HTMLDivElement>("notice");
   private shown = "";
+
+  /** Says what of a source is wrong or over, with a way on: to begin again with a seed, or to look back. */
+  about(source: Source, now: number, lost: boolean, again: (live: Live, seed: number) => void, back: () => void): void {
+    if (lost) this.show("The browser took the graphics away. They come back by themselves, or with the page.", { "Load the page again": () => location.reload() });
+    else if (source instanceof Live && source.error) this.show(source.error, { "Begin again": () => again(source, source.seed) });
+    else if (source instanceof Live && source.over && now >= source.last) {
+      const begin = { "Begin again": () => again(source, source.seed), "Another seed": () => again(source, source.seed + 1) };
+      this.show(`The world died out at step ${show(source.last)}.`, { "Look back": back, ...begin });
+    } else this.show("");
+  }
 
   /** Shows a text and buttons, by their names; an empty text for none. */
   show(text: string, acts: Record<string, () => void> = {}): void {

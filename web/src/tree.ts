@@ -27,6 +27,8 @@ export class Tree {
   private key = "";
   private frame: Frame | undefined;
   private readonly known = new Map<number, Branch>();
+  private readonly inside = new Set<Branch>(); // the chosen branch and all that grow from it
+  private readonly scales: ReturnType<typeof scaleOf>[]; // of the genes
   private readonly host = by<HTMLDivElement>("tree");
   private readonly canvas = element("canvas", { class: "tree" });
   private readonly gene = element("select");
@@ -38,6 +40,7 @@ export class Tree {
     private readonly mark: (bearers: Set<number>) => void,
     private readonly agent: () => number,
   ) {
+    this.scales = source.layout.genes.map(({ name }, g) => scaleOf(name, true, (life) => life.genome[g]!));
     this.canvas.setAttribute("role", "img");
     this.gene.setAttribute("aria-label", "Gene that colors the tree");
     this.gene.append(...source.layout.genes.map((gene, g) => option(String(g), gene.title)));
@@ -53,11 +56,12 @@ export class Tree {
       this.said,
       element("div", { class: "row" }, button("Branch of the agent", () => this.choose(agent())), button("One parent up", () => this.up()), button("No branch", () => this.choose(-1))),
     );
-    this.tell();
+    this.gather();
   }
 
+  /** Follows the moment that is shown; unseen, as far as a chosen branch is ringed in the arena. */
   update(frame: Frame | undefined): void {
-    if (this.host.hidden || !frame) return;
+    if (!frame || (this.host.hidden && this.chosen < 0)) return;
     const theme = styleColor("--quiet");
     const key = [frame.step, this.source.lives.size, this.canvas.clientWidth, theme].join();
     if (key === this.key) return;
@@ -124,15 +128,15 @@ export class Tree {
   }
 
   private gather(): void {
-    const found = new Set<number>();
-    const living = new Set(this.frame?.id);
+    this.inside.clear();
     const waiting = [this.known.get(this.chosen)];
     for (let next = waiting.pop(); next; next = waiting.pop()) {
-      if (living.has(next.life.id)) found.add(next.life.id);
+      this.inside.add(next);
       waiting.push(...next.children);
     }
-    this.bearers = found;
-    this.mark(found);
+    const below = new Set([...this.inside].map(({ life }) => life.id));
+    this.bearers = new Set([...(this.frame?.id ?? [])].filter((id) => below.has(id)));
+    this.mark(this.bearers);
     this.tell();
   }
 
@@ -144,18 +148,11 @@ export class Tree {
   }
 
   private redraw(): void {
-    const { canvas, frame } = this;
-    if (!frame) return;
+    const { canvas, frame, inside } = this;
+    if (!frame || this.host.hidden) return;
     const pen = surface(canvas);
     const g = Number(this.gene.value);
-    const gene = this.source.layout.genes[g]!;
-    const [, limit] = scaleOf(gene.name, true, (life) => life.genome[g]!)(this.source, frame);
-    const inside = new Set<Branch>();
-    const waiting = [this.known.get(this.chosen)];
-    for (let next = waiting.pop(); next; next = waiting.pop()) {
-      inside.add(next);
-      waiting.push(...next.children);
-    }
+    const [, limit] = this.scales[g]!(this.source, frame);
     const quiet = styleColor("--quiet");
     for (const branch of this.branches) {
       const value = branch.life.genome[g]!;
