@@ -61,6 +61,13 @@ def test_the_solver_jacobi_may_leave_deep_overlaps(apart):
         world.run(WINDOW)
 
 
+@pytest.mark.parametrize(("axis", "value"), [("x", -30.0), ("y", 1e4)])
+def test_a_body_beyond_the_walls_is_outside(world, axis, value):
+    poke(world, f"physics.bodies.{axis}", slot_of(world, 3), value)
+    with pytest.raises(EngineError, match=r"outside_arena.*agent 3.*max_speed"):
+        world.run(1)
+
+
 def test_a_body_in_a_corner_is_outside(world):
     """Within the rectangle, and yet beyond the chords of a rounded corner."""
     for axis in ("x", "y"):
