@@ -1,6 +1,6 @@
 # hedon as an image for clusters.
 #   docker build -t hedon .                                    (or podman, buildah)
-#   docker run --rm -v "$PWD/runs:/work/runs" hedon run baseline
+#   docker run --rm -v "$PWD/runs:/data/runs" hedon run baseline
 #   apptainer build hedon.sif docker-daemon://hedon:latest     (where there is no Docker)
 FROM debian:12-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends g++ python3-dev python3-venv && rm -rf /var/lib/apt/lists/*
@@ -11,5 +11,5 @@ FROM debian:12-slim
 RUN apt-get update && apt-get install -y --no-install-recommends python3 && rm -rf /var/lib/apt/lists/*
 COPY --from=build /opt/hedon /opt/hedon
 ENV PATH=/opt/hedon/bin:$PATH
-WORKDIR /work
+WORKDIR /data
 ENTRYPOINT ["hedon"]

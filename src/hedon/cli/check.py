@@ -44,7 +44,7 @@ def check(
             from hedon.record.reader import open_run
 
             opened = open_run(run)
-            with RunDisplay(Console(stderr=True), opened.columns, opened.manifest.seeds) as display:
+            with RunDisplay(Console(stderr=True, highlight=False), opened.columns, opened.manifest.seeds) as display:
                 found, note = replay_run(run, display=display)
             findings += found
             notes.append(note)

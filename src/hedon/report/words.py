@@ -64,6 +64,7 @@ def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
 def _ended(name: str, scores: pl.DataFrame) -> str:
     """Where a weight of the agents born last ended, and how far chance alone carries it."""
     title, means = weight_title(name), scores["mean"]
+    title += "," if "," in title else ""
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
     chance = f"chance alone reaches {low:+.2f} to {high:+.2f}"
     last = f"Of the agents born last (at most {LAST_AGENTS:,}), the mean {title}"
