@@ -103,6 +103,57 @@ def test_actions_can_be_written_in_every_way():
     assert (group.actions[group.alive & ~group.born] == -0.5).all()
 
 
+REFUSED = {
+    "not a number": (lambda: np.full(SHAPE, np.nan), "must be from -1 to 1"),
+    "too far": (lambda: np.full(SHAPE, 1.5), "must be from -1 to 1"),
+    "shape": (lambda: np.zeros((1, 5, 2)), "must be numbers of shape"),
+}
+
+
+@pytest.mark.parametrize(("bad", "says"), REFUSED.values(), ids=REFUSED)
+def test_actions_that_are_refused_leave_none_behind(bad, says):
+    worlds = make(CONFIG, seed=1, threads=1)
+    worlds.step(np.full(SHAPE, 0.25))
+    before = worlds.actions.copy()
+    with pytest.raises(ArgumentError, match=says):
+        worlds.step(bad())
+    assert (worlds.actions == before).all()
+    worlds.step(worlds.actions)
+    assert worlds.simulation.worlds[0].step == 2
+
+
+def test_a_wrong_action_of_one_species_leaves_those_of_all_as_they_were():
+    worlds = make("predator", seed=1, threads=1)
+    before = {name: array.copy() for name, array in worlds.actions.items()}
+    first, second = worlds.actions
+    with pytest.raises(ArgumentError, match="must be from -1 to 1"):
+        worlds.step({first: np.full_like(before[first], 0.5), second: np.full_like(before[second], np.nan)})
+    assert all((worlds.actions[name] == before[name]).all() for name in before)
+
+
+def test_what_the_caller_wrote_stays_until_it_is_set_right():
+    worlds = make(CONFIG, seed=1, threads=1)
+    worlds.actions[0, 3, 1] = np.nan
+    for _ in range(2):
+        with pytest.raises(ArgumentError, match=r"actions\[0, 3, 1\]"):
+            worlds.step(worlds.actions)
+    worlds.actions[0, 3, 1] = 0.5
+    worlds.step(worlds.actions)
+    assert worlds.simulation.worlds[0].step == 1
+
+
+def test_a_wrong_action_of_one_agent_in_gymnasium_leaves_none_behind():
+    pytest.importorskip("gymnasium", reason='needs the optional packages: pip install "hedon[env]"')
+    from hedon.env import AgentEnv
+
+    env = AgentEnv(CONFIG)
+    env.reset(seed=1)
+    before = env._group.actions.copy()
+    with pytest.raises(ArgumentError, match="must be from -1 to 1"):
+        env.step(np.array([np.nan, 0.0], np.float32))
+    assert (env._group.actions == before).all()
+
+
 MASKED = np.ma.masked_array([0.0, 1.0], [False, True])
 ACTIONS = {
     "none": (None, "actions = None: must be a dict of two numbers for each agent"),

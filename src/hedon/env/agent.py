@@ -110,13 +110,14 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         group, slot = self._group, self._slot
         if slot < 0:
             raise ArgumentError("step: there is no agent: call reset first")
-        if self._others is not None:
-            group.actions[0] = self._others(group.observations[0])
         given = np.asarray(action)
         if given.shape != (2,) or given.dtype.kind not in "fiu":
             raise ArgumentError("action: must be two numbers, left and right")
-        group.actions[0, slot] = given
-        self._vector.step(group.actions)
+        actions = group.actions.copy()  # so that one that is refused leaves none behind
+        if self._others is not None:
+            actions[0] = self._others(group.observations[0])
+        actions[0, slot] = given
+        self._vector.step(actions)
         died = bool(group.terminated[0, slot])
         seen = np.zeros(len(group.columns), np.float32) if died else self._seen()
         cut = bool(group.truncated[0, slot]) and not died

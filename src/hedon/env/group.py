@@ -1,5 +1,6 @@
 """The agents of one species that a caller drives, as arrays, and what becomes of them in a call of `VectorEnv.step`."""
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -247,6 +248,40 @@ class Group:
                 self._gone = array
             else:
                 vars(self)[name][...] = array
+
+
+def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
+    """Gives actions to the agents, or refuses them all: the arrays then have what they had before.
+
+    Args:
+        engine: That steps the worlds.
+        groups: The driven agents, by the name of their species.
+        actions: Of the only group, or a dictionary of them.
+
+    Raises:
+        ArgumentError: One is not what it can be.
+    """
+    given = _by_species(groups, actions)
+    held = [(group, group.actions.copy()) for group, array in given if array is not group.actions]
+    try:
+        for group, array in given:
+            group._take(array)
+        for group in groups.values():
+            group._tell(engine)
+    except ArgumentError:
+        for group, before in held:
+            group.actions[...] = before
+        raise
+
+
+def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, Any]]:
+    if len(groups) == 1:
+        return [(next(iter(groups.values())), actions)]
+    if not isinstance(actions, Mapping) or not actions.keys() <= groups.keys():
+        raise ArgumentError(
+            f"actions = {brief(repr(actions))}: must be a dict of arrays by species ({', '.join(groups)})"
+        )
+    return [(groups[name], array) for name, array in actions.items()]
 
 
 def _bounds(motor: MotorConfig, form: Form) -> tuple[float, float]:

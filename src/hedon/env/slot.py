@@ -1,4 +1,4 @@
-"""Slots of worlds as environments of Stable-Baselines3."""
+"""Slots of worlds as environments of Stable-Baselines3, which must be installed: `pip install stable-baselines3`."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -14,6 +14,8 @@ from hedon.error import ArgumentError
 
 class SlotVecEnv(VecEnv):
     """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
+
+    It needs Stable-Baselines3, which hedon does not bring: `pip install stable-baselines3`.
 
     An episode is a life: it ends at a death (`dones`), and the next one begins at the birth of who takes the slot.
     In between, while nobody lives there, is an episode of its own that shows zeros and pays 0; its infos have
@@ -34,6 +36,7 @@ class SlotVecEnv(VecEnv):
         self.worlds = worlds
         self.group: Group = next(iter(worlds.groups.values()))
         self.render_mode = worlds.render_mode
+        self._given: Any = self.group.actions
         super().__init__(self.group.ids.size, worlds.single_observation_space, worlds.single_action_space)
 
     def reset(self) -> Any:
@@ -45,12 +48,12 @@ class SlotVecEnv(VecEnv):
 
     def step_async(self, actions: Any) -> None:
         """Tells every agent what to do: (slots, 2)."""
-        self.group.actions[...] = actions.reshape(self.group.actions.shape)
+        self._given = actions
 
     def step_wait(self) -> Any:
         """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
         group, worlds = self.group, self.worlds
-        worlds.step(worlds.actions)
+        worlds.step(self._given)
         rewards = group.rewards.ravel().copy()
         over = group.truncated.any(axis=1) | ~group.alive.any(axis=1)
         dones = (group.terminated | group.born | over[:, None]).ravel()

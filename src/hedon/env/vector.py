@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.env.argument import chosen, driven, reset_mask, with_callers, world_seeds
-from hedon.env.group import FORMS, Form, Group
+from hedon.env.group import FORMS, Form, Group, act
 from hedon.env.keep import arrays_in, text_of
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError
@@ -223,13 +223,12 @@ class VectorEnv:
             (worlds, meals): see `Group`.
 
         Raises:
-            ArgumentError: An action of a living agent is not a number that it can be.
+            ArgumentError: An action of a living agent is not a number that it can be. Nothing is changed by that:
+                `actions` has what it had before the call, also what was written into it and is wrong.
             EngineError: A world reports an error.
         """
-        self._take(actions)
         engine = self.simulation.engine
-        for group in self.groups.values():
-            group._tell(engine)
+        act(engine, self.groups, actions)
         for group in self.groups.values():
             group._begin()
         self._fresh = False
@@ -372,17 +371,6 @@ class VectorEnv:
         """An array of the only driven species, or of each by its name."""
         every = {species: getattr(group, name) for species, group in self.groups.items()}
         return every if len(every) > 1 else next(iter(every.values()))
-
-    def _take(self, actions: Any) -> None:
-        if len(self.groups) == 1:
-            next(iter(self.groups.values()))._take(actions)
-            return
-        if not isinstance(actions, Mapping) or not actions.keys() <= self.groups.keys():
-            raise ArgumentError(
-                f"actions = {brief(repr(actions))}: must be a dict of arrays by species ({', '.join(self.groups)})"
-            )
-        for name, array in actions.items():
-            self.groups[name]._take(array)
 
     def _judge(self, steps: int) -> None:
         """Says whose time is over."""
