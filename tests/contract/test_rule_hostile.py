@@ -26,29 +26,68 @@ def make(path, text, name="rule"):
 
 
 REFUSED = {
-    "syntax": ("def rule(agent:\n    return 1\n", "its file fails: SyntaxError"),
-    "name": ("def rule(agent):\n    return 1 + oops\n", "Numba cannot compile it: .*oops"),
-    "at once": ("1 / 0\n", "its file fails: ZeroDivisionError"),
-    "no exception": ("class Odd(BaseException):\n    pass\nraise Odd('x')\n", r"its file fails: Odd\('x'\)"),
+    "syntax": ("def rule(agent:\n    return 1\n", r"its file fails at line 1: SyntaxError: '\(' was never closed"),
+    "name": (
+        "def rule(agent):\n    return 1 + oops\n",
+        "Numba cannot compile it: NameError: name 'oops' is not defined",
+    ),
+    "at once": ("1 / 0\n", "its file fails at line 1: ZeroDivisionError"),
+    "no exception": ("class Odd(BaseException):\n    pass\nraise Odd('x')\n", r"its file fails at line 3: Odd\('x'\)"),
     "compiled": (
         "def rule(agent):\n    if agent.age > 1.0:\n        raise SystemExit\n    return 1.0\n",
-        "Numba cannot compile it: .*for exception",
+        "Numba cannot compile line 3: Encountered unsupported constant type used for exception",
     ),
-    "end of a generator": ("raise GeneratorExit\n", "its file fails: GeneratorExit"),
-    "exit": ("import sys\nsys.exit(0)\n", "its file fails: SystemExit"),
-    "import": ("import no_such_module\ndef rule(agent):\n    return 1.0\n", "its file fails: ModuleNotFoundError"),
+    "end of a generator": ("raise GeneratorExit\n", "its file fails at line 1: GeneratorExit"),
+    "exit": ("import sys\nsys.exit(0)\n", "its file fails at line 2: SystemExit"),
+    "import": (
+        "import no_such_module\ndef rule(agent):\n    return 1.0\n",
+        "its file fails at line 1: ModuleNotFoundError",
+    ),
     "number": ("rule = 3.0\n", "has no function rule"),
     "class": ("class rule:\n    pass\n", "has no function rule"),
     "builtin": ("from math import sin as rule\n", "has no function rule"),
     "empty": ("", "has no function rule"),
     "two": ("def rule(agent, world):\n    return 1.0\n", r"a rule takes one agent, but this is rule\(agent, world\)"),
     "none": ("def rule():\n    return 1.0\n", r"a rule takes one agent, but this is rule\(\)"),
-    "nothing": ("def rule(agent):\n    pass\n", "Numba cannot compile it"),
-    "complex": ("def rule(agent):\n    return agent.energy + 1j\n", "Numba cannot compile it"),
-    "generator": ("def rule(agent):\n    yield 1.0\n", "Numba cannot compile it"),
+    "nothing": ("def rule(agent):\n    pass\n", "it returns none: a rule returns one number"),
+    "complex": ("def rule(agent):\n    return agent.energy + 1j\n", "it returns complex128: a rule returns one number"),
+    "generator": ("def rule(agent):\n    yield 1.0\n", "it returns float64 generator.*: a rule returns one number"),
     "coroutine": ("async def rule(agent):\n    return 1.0\n", "rule must be a plain function"),
-    "counter": ("n = 0\ndef rule(agent):\n    global n\n    n += 1\n    return n\n", "Numba cannot compile it"),
-    "file": ("def rule(agent):\n    return float(len(open('/etc/hosts').read()))\n", "Numba cannot compile it"),
+    "counter": (
+        "n = 0\ndef rule(agent):\n    global n\n    n += 1\n    return n\n",
+        r"Numba cannot compile line 4: Use of unsupported opcode \(STORE_GLOBAL\)",
+    ),
+    "file": (
+        "def rule(agent):\n    return float(len(open('/etc/hosts').read()))\n",
+        "Numba cannot compile line 2: .*'open'",
+    ),
+    "a text": (
+        "def rule(agent):\n    x = 1\n    return agent.energy + 'a'\n",
+        r"Numba cannot compile line 3: No implementation of .* add\(float64, Literal\[str\]\(a\)\)",
+    ),
+    "energy": (
+        "def rule(agent):\n    agent.energy = 1\n    return 1.0\n",
+        r"line 2: it writes agent\.energy.*agent\.memory_1",
+    ),
+    "energy added": ("def rule(a):\n    a.energy += 1\n    return 1.0\n", r"line 2: it writes agent\.energy"),
+    "energy elsewhere": (
+        "import numba\n@numba.njit\ndef eat(a):\n    a.energy = 1\ndef rule(agent):\n    eat(agent)\n    return 1.0\n",
+        r"line 4: it writes agent\.energy",
+    ),
+    "numpy's chance": (
+        "import numpy as np\ndef rule(agent):\n    return np.random.rand()\n",
+        r"line 3: numpy\.random.* is chance.* returns a probability",
+    ),
+    "chance": (
+        "from random import gauss as g\ndef rule(agent):\n    return g(0, 1)\n",
+        r"line 3: random\.gauss is chance",
+    ),
+    "chance elsewhere": (
+        "import random\nimport numba\n@numba.njit\ndef draw():\n    return random.random()\n"
+        "def rule(agent):\n    return draw()\n",
+        r"line 5: random.* is chance",
+    ),
+    "time": ("import time\ndef rule(agent):\n    return time.time()\n", r"line 3: time\.time is the time.*agent\.step"),
     "null": ("def rule(agent):\n    return 1.0\n\0", "its file fails"),
 }
 
@@ -119,6 +158,9 @@ WORKS = {
     "lambda": "rule = lambda agent: agent.age\n",
     "compiled": "import numba\n@numba.njit\ndef rule(agent):\n    return agent.age\n",
     "default": "def rule(agent, k=1.0):\n    return k * agent.age\n",
+    "chance of another rule": (
+        "import random\ndef rule(agent):\n    return agent.age\ndef other(agent):\n    return random.random()\n"
+    ),
     "whole": "def rule(agent):\n    return int(agent.age)\n",
 }
 

@@ -27,6 +27,7 @@ from hedon.config.problem import nearest
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.species import RULE_USES
 from hedon.error import ArgumentError, HedonError
+from hedon.experiment.rule_text import cause, failure, refusal
 from hedon.record.folder import CONFIG, MANIFEST
 from hedon.record.manifest import RuleSource, load_manifest
 from hedon.text import brief
@@ -72,7 +73,7 @@ class Rule:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a file may raise anything, also what is no Exception
-            raise self._error(f"its file fails: {brief(repr(error))}") from error
+            raise self._error(failure(error, self.source.file)) from error
         found = scope.get(self.source.name)
         function = getattr(found, "py_func", found)  # of a function that Numba has compiled already
         if not isinstance(function, FunctionType):
@@ -86,6 +87,8 @@ class Rule:
             signature(function).bind(None)
         except TypeError as error:
             raise self._error(f"a rule takes one agent, but this is {self.source.name}{signature(function)}") from error
+        if refused := refusal(self.source.text, self.source.name):
+            raise self._error(refused)
         return function
 
     def answers(self, records: NDArray[Any]) -> NDArray[np.float64]:
@@ -134,9 +137,8 @@ class Rule:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # Numba raises what its parts raise, not only its own errors
-            said = " ".join(str(error).split())
-            self._refuse_neutral(said, error)
-            raise self._error(f"Numba cannot compile it: {brief(said)}") from error
+            self._refuse_neutral(" ".join(str(error).split()), error)
+            raise self._error(cause(error, self.source.file)) from error
 
     def _refuse_neutral(self, said: str, error: BaseException) -> None:
         """RuleError: a field that was said to be missing is a neutral marker."""
