@@ -103,6 +103,13 @@ def test_actions_can_be_written_in_every_way():
     assert (group.actions[group.alive & ~group.born] == -0.5).all()
 
 
+def test_settings_are_changed_as_when_a_config_is_loaded():
+    worlds = make("baseline", overrides=["population.capacity=7", "population.initial_count=3"])
+    assert worlds.actions.shape == (1, 7, 2)
+    with pytest.raises(ArgumentError, match=r"overrides: go with .*config\.with_"):
+        make(CONFIG, overrides=["population.capacity=7"])
+
+
 REFUSED = {
     "not a number": (lambda: np.full(SHAPE, np.nan), "must be from -1 to 1"),
     "too far": (lambda: np.full(SHAPE, 1.5), "must be from -1 to 1"),

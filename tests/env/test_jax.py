@@ -180,3 +180,16 @@ def test_a_policy_that_was_trained_in_a_scan_forages_better_than_chance():
     spec.loader.exec_module(scan)
     trained, random = scan.Trainer().compare(generations=4)
     assert trained.mean() > 1.5 * random.mean() > 0
+
+
+@pytest.mark.parametrize("actions", ["unit", "force", "logit"])
+def test_spaces_are_of_what_functions_take_and_give(actions):
+    worlds = env.JaxEnv("baseline", actions=actions, overrides=["population.capacity=7", "population.initial_count=3"])
+    like = make(worlds.simulation.config, actions=actions)
+    observations, _ = worlds.reset(jax.random.key(0))
+    assert worlds.observation_space.shape == observations.shape == (7, len(worlds.columns))
+    assert worlds.observation_space.dtype == observations.dtype
+    assert worlds.observation_space.contains(np.asarray(observations))
+    assert worlds.action_space.shape == (worlds.slots, 2)
+    assert (worlds.action_space.low == like.action_space.low[0]).all()
+    assert (worlds.action_space.high == like.action_space.high[0]).all()

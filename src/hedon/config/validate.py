@@ -192,10 +192,25 @@ def _converted(kind: Any, value: Any) -> Any:
 
 
 def _nearest_name(section: type, name: str) -> str | None:
-    """The name nearest to an unknown one in its section, else the sections that have this name."""
-    default = PER_SPECIES if issubclass(section, Settings) else ()
-    beside = nearest(name, [*settings(section), *sections(section), *default])
-    return beside or " or ".join(_places(Settings, name)) or None
+    """The name nearest to an unknown one in its section, else the paths of those that are called so or nearly so.
+
+    Outside all sections the nearest of all names counts: `learing_rate` is no section `learning`.
+    """
+    outside = issubclass(section, Settings)
+    own = [*settings(section), *sections(section), *(PER_SPECIES if outside else ())]
+    every = dict.fromkeys(_names(Settings))
+    beside = nearest(name, own)
+    if beside is not None and (not outside or nearest(name, [*own, *every]) in own):
+        return beside
+    near = nearest(name, every)
+    return " or ".join(dict.fromkeys(_places(Settings, near))) if near else None
+
+
+def _names(section: type) -> Iterator[str]:
+    """The names of all settings in the inner sections of a section."""
+    for inner in sections(section).values():
+        yield from settings(inner.type)
+        yield from _names(inner.type)
 
 
 def _places(section: type, name: str, path: str = "") -> Iterator[str]:

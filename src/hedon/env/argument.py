@@ -1,12 +1,14 @@
 """Checks what environments are made with."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.config.load import load_config
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
@@ -15,6 +17,24 @@ from hedon.text import brief
 
 RESET_MASK = "reset_mask"
 """The option of `reset` that Gymnasium's vector environments have too."""
+
+
+def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
+    """The config itself, or that of a preset or a file with other settings.
+
+    Args:
+        config: As a caller gives it.
+        overrides: Texts `path=value`, as for `load_config`.
+
+    Raises:
+        ConfigError: A setting is wrong.
+        ArgumentError: There are overrides of a config that is loaded already.
+    """
+    if isinstance(config, str | Path):
+        return load_config(config, overrides=overrides)
+    if overrides:
+        raise ArgumentError("overrides: go with the name of a preset or a file; change a Config by config.with_(…)")
+    return config
 
 
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:

@@ -10,8 +10,8 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
-from functools import cache
+from collections.abc import Iterable, Sequence
+from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,9 +23,9 @@ from jax import numpy as jnp
 from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
-from hedon.config.load import load_config
-from hedon.env.argument import chosen, driven, with_callers
-from hedon.env.group import ACTIONS, FORMS, NOBODY, Form
+from hedon.env.argument import chosen, driven, loaded, with_callers
+from hedon.env.group import ACTIONS, FORMS, NOBODY, Form, Group
+from hedon.env.space import Spaces
 from hedon.error import ArgumentError, HedonError
 from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
 from hedon.experiment.simulation import Simulation
@@ -63,10 +63,13 @@ class JaxEnv:
         max_steps: Steps of a world after which it begins again; 0 for no end.
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
+        overrides: As for `hedon.make`.
 
     Attributes:
         columns: Names of the entries of an observation.
-        slots: Of the species in a world.
+        slots: Of the species in a world: how many agents can live at once.
+        observation_space: The `gymnasium.spaces.Box` of the observations of one world, (slots, entries) float32.
+        action_space: The same of its actions, (slots, 2) float32.
         simulation: The worlds themselves, to be read while no program runs.
 
     Raises:
@@ -92,8 +95,9 @@ class JaxEnv:
         max_steps: int = 0,
         threads: int = 0,
         backend: str = "",
+        overrides: Iterable[str] = (),
     ) -> None:
-        config = load_config(config) if isinstance(config, str | Path) else config
+        config = loaded(config, overrides)
         names = driven(config, species)
         if len(names) != 1:
             raise ArgumentError(f"species: must be one of {', '.join(names)}")
@@ -105,7 +109,24 @@ class JaxEnv:
         self._species = list(config.species).index(names[0])
         self.columns = observation_columns(config, names[0])
         self.slots = config.species[names[0]].population.capacity
+        self._name, self._actions = names[0], actions
         _register()
+
+    @cached_property
+    def _spaces(self) -> Spaces:
+        config, motor = self.simulation.config, self.simulation.config.species[self._name].motor
+        group = Group(self._species, self.columns, (), motor, self._actions, 1, self.slots)
+        return Spaces(config, {self._name: group})
+
+    @property
+    def observation_space(self) -> Any:
+        """What all slots of one world observe: a Box, (slots, entries) float32. It needs Gymnasium."""
+        return self._spaces.box_of(self._name, (self.slots,))
+
+    @property
+    def action_space(self) -> Any:
+        """What all slots of one world do: a Box, (slots, 2) float32. It needs Gymnasium."""
+        return self._spaces.action_box(self._name, (self.slots,))
 
     def reset(self, key: jax.Array) -> tuple[jax.Array, State]:
         """Begins a world.
@@ -114,7 +135,7 @@ class JaxEnv:
             key: From which its seed is taken.
 
         Returns:
-            The observations (slots, entries), zeros where nobody lives, and the state.
+            The observations (slots, entries) float32, zeros where nobody lives, and the state.
         """
         nobody = jnp.full((self.slots,), NOBODY, jnp.int32)
         before = State(jnp.int32(0), jnp.uint32(0), nobody)
@@ -130,12 +151,12 @@ class JaxEnv:
         Args:
             key: From which the seed is taken where the world begins again.
             state: The last one.
-            action: (slots, 2) left and right motor; rows without an agent are not read.
+            action: (slots, 2) float32, left and right motor; rows without an agent are not read.
 
         Returns:
-            The observations (slots, entries), the next state, rewards (slots,) of who was there before, whether the
-            world was over and has begun again, and a dictionary: `terminated` (slots,), who of them died, and `alive`
-            (slots,), where an agent lives now.
+            The observations (slots, entries) float32, the next state, rewards (slots,) float32 of who was there before,
+            () bool, whether the world was over and has begun again, and a dictionary: `terminated` (slots,) bool, who
+            of them died, and `alive` (slots,) bool, where an agent lives now.
 
             When the program runs, an error of JAX says what is wrong with an action, or that the state is stale.
         """

@@ -1,10 +1,10 @@
 """Makes worlds that a program drives."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from hedon.config.config import Config
-from hedon.config.load import load_config
+from hedon.env.argument import loaded
 from hedon.env.group import Form
 from hedon.env.vector import VectorEnv
 
@@ -22,6 +22,7 @@ def make(
     backend: str = "",
     record: Path | str | None = None,
     frames: int = 0,
+    overrides: Iterable[str] = (),
 ) -> VectorEnv:
     """Makes worlds that a program drives, as arrays: how other programs train agents in hedon.
 
@@ -44,6 +45,8 @@ def make(
         record: Folder for what `hedon run` would write, which reports, analyses and the page then read; None for none.
             Recorded worlds cannot be begun again. Call `close` at the end, or use `with`.
         frames: Steps of the worlds between two frames of the records, for the page; 0 for none.
+        overrides: Settings that differ from those of the preset or file, as for `load_config`; of a `Config` use
+            `Config.with_`.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -51,8 +54,7 @@ def make(
         EngineError: As in `hedon.Simulation`.
         RecordError: The folder holds a run already, is in use, or cannot be written.
     """
-    if isinstance(config, str | Path):
-        config = load_config(config)
+    config = loaded(config, overrides)
     return VectorEnv(
         config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend, record, frames
     )
