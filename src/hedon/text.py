@@ -20,3 +20,14 @@ def brief(text: str, limit: int = LINE) -> str:
         limit: characters that are shown.
     """
     return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"
+
+
+def count(number: int, noun: str) -> str:
+    """A number of things: "1 run", "2 runs".
+
+    Args:
+        number: How many.
+        noun: In the singular.
+    """
+    ending = "" if number == 1 else "es" if noun.endswith("ch") else "s"
+    return f"{number:,} {noun}{ending}"

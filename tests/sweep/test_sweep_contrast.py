@@ -12,8 +12,13 @@ from sweep_case import planned, sweep_file
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
+from hedon.jobs.store import Store
+from hedon.report.table import cells
 from hedon.statistic.power import t_test_power, worlds_needed
+from hedon.sweep.collect import collect
 from hedon.sweep.error import SweepError
+from hedon.sweep.plan import load_plan
+from hedon.sweep.report import settings_table
 
 SEEDS = 12
 EFFECT = 4.0
@@ -164,6 +169,12 @@ def test_a_pilot_says_how_many_worlds_are_needed(tmp_path):
     assert pairs["needed"] == worlds_needed(4 / pairs["sd"], paired=True)
     assert pairs["low"] <= pairs["needed"] <= pairs["high"]
     assert pairs["needed"] < 6 < 40 < apart["needed"], "worlds of one seed are alike"
+    table.with_columns(pl.col("energy.basic_cost").alias("cost")).vstack(
+        table.with_columns(pl.lit(0.5).alias("cost"))
+    ).select("seed", "cost", "alive_mean").write_csv(tmp_path / "three.csv")
+    chosen = ("--by", "cost", "--between", "0.001,0.01", "--only", "alive_mean", "--effect", "-4")
+    three = {row["design"]: row for row in power_rows(tmp_path, str(tmp_path / "three.csv"), *chosen)}
+    assert three["pairs"]["sd"] == pytest.approx(pairs["sd"])
     seen = power_rows(tmp_path, place, "--only", "alive_mean")
     assert worlds_needed(seen[0]["with 20"] / seen[0]["sd"], paired=False) == 20
 
@@ -192,7 +203,9 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
         (("nowhere",), "holds neither a sweep nor a finished assay"),
         (("a.csv", "--only", "slpe"), "did you mean slope?"),
         (("a.csv", "--by", "sed"), "did you mean seed?"),
-        (("a.csv", "--by", "seed"), "must have two values in the pilot, not 3"),
+        (("a.csv", "--by", "seed"), "name two of the values of seed with --between A,B: there are 1, 2, 3"),
+        (("a.csv", "--by", "seed", "--between", "1,4"), "--between 1,4: name two of the values of seed"),
+        (("a.csv", "--between", "1,2"), "give it as --by COLUMN"),
         (("same.csv",), "worlds differ in no measure"),
     ],
 )
@@ -202,3 +215,13 @@ def test_what_says_nothing_of_worlds_is_refused(tmp_path, monkeypatch, words, me
     (tmp_path / "same.csv").write_text("seed,slope\n1,0.5\n2,0.5\n")
     done = CliRunner().invoke(app, ["power", *words])
     assert message in str(done.exception)
+
+
+@pytest.mark.parametrize("seeds", [2, 3])
+def test_tables_show_intervals_from_three_worlds_on_and_names_of_settings(tmp_path, seeds):
+    store = Store(fill(tmp_path, seeds))
+    plan = load_plan(store)
+    table = settings_table(plan, collect(plan, store))
+    headers, shown = cells(table)
+    assert headers[:2] == ["energy.basic_cost", "energy.initial"]
+    assert ("…" in " ".join(shown[0])) == (seeds == 3)

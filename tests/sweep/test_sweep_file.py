@@ -129,6 +129,13 @@ def test_all_problems_are_told_at_once(tmp_path):
     assert len(error.value.problems) == 3
 
 
+def test_a_misspelled_factor_is_told_once(tmp_path):
+    with pytest.raises(ConfigError) as error:
+        read(tmp_path, 'steps = 64\n[factor]\n"energy.basic_csot" = [0.1, 0.2, 0.3]\n')
+    assert str(error.value).count("basic_csot") == 1
+    assert "did you mean basic_cost?" in str(error.value)
+
+
 def test_a_base_file_is_found_beside_the_sweep(tmp_path):
     (tmp_path / "own.toml").write_text('preset = "small"\n[energy]\ninitial = 3.5\n')
     found = read(tmp_path, 'steps = 64\nbase = "own.toml"\n')

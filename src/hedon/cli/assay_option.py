@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, count, make_runs
+from hedon.cli.make import all_finished, make_runs
 from hedon.cli.run import Checkpoint, Threads
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.text import count
 
 if TYPE_CHECKING:
     from hedon.assay.sample import Sample

@@ -4,22 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hedon.text import printable
+from hedon.text import count, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from hedon.jobs.work import Job
-
-
-def count(number: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs".
-
-    Args:
-        number: How many.
-        noun: In the singular.
-    """
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
 def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: str | None = None) -> dict[Path, str]:

@@ -29,6 +29,9 @@ def power(
     by: Annotated[
         str | None, typer.Option(metavar="COLUMN", help="What tells two conditions of the pilot apart, for pairs.")
     ] = None,
+    between: Annotated[
+        str | None, typer.Option(metavar="A,B", help="Which two values of --by, where it has more than two.")
+    ] = None,
     against: Annotated[
         str | None, typer.Option(metavar="PILOT", help="Another condition's worlds, in pairs by their seeds.")
     ] = None,
@@ -54,6 +57,8 @@ def power(
     from hedon.sweep.power import ALONE, APART, Spread, power_answer, read_pilot, spreads
 
     sizes = _numbers(effect)
+    if between is not None and by is None:
+        raise PowerError("--between: names two values of a column: give it as --by COLUMN")
     if chance <= level:
         raise PowerError(f"--power {chance:g}: must be above --level = {level:g}")
     if (source is None) == (sd is None):
@@ -64,7 +69,7 @@ def power(
         found = [Spread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)]
     else:
         other = None if against is None else read_pilot(against, columns(only))
-        found = spreads(read_pilot(source, columns(only)), by, other)
+        found = spreads(read_pilot(source, columns(only)), by, other, between)
     answer = power_answer(found, sizes, chance, level, source or "")
     console = make_console()
     console.print(analysis_group({table.name: table for table in answer.tables}))

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, count, make_runs
+from hedon.cli.make import all_finished, make_runs
 from hedon.cli.run import Hours, Part, Ray, Slurm, Threads
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
+from hedon.text import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,7 +10,7 @@ from hedon.cli.console import make_console
 from hedon.cli.make import all_finished, make_runs
 from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
 from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.text import printable
+from hedon.text import count, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -114,7 +114,8 @@ def status(place: Place) -> None:
     (made, store), console = _opened(place), make_console()
     _say_size(made, console)
     found = sweep_status(made, store)
-    console.print(f"  done: {found.done} of {found.batches} batches, {found.worlds} worlds, {found.extinct} extinct")
+    batches, worlds = count(found.batches, "batch"), count(found.worlds, "world")
+    console.print(f"  done: {found.done} of {batches}, {worlds}, {found.extinct} extinct")
     for name, share in found.begun.items():
         console.print(f"  begun: {name}, {100 * share:.0f} %")
     if found.seconds_left is not None and found.done < found.batches:
@@ -137,7 +138,9 @@ def collect(place: Place) -> None:
 
     made, store = _opened(place)
     table = write_table(made, store)
-    make_console().print(f"wrote {store.location}/{TABLE}: {table.height} of {made.worlds} worlds", soft_wrap=True)
+    make_console().print(
+        f"wrote {store.location}/{TABLE}: {table.height} of {count(made.worlds, 'world')}", soft_wrap=True
+    )
 
 
 @app.command()
@@ -224,8 +227,8 @@ def _opened(place: str) -> "tuple[SweepPlan, Store]":
 def _say_size(made: "SweepPlan", console: "Console") -> None:
     batches = len(made.rounds) * len(made.conditions)
     console.print(
-        f"hedon: sweep {made.name}: {len(made.conditions):,} settings x {len(made.seeds):,} seeds x "
-        f"{made.steps:,} steps = {made.world_steps:,} world-steps, in {batches:,} batches",
+        f"hedon: sweep {made.name}: {count(len(made.conditions), 'setting')} x {count(len(made.seeds), 'seed')} x "
+        f"{count(made.steps, 'step')} = {made.world_steps:,} world-steps, in {count(batches, 'batch')}",
         soft_wrap=True,
     )
 
@@ -250,7 +253,7 @@ def _run_and_report(
     _say_size(made, console)
     while True:
         with open_tasks(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
-            console.print(f"  {len(jobs):,} batches to make in {store.location}", soft_wrap=True)
+            console.print(f"  {count(len(jobs), 'batch')} to make in {store.location}", soft_wrap=True)
             ends = make_runs(jobs, console, workers, ray) if jobs else {}
         if not all_finished(jobs, ends, console, again):
             return

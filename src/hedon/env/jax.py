@@ -109,7 +109,8 @@ class JaxEnv:
         self._species = list(config.species).index(names[0])
         self.columns = observation_columns(config, names[0])
         self.slots = config.species[names[0]].population.capacity
-        self._name, self._actions = names[0], actions
+        self._name = names[0]
+        self._actions: Form = actions
         _register()
 
     @cached_property

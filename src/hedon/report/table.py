@@ -35,7 +35,7 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
         for c in rows.columns
         if c not in hidden and not (c == "condition" and single) and not (c == "high" and merged)
     ]
-    headers = ["95 % interval" if merged and c == "low" else c.replace("_", " ") for c in names]
+    headers = ["95 % interval" if merged and c == "low" else c if "." in c else c.replace("_", " ") for c in names]
     shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
     filled = [i for i in range(len(names)) if any(row[i] for row in shown)]
     return [headers[i] for i in filled], [[row[i] for i in filled] for row in shown]

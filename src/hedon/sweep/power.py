@@ -114,13 +114,16 @@ def _assay_worlds(folder: Path) -> pl.DataFrame:
     raise SweepError(f"{folder}: holds neither a sweep nor a finished assay, and is no table (.csv, .parquet)")
 
 
-def spreads(pilot: Pilot, by: str | None = None, other: Pilot | None = None) -> list[Spread]:
+def spreads(
+    pilot: Pilot, by: str | None = None, other: Pilot | None = None, between: str | None = None
+) -> list[Spread]:
     """How much the worlds of a pilot differ.
 
     Args:
         pilot: its worlds.
         by: column with two values, whose worlds of equal seed are pairs.
         other: another condition's worlds, which are in pairs with those of equal seeds.
+        between: the two values of the column, with a comma between them; None where it has two.
 
     Raises:
         SweepError: there are too few worlds, or the column has not two values.
@@ -128,7 +131,7 @@ def spreads(pilot: Pilot, by: str | None = None, other: Pilot | None = None) -> 
     groups = [name for name in dict.fromkeys([*pilot.groups, *([by] if by else [])]) if name in pilot.table.columns]
     found = []
     for name, title in pilot.shown.items():
-        if (pairs := _pairs(pilot, name, by, other)) is not None:
+        if (pairs := _pairs(pilot, name, by, other, between)) is not None:
             found += _spread(title, PAIRS, [pairs])
         tables = (
             [pilot.table] if not groups else [rows for _, rows in pilot.table.group_by(groups, maintain_order=True)]
@@ -141,22 +144,31 @@ def spreads(pilot: Pilot, by: str | None = None, other: Pilot | None = None) -> 
     return found
 
 
-def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None) -> Any:
+def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None, between: str | None) -> Any:
     """Differences of worlds of equal seeds, (pairs,); None where there are none."""
     if by is not None:
         if by not in pilot.table.columns:
             near = nearest(by, pilot.table.columns)
             raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
-        values = pilot.table[by].unique(maintain_order=True).to_list()
-        if len(values) != 2:
-            said = ", ".join(format_value(value) for value in values[:8])
-            raise SweepError(f"--by {by}: must have two values in the pilot, not {len(values)}: {said}")
-        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in values)
+        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in _levels(pilot, by, between))
     elif other is not None and name in other.table.columns:
         one, two = by_seed(pilot.table, name), by_seed(other.table, name)
     else:
         return None
     return np.array([two[seed] - one[seed] for seed in sorted(one.keys() & two.keys())], np.float64)
+
+
+def _levels(pilot: Pilot, by: str, between: str | None) -> list[Any]:
+    """The two values of a column whose worlds are pairs."""
+    values = {format_value(each).strip('"'): each for each in pilot.table[by].unique(maintain_order=True).to_list()}
+    asked = list(values) if between is None else [part.strip() for part in between.split(",")]
+    if len(asked) == 2 and set(asked) <= values.keys() and asked[0] != asked[1]:
+        return [values[each] for each in asked]
+    there = ", ".join(list(values)[:8]) + (f" and {len(values) - 8} more" if len(values) > 8 else "")
+    if len(values) < 2:
+        raise SweepError(f"--by {by}: has one value in the pilot, {there}: pairs need two")
+    said = f"--by {by}" if between is None else f"--between {between}"
+    raise SweepError(f"{said}: name two of the values of {by} with --between A,B: there are {there}")
 
 
 def _spread(title: str, design: str, groups: Sequence[Any]) -> list[Spread]:

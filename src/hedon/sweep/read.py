@@ -84,6 +84,8 @@ def _refusal(origin: str, invalid: Sequence[ConfigError], count: int) -> ConfigE
     """The error of conditions that cannot be; with only one, its own."""
     if len(invalid) == 1 == count:
         return invalid[0]
+    if len(invalid) == count and all(each.problems == invalid[0].problems for each in invalid):
+        return ConfigError(origin, invalid[0].problems)  # as a misspelled name: the values do not matter
     listed = [Problem("", str(error).removeprefix(f"{origin}, ")) for error in invalid]
     what = f"{len(invalid):,} of {count:,} settings cannot be; --skip-invalid leaves them out"
     return ConfigError(origin, [Problem("factor", what), *listed])

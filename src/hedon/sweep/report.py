@@ -15,10 +15,12 @@ from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.report.markdown import pipe_table
 from hedon.report.table import cells
+from hedon.statistic.interval import SHOWN_FROM, Interval
 from hedon.sweep.error import SweepError
 from hedon.sweep.figure import draw_curves, draw_map
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.response import points, responses
+from hedon.text import count
 
 PAGE = "report.md"
 MOST_CELLS = 400
@@ -77,9 +79,9 @@ def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figure
     lines = [
         f"# Sweep {plan.name}",
         "",
-        f"{table.height} of {plan.worlds} worlds ({len(plan.conditions)} settings x {len(plan.seeds)} seeds) of "
-        f"{plan.steps:,} steps; {int(table['extinct'].sum())} died out{_alone(table)}. Intervals are of 95 %, over "
-        "worlds.",
+        f"{table.height} of {count(plan.worlds, 'world')} ({count(len(plan.conditions), 'setting')} x "
+        f"{count(len(plan.seeds), 'seed')}) of {count(plan.steps, 'step')}; {int(table['extinct'].sum())} died out"
+        f"{_alone(table)}. Intervals are of 95 %, over worlds, from {SHOWN_FROM} worlds on.",
         "",
     ]
     if plan.factors and len(plan.conditions) <= MOST_CELLS:
@@ -115,16 +117,17 @@ def settings_table(
     for name, title in shown.items():
         for point in points(table, factors, name):
             row = rows.setdefault(point.at, {**dict(zip(factors, point.at, strict=True)), "worlds": counts[point.at]})
-            row[title] = _interval(point.mean.mean, point.mean.low, point.mean.high)
-    note = "Means over worlds, with intervals of 95 %."
+            row[title] = _interval(point.mean)
+    note = f"Means over worlds, with intervals of 95 % from {SHOWN_FROM} worlds on."
     note += f" The first {most} of {len(rows):,} settings; table.parquet has all." if len(rows) > most else ""
     return make_table("sweep", f"Sweep {plan.name}", list(rows.values())[:most], note)
 
 
-def _interval(mean: float | None, low: float | None, high: float | None) -> str:
-    if mean is None:
+def _interval(point: Interval) -> str:
+    if point.mean is None:
         return ""
-    return f"{mean:.4g}" if low is None or high is None else f"{mean:.4g} ({low:.3g} … {high:.3g})"
+    known = point.worlds >= SHOWN_FROM and point.low is not None and point.high is not None
+    return f"{point.mean:.4g} ({point.low:.3g} … {point.high:.3g})" if known else f"{point.mean:.4g}"
 
 
 def _slug(name: str) -> str:
