@@ -15,6 +15,8 @@ from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RU
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
 CONTESTS = (1, 2, 3, 5, 8)
+ARMS = {"rate × 10": "rate-10", "bonus × 10": "entropy-10", "no bonus": "entropy-0", "γ 0.99": "gamma-99"}
+"""Ways of learning, as the page names them, and the folder of each."""
 FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
 FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")
 HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-less-food")
@@ -77,6 +79,21 @@ def test_contests_of_24_worlds():
         assert [float(each) for each in number] == [
             pytest.approx(value, abs=0.0051 if value > 0.01 else 0.0005) for value in (own, corrected)
         ]
+
+
+def test_contests_by_other_ways_of_learning():
+    """Each row of the page: the share by itself, then less that of the baseline's learning in pairs of equal seeds."""
+    each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
+    pairs = {arm: values - shares("food-5-24") for arm, values in each.items()}
+    alone, paired = ([p_of(values) for values in found.values()] for found in (each, pairs))
+    shown = page("start.md")
+    for arm, p, corrected, q, q_corrected in zip(ARMS, alone, holm(alone), paired, holm(paired), strict=True):
+        s, bounds = coefficient(f"food-5-{ARMS[arm]}")
+        above = (each[arm] > 0).sum()
+        row = re.search(rf"^\| \[{re.escape(arm)}\].*$", shown, re.MULTILINE)
+        assert row is not None
+        assert f"| {text(s, 3)} {bounds} | {span(each[arm])} | {above} | {p_text(p)} | {p_text(corrected)} |" in row[0]
+        assert row[0].endswith(f"| {span(pairs[arm])} | {p_text(q)} | {p_text(q_corrected)} |")
 
 
 def test_contests_of_eight_worlds_are_told_by_worlds_first():
