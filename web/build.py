@@ -6,31 +6,42 @@
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).resolve().parents[1]
 STATIC = ROOT / "src" / "hedon" / "view" / "static"
-SOURCES = ("base/*.cpp", "kernel/kernel.cpp", "kernel/portable.cpp", "simulation/*.cpp", "web/*.cpp")
+# What a step and learning consist of, for speed; the rest runs once a world or a click, for size.
+FAST = (
+    "kernel/kernel.cpp",
+    "kernel/portable.cpp",
+    "simulation/drive.cpp",
+    "simulation/simulation.cpp",
+    "web/module.cpp",
+)
+SMALL = ("base/*.cpp", "simulation/*.cpp", "web/*.cpp")
 FLAGS = (
     "--target=wasm32-wasi",
     "-std=c++20",
-    "-O3",
     "-fno-exceptions",
     "-fno-rtti",
     "-ffp-contract=off",
     "-fno-math-errno",
     "-msimd128",
-    "-mexec-model=reactor",
     "-Wall",
     "-Wextra",
     "-Werror",
     "-Iengine",
-    "-Wl,--strip-all",
-    "-Wl,-z,stack-size=1048576",
     # Threads: the page gives the memory, and says where each thread has its stack.
     "-matomics",
     "-mthread-model",
     "posix",
     "-mbulk-memory",
+)
+LINK = (
+    "-O3",
+    "-mexec-model=reactor",
+    "-Wl,--strip-all",
+    "-Wl,-z,stack-size=1048576",
     "-Wl,--import-memory",
     "-Wl,--shared-memory",
     "-Wl,--initial-memory=4194304",
@@ -42,12 +53,27 @@ MODULES = {"hedon.wasm": (), "hedon-relaxed.wasm": ("-mrelaxed-simd",)}
 """Each module and the flags that it needs besides `FLAGS`: the second fuses multiply-adds where processors can."""
 
 
+def sources() -> list[tuple[str, str]]:
+    """The sources and how each is optimized: the fast ones first, whose inline functions the linker then takes."""
+    small = {path for glob in SMALL for path in (ROOT / "engine").glob(glob)} - {
+        ROOT / "engine" / name for name in FAST
+    }
+    return [(f"engine/{name}", "-O3") for name in FAST] + [
+        (path.relative_to(ROOT).as_posix(), "-Oz") for path in sorted(small)
+    ]
+
+
 def build_module(name: str, folder: Path) -> Path:
     """Compiles one of `MODULES` into a folder; returns its path."""
-    sources = [str(path.relative_to(ROOT)) for glob in SOURCES for path in sorted((ROOT / "engine").glob(glob))]
+    compiler = [sys.executable, "-m", "ziglang", "c++"]
     out = folder / name
-    command = [sys.executable, "-m", "ziglang", "c++", *FLAGS, *MODULES[name], *sources, "-o", str(out)]
-    subprocess.run(command, cwd=ROOT, check=True)
+    with TemporaryDirectory() as objects:
+        made = []
+        for source, optimized in sources():
+            made.append(str(Path(objects) / f"{len(made)}.o"))
+            command = [*compiler, *FLAGS, optimized, *MODULES[name], "-c", source, "-o", made[-1]]
+            subprocess.run(command, cwd=ROOT, check=True)
+        subprocess.run([*compiler, *FLAGS, *MODULES[name], *LINK, *made, "-o", str(out)], cwd=ROOT, check=True)
     out.chmod(0o644)
     return out
 

@@ -28,7 +28,7 @@ def test_the_page_is_small():
     sizes = {name: len(gzip.compress(path.read_bytes())) for name, path in page_files().items()}
     both = sum(size for name, size in sizes.items() if name.endswith(".wasm"))
     assert sum(sizes.values()) - both / 2 < 350_000  # what a visitor of the page and the article loads: one module
-    assert sum(sizes.values()) < 550_000
+    assert sum(sizes.values()) < 500_000
 
 
 @pytest.mark.skipif(
