@@ -15,7 +15,12 @@ from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RU
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
 CONTESTS = (1, 2, 3, 5, 8)
-ARMS = {"rate × 10": "rate-10", "bonus × 10": "entropy-10", "no bonus": "entropy-0", "γ 0.99": "gamma-99"}
+ARMS = {
+    "ten times the rate": "rate-10",
+    "ten times the bonus": "entropy-10",
+    "no bonus": "entropy-0",
+    "gamma 0.99": "gamma-99",
+}
 """Ways of learning, as the page names them, and the folder of each."""
 FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
 FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")

@@ -198,7 +198,7 @@ def test_the_commands_report_what_was_made(tmp_path):
     assert "8 of 8 worlds" in said("sweep", "collect", place)
     ended = said("sweep", "run", str(file), "--out", place)
     assert "Sweep small" in ended
-    assert "share of worlds" in ended, "it ends with its table"
+    assert "birth.kappa" in ended, "it ends with its table, headed by names of settings"
     assert_same_table(pl.read_parquet(f"{place}/table.parquet"), table)
     said("sweep", "report", place, "--only", "alive_mean,extinct")
     page = (Path(place) / "report" / "report.md").read_text()
