@@ -131,7 +131,7 @@ def build_program(emulated: bool) -> Path:
             raise build.BuildError("no nvcc in CUDA_HOME, PATH or this environment")
         kernels = str(place / "kernels.o")
         commands += [build.command(nvcc, "-c", build.HOST, "-o", kernels, str(engine / "cuda" / "device.cu"))]
-        libraries = [kernels, *build.library_folders(nvcc), "-lcudart_static", "-ldl", "-lrt"]
+        libraries = [kernels, *build.runtime_options(nvcc), "-lcudart_static", "-ldl", "-lrt"]
     objects = [str(place / f"{source.parent.name}-{source.stem}.o") for source in sources]
     for source, made in zip(sources, objects, strict=True):
         options = [*CPU_OPTIONS, *FOR_FILE.get(source.name, ()), f"-I{engine}"]

@@ -39,7 +39,7 @@ def find_nvcc() -> Path | None:
     return next((place for place in places if place.is_file()), None)
 
 
-def library_folders(nvcc: Path) -> list[str]:
+def runtime_options(nvcc: Path) -> list[str]:
     """Options that name where CUDA's runtime lies, which the packages keep in another folder than nvcc expects."""
     folders = [nvcc.resolve().parents[1] / name for name in ("lib", "lib64")]
     return [f"-L{folder}" for folder in folders if folder.is_dir()]
@@ -62,7 +62,7 @@ def build(out: Path) -> None:
     part = out.with_suffix(f".{os.getpid()}")
     source = str(ENGINE / "cuda" / "device.cu")
     done = subprocess.run(
-        command(nvcc, "-shared", HOST, *library_folders(nvcc), "-o", str(part), source),
+        command(nvcc, "-shared", HOST, *runtime_options(nvcc), "-o", str(part), source),
         stderr=subprocess.PIPE,
         text=True,
         check=False,

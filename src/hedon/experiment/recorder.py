@@ -146,7 +146,7 @@ class Recorder:
         Args:
             step: Completed so far [step].
             steps: Of the whole run [step].
-            seconds: Spent in this session [s].
+            seconds: Spent since `first` [s].
         """
         extinct = tuple(sampler.world.extinct_step for sampler in self.samplers)
         window = self.simulation.config.world.rollout_steps

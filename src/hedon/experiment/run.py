@@ -127,7 +127,7 @@ def advance(
         plan: With the total number of steps.
         manifest: Of the session that begins.
         writer: Open on the run's folder, with the parts up to `start`.
-        start: Step, seconds and samples that this session continues from.
+        start: Step, seconds and samples that the run goes on from.
         display: Shows progress.
         interrupted: Counts the signals to stop: one after the current window, two at once.
 
