@@ -21,15 +21,26 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
     throw nb::value_error("arrays must have a row for each slot of the species in each world");
 }
 
-}  // namespace
-
-int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form) {
+/// The form of actions, if they are an array of the species. ValueError: they are not, or no form is called so.
+ActionForm form_of(PythonSimulation& self, int32_t species, const TableIn& actions, const std::string& form) {
   need_rows(self, species, actions);
   if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");
   for (int32_t f = 0; f < 3; ++f) {
-    if (form == ACTION_FORMS[f]) return self.get().set_actions(species, actions.data(), static_cast<ActionForm>(f));
+    if (form == ACTION_FORMS[f]) return static_cast<ActionForm>(f);
   }
   throw nb::value_error("actions are unit, force or logit");
+}
+
+}  // namespace
+
+int64_t wrong_action(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form) {
+  const ActionForm known = form_of(self, species, actions, form);
+  return self.get().wrong_action(species, actions.data(), known);
+}
+
+int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form) {
+  const ActionForm known = form_of(self, species, actions, form);
+  return self.get().set_actions(species, actions.data(), known);
 }
 
 void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {

@@ -18,6 +18,9 @@ using IdsOut = nanobind::ndarray<int32_t, nanobind::ndim<2>, nanobind::c_contig,
 /// Names of the forms of actions, in the order of `ActionForm`.
 inline constexpr const char* ACTION_FORMS[] = {"unit", "force", "logit"};
 
+/// Which number of a living agent cannot be its action, or -1. ValueError: an array has another shape.
+int64_t wrong_action(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);
+
 /// Tells the agents of an external species what to do: (worlds, slots, 2). Returns -1, or which number of an agent is
 /// out of bounds. ValueError: an array has another shape.
 int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);

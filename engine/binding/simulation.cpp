@@ -307,6 +307,10 @@ void bind_simulation(nb::module_& module) {
       .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"),
            "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
            "*records, double *answers).")
+      .def("wrong_action", &wrong_action, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
+           nb::sig("def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
+                   "'logit') -> int"),
+           "Which number of a living agent cannot be its action, as `set_actions` would say; nobody is told anything.")
       .def("set_actions", &set_actions, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
            nb::sig("def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
                    "'logit') -> int"),

@@ -58,6 +58,19 @@ void read_observation(World& world, int32_t slot, int rank, const ObservationOut
   unpack(shape, seen, observation);
 }
 
+/// Visits both actions of every living agent of a species: its world, where the action is in the state, and in an array
+/// (worlds, slots of the species, 2).
+template <class Worlds, class Visit>
+void for_each_action(Worlds& worlds, const Species& own, Visit&& visit) {
+  int64_t at = 0;
+  for (auto& world : worlds) {
+    for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot, at += ACTIONS) {
+      for (int64_t a = 0; a < ACTIONS && world.state.alive[slot] != 0; ++a)
+        visit(world, slot * int64_t{ACTIONS} + a, at + a);
+    }
+  }
+}
+
 }  // namespace
 
 void Simulation::set_rule(int32_t species, RuleUse use, Rule rule) {
@@ -75,24 +88,19 @@ std::string Simulation::missing_rule() const {
   return "";
 }
 
-int64_t Simulation::set_actions(int32_t species, const float* actions, ActionForm form) {
-  const Species& own = shape_.of[species];
-  const ActionBounds bounds = action_bounds(own.layout, form);
-  const auto for_each = [&](auto&& visit) {
-    int64_t at = 0;
-    for (World& world : worlds_) {
-      for (int32_t slot = own.first_slot; slot < own.last_slot; ++slot, at += ACTIONS) {
-        for (int64_t a = 0; a < ACTIONS && world.state.alive[slot] != 0; ++a)
-          visit(world, slot * int64_t{ACTIONS} + a, at + a);
-      }
-    }
-  };
+int64_t Simulation::wrong_action(int32_t species, const float* actions, ActionForm form) const {
+  const ActionBounds bounds = action_bounds(shape_.of[species].layout, form);
   int64_t bad = -1;
-  for_each([&](World&, int64_t, int64_t at) {
+  for_each_action(worlds_, shape_.of[species], [&](const World&, int64_t, int64_t at) {
     if (bad < 0 && !(actions[at] >= bounds.low && actions[at] <= bounds.high)) bad = at;
   });
-  if (bad >= 0) return bad;
-  for_each([&](World& world, int64_t row, int64_t at) {
+  return bad;
+}
+
+int64_t Simulation::set_actions(int32_t species, const float* actions, ActionForm form) {
+  if (const int64_t bad = wrong_action(species, actions, form); bad >= 0) return bad;
+  const ActionBounds bounds = action_bounds(shape_.of[species].layout, form);
+  for_each_action(worlds_, shape_.of[species], [&](World& world, int64_t row, int64_t at) {
     world.state.external_action[row] = form == ActionForm::logit ? actions[at] : logit(actions[at], bounds);
   });
   return -1;

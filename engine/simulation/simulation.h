@@ -103,6 +103,9 @@ class Simulation {
   /// "", or which rule the config names and is not there.
   std::string missing_rule() const;
 
+  /// Which number of a living agent cannot be its action: its place in (worlds, slots of the species, 2), or -1.
+  int64_t wrong_action(int32_t species, const float* actions, ActionForm form) const;
+
   /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2). Rows without an
   /// agent are not read. Returns -1, or which number of an agent is out of bounds; then nobody is told anything.
   int64_t set_actions(int32_t species, const float* actions, ActionForm form);

@@ -106,6 +106,7 @@ def test_actions_can_be_written_in_every_way():
 def test_settings_are_changed_as_when_a_config_is_loaded():
     worlds = make("baseline", overrides=["population.capacity=7", "population.initial_count=3"])
     assert worlds.actions.shape == (1, 7, 2)
+    assert make(CONFIG, overrides=iter(())).simulation.config.species == make(CONFIG).simulation.config.species
     with pytest.raises(ArgumentError, match=r"overrides: go with .*config\.with_"):
         make(CONFIG, overrides=["population.capacity=7"])
 
@@ -130,12 +131,17 @@ def test_actions_that_are_refused_leave_none_behind(bad, says):
 
 
 def test_a_wrong_action_of_one_species_leaves_those_of_all_as_they_were():
-    worlds = make("predator", seed=1, threads=1)
+    worlds, like = (make("predator", seed=1, threads=1) for _ in range(2))
     before = {name: array.copy() for name, array in worlds.actions.items()}
+    saved = worlds.save()
     first, second = worlds.actions
     with pytest.raises(ArgumentError, match="must be from -1 to 1"):
         worlds.step({first: np.full_like(before[first], 0.5), second: np.full_like(before[second], np.nan)})
     assert all((worlds.actions[name] == before[name]).all() for name in before)
+    assert worlds.save() == saved
+    for each in (worlds, like):
+        each.simulation.run(5)
+    assert worlds.simulation.worlds[0].digest() == like.simulation.worlds[0].digest()
 
 
 def test_what_the_caller_wrote_stays_until_it_is_set_right():

@@ -102,6 +102,11 @@ class Simulation:
         Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers).
         """
 
+    def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:
+        """
+        Which number of a living agent cannot be its action, as `set_actions` would say; nobody is told anything.
+        """
+
     def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:
         """
         Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or `logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.

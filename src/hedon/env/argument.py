@@ -32,7 +32,7 @@ def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
     """
     if isinstance(config, str | Path):
         return load_config(config, overrides=overrides)
-    if overrides:
+    if any(True for _ in overrides):
         raise ArgumentError("overrides: go with the name of a preset or a file; change a Config by config.with_(…)")
     return config
 

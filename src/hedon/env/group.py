@@ -151,17 +151,21 @@ class Group:
         with np.errstate(over="ignore"):
             self.actions[...] = array.reshape(self.actions.shape)
 
-    def _tell(self, engine: Any) -> None:
-        """Gives the actions to the agents."""
+    def _check(self, engine: Any) -> None:
+        """ArgumentError: an array is not as it was made, or an action is not what it can be."""
         for name, array in self._shared.items():
             if not (array.flags.c_contiguous and array.flags.writeable):
                 raise ArgumentError(f"{name}: must be as it was made, writeable and contiguous")
-        bad = engine.set_actions(self._index, self.actions, self._form)
+        bad = engine.wrong_action(self._index, self.actions, self._form)
         if bad >= 0:
             world, slot, motor = (int(i) for i in np.unravel_index(bad, self.actions.shape))
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]}) = {self.actions[world, slot, motor]}"
             rule = "a finite number" if self._form == "logit" else f"from {self.low:g} to {self.high:g}"
             raise ArgumentError(f"{place}: must be {rule}")
+
+    def _tell(self, engine: Any) -> None:
+        """Gives the actions, which are right, to the agents."""
+        engine.set_actions(self._index, self.actions, self._form)
 
     def _begin(self) -> None:
         """What follows is counted from here."""
@@ -251,7 +255,7 @@ class Group:
 
 
 def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
-    """Gives actions to the agents, or refuses them all: the arrays then have what they had before.
+    """Gives actions to the agents, or refuses those of all species: arrays and worlds then are as they were.
 
     Args:
         engine: That steps the worlds.
@@ -267,11 +271,13 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
         for group, array in given:
             group._take(array)
         for group in groups.values():
-            group._tell(engine)
+            group._check(engine)
     except ArgumentError:
         for group, before in held:
             group.actions[...] = before
         raise
+    for group in groups.values():
+        group._tell(engine)
 
 
 def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, Any]]:

@@ -155,8 +155,8 @@ class JaxEnv:
             action: (slots, 2) float32, left and right motor; rows without an agent are not read.
 
         Returns:
-            The observations (slots, entries) float32, the next state, rewards (slots,) float32 of who was there before,
-            () bool, whether the world was over and has begun again, and a dictionary: `terminated` (slots,) bool, who
+            The observations (slots, entries) float32; the next state; rewards (slots,) float32 of who was there before;
+            whether the world was over and has begun again, () bool; and a dictionary: `terminated` (slots,) bool, who
             of them died, and `alive` (slots,) bool, where an agent lives now.
 
             When the program runs, an error of JAX says what is wrong with an action, or that the state is stale.
