@@ -87,6 +87,19 @@ REFUSED = {
         "def rule(agent):\n    return draw()\n",
         r"line 5: random.* is chance",
     ),
+    "energy by its name": (
+        "def rule(agent):\n    agent['energy'] = 1\n    return 1.0\n",
+        r"line 2: it writes agent\.energy",
+    ),
+    "energy by another name": (
+        "import numba\n@numba.njit\ndef eat(share, a):\n    b = a\n    b.energy = share\n"
+        "def rule(agent):\n    eat(1.0, agent)\n    return 1.0\n",
+        r"line 5: it writes agent\.energy",
+    ),
+    "table without a seed": (
+        "import numpy as np\nTABLE = np.random.default_rng().normal(size=3)\ndef rule(agent):\n    return TABLE[0]\n",
+        r"line 2: numpy\.random.* is chance",
+    ),
     "time": ("import time\ndef rule(agent):\n    return time.time()\n", r"line 3: time\.time is the time.*agent\.step"),
     "null": ("def rule(agent):\n    return 1.0\n\0", "its file fails"),
 }
@@ -160,6 +173,14 @@ WORKS = {
     "default": "def rule(agent, k=1.0):\n    return k * agent.age\n",
     "chance of another rule": (
         "import random\ndef rule(agent):\n    return agent.age\ndef other(agent):\n    return random.random()\n"
+    ),
+    "chance of another rule with an equal local": (
+        "import random\ndef rule(agent):\n    x = agent.age\n    return x\n"
+        "def other(agent):\n    x = random.random()\n    return x\n"
+    ),
+    "table from a seed": (
+        "import numpy as np\nTABLE = np.random.default_rng(3).normal(size=3)\n"
+        "def rule(agent):\n    return TABLE[0] + agent.age\n"
     ),
     "whole": "def rule(agent):\n    return int(agent.age)\n",
 }

@@ -87,7 +87,7 @@ class Rule:
             signature(function).bind(None)
         except TypeError as error:
             raise self._error(f"a rule takes one agent, but this is {self.source.name}{signature(function)}") from error
-        if refused := refusal(self.source.text, self.source.name):
+        if refused := refusal(self.source.text, self.source.name, self.columns):
             raise self._error(refused)
         return function
 

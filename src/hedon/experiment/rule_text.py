@@ -2,13 +2,15 @@
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 from hedon.text import brief
 
 MEMORY = "memory_"
 """Fields of an agent that a rule may write begin so."""
+SEEDED = ("numpy.random.default_rng", "random.Random")
+"""Sources of chance that give the same in every run, if they are called with a number."""
 CHANCE = ("random", "numpy.random", "secrets", "uuid", "os.urandom", "os.getrandom")
 CLOCKS = ("time", "datetime")
 """Modules and functions by which the same run would come out otherwise."""
@@ -16,28 +18,32 @@ _NOISE = re.compile(r"Failed in |During: |File \"|There (is|are) \d+ candidate|>
 _RETURNED = re.compile(r"setitem\(array\(float64, 1d, C\), int64, (.+)\)")
 
 
-def refusal(text: str, name: str) -> str:
+def refusal(text: str, name: str, columns: Collection[str]) -> str:
     """What a rule does that no rule may: it writes what is not a memory, or asks for chance or the time.
 
     Args:
         text: Of the file, which Python can read.
         name: Of the rule in it; what it does not reach by names of the file is not judged.
+        columns: Names of the fields of an agent.
 
     Returns:
         The line and what is wrong there; empty if nothing is.
     """
     tree = ast.parse(text)
     places = _imported(tree)
+    seeded = {id(part) for call in ast.walk(tree) if _is_seeded(call, places) for part in ast.walk(call)}
     for node in _reached(tree, name):
+        if id(node) in seeded:
+            continue
         if (path := _dotted(node, places)) is not None and (found := _source_of(path)):
             what = "the time" if found in CLOCKS else "chance"
             return (
                 f"line {node.lineno}: {path} is {what}, with which no run could be repeated; a hazard or birth rule "
                 "returns a probability and hedon draws from the world's seed, and agent.step is the time"
             )
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and (wrote := _written(node)) is not None:
+        if (field := _written(node)) in columns and not field.startswith(MEMORY):
             return (
-                f"line {wrote.lineno}: it writes agent.{wrote.attr}, which would change nothing: a rule acts by what "
+                f"line {node.lineno}: it writes agent.{field}, which would change nothing: a rule acts by what "
                 f"it returns, and may write agent.{MEMORY}1, agent.{MEMORY}2, …, as many as reward.memory says"
             )
     return ""
@@ -85,9 +91,7 @@ def _reached(tree: ast.Module, name: str) -> Iterator[Any]:
     """All nodes of what a name of the file is made of, and of what that names in turn."""
     bound: dict[str, list[ast.AST]] = {}
     for statement in tree.body:
-        names = {node.id for node in ast.walk(statement) if isinstance(node, ast.Name) and _is_store(node)}
-        names |= {statement.name} if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef) else set()
-        for each in names:
+        for each in _names(statement):
             bound.setdefault(each, []).append(statement)
     left, seen = [name], {name}
     while left:
@@ -99,8 +103,12 @@ def _reached(tree: ast.Module, name: str) -> Iterator[Any]:
                     left.append(node.id)
 
 
-def _is_store(node: ast.Name) -> bool:
-    return isinstance(node.ctx, ast.Store)
+def _names(statement: ast.AST) -> set[str]:
+    """The names that a statement of the file binds there, without those within functions and classes."""
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return {statement.name}
+    own = {statement.id} if isinstance(statement, ast.Name) and isinstance(statement.ctx, ast.Store) else set()
+    return own.union(*map(_names, ast.iter_child_nodes(statement)))
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:
@@ -129,17 +137,19 @@ def _source_of(path: str) -> str:
     return next((each for each in (*CHANCE, *CLOCKS) if path == each or path.startswith(f"{each}.")), "")
 
 
-def _written(function: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.Attribute | None:
-    """What a function writes of its first parameter that is not a memory."""
-    first = next(iter([*function.args.posonlyargs, *function.args.args]), None)
-    for node in ast.walk(function):
-        if (
-            first is not None
-            and isinstance(node, ast.Attribute)
-            and isinstance(node.ctx, ast.Store)
-            and isinstance(node.value, ast.Name)
-            and node.value.id == first.arg
-            and not node.attr.startswith(MEMORY)
-        ):
-            return node
-    return None
+def _is_seeded(node: ast.AST, places: dict[str, str]) -> bool:
+    """Whether it makes a source of chance from a number."""
+    return (
+        isinstance(node, ast.Call)
+        and _dotted(node.func, places) in SEEDED
+        and any(isinstance(given, ast.Constant) and isinstance(given.value, int) for given in node.args)
+    )
+
+
+def _written(node: ast.AST) -> str:
+    """The field that a node writes, as `energy` for `agent.energy = 1` and `agent["energy"] = 1`; empty for none."""
+    if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+        return node.attr
+    if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store) and isinstance(node.slice, ast.Constant):
+        return str(node.slice.value)
+    return ""
