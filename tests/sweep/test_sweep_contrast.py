@@ -118,7 +118,7 @@ def test_factors_that_are_not_crossed_are_told(tmp_path):
     [
         (("--by", "energy.basic"), "did you mean energy.basic_cost?"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.5"), "there are 0.001, 0.01, 0.02"),
-        (("--by", "energy.basic_cost"), "name two of its values with --between A,B"),
+        (("--by", "energy.basic_cost"), "name two of the values of energy.basic_cost with --between A,B"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.01", "--only", "alive_maen"), "did you mean alive_mean?"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.02"), "no world with energy.basic_cost = 0.02"),
     ],

@@ -1,6 +1,6 @@
 """Do two conditions of a sweep differ? Worlds are the units, in pairs where their seeds are equal."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,9 @@ from hedon.sweep.collect import table_value
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.response import responses
+
+MOST_TOLD = 8
+"""Most values of a factor that a message lists."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +57,31 @@ def choose_levels(plan: SweepPlan, by: str, between: str | None) -> tuple[Any, A
         near = nearest(by, plan.factors)
         hint = f"; did you mean {near}?" if near else f" (there are {', '.join(plan.factors) or 'none'})"
         raise SweepError(f"--by {by}: is not a factor of the sweep{hint}")
-    values = {format_value(each.settings[by]).strip('"'): each.settings[by] for each in plan.conditions}
+    return two_of(by, (each.settings[by] for each in plan.conditions), between)
+
+
+def two_of(by: str, every: Iterable[Any], between: str | None) -> tuple[Any, Any]:
+    """Two of the values of a factor or column.
+
+    Args:
+        by: its name.
+        every: its values, each as often as it comes.
+        between: the two values, with a comma between them; None where there are only two.
+
+    Raises:
+        SweepError: there are not two such values.
+    """
+    values = {format_value(each).strip('"'): each for each in every}
     asked = list(values) if between is None else [part.strip() for part in between.split(",")]
-    if len(asked) != 2 or not set(asked) <= values.keys() or asked[0] == asked[1]:
-        said = f"--between {between}" if between else f"--by {by}"
-        raise SweepError(f"{said}: name two of its values with --between A,B: there are {', '.join(values)}")
-    return values[asked[0]], values[asked[1]]
+    if len(asked) == 2 and set(asked) <= values.keys() and asked[0] != asked[1]:
+        return values[asked[0]], values[asked[1]]
+    there = ", ".join(list(values)[:MOST_TOLD]) + (
+        f" and {len(values) - MOST_TOLD} more" if len(values) > MOST_TOLD else ""
+    )
+    if len(values) < 2:
+        raise SweepError(f"--by {by}: has one value, {there}: a comparison needs two")
+    said = f"--by {by}" if between is None else f"--between {between}"
+    raise SweepError(f"{said}: name two of the values of {by} with --between A,B: there are {there}")
 
 
 def comparable(

@@ -12,14 +12,14 @@ import polars as pl
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.config.problem import format_value, nearest
+from hedon.config.problem import nearest
 from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, VERMILION, head, new_figure, styled
 from hedon.jobs.store import Store
 from hedon.report.answer import Answer
 from hedon.statistic.interval import distance_interval
 from hedon.statistic.power import effect_seen, t_test_power, worlds_needed
 from hedon.sweep.collect import collect
-from hedon.sweep.contrast import by_seed
+from hedon.sweep.contrast import by_seed, two_of
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import PLAN, load_plan
 from hedon.sweep.response import responses
@@ -150,25 +150,13 @@ def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None, between
         if by not in pilot.table.columns:
             near = nearest(by, pilot.table.columns)
             raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
-        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in _levels(pilot, by, between))
+        levels = two_of(by, pilot.table[by].unique(maintain_order=True), between)
+        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in levels)
     elif other is not None and name in other.table.columns:
         one, two = by_seed(pilot.table, name), by_seed(other.table, name)
     else:
         return None
     return np.array([two[seed] - one[seed] for seed in sorted(one.keys() & two.keys())], np.float64)
-
-
-def _levels(pilot: Pilot, by: str, between: str | None) -> list[Any]:
-    """The two values of a column whose worlds are pairs."""
-    values = {format_value(each).strip('"'): each for each in pilot.table[by].unique(maintain_order=True).to_list()}
-    asked = list(values) if between is None else [part.strip() for part in between.split(",")]
-    if len(asked) == 2 and set(asked) <= values.keys() and asked[0] != asked[1]:
-        return [values[each] for each in asked]
-    there = ", ".join(list(values)[:8]) + (f" and {len(values) - 8} more" if len(values) > 8 else "")
-    if len(values) < 2:
-        raise SweepError(f"--by {by}: has one value in the pilot, {there}: pairs need two")
-    said = f"--by {by}" if between is None else f"--between {between}"
-    raise SweepError(f"{said}: name two of the values of {by} with --between A,B: there are {there}")
 
 
 def _spread(title: str, design: str, groups: Sequence[Any]) -> list[Spread]:
