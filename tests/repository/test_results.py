@@ -99,6 +99,16 @@ def test_contests_by_other_ways_of_learning():
         assert row is not None
         assert f"| {text(s, 3)} {bounds} | {span(each[arm])} | {above} | {p_text(p)} | {p_text(corrected)} |" in row[0]
         assert row[0].endswith(f"| {span(pairs[arm])} | {p_text(q)} | {p_text(q_corrected)} |")
+    rate, above = each["ten times the rate"], (pairs["ten times the rate"] > 0).sum()
+    assert (
+        f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than by the\n  baseline's rate in {above}."
+        in shown
+    )
+    own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
+    assert f"(24 worlds, p {own} by t, {corrected} by Holm)" in page("README.md")
+    mean, bounds = span(rate, sign=False).split(" ", 1)
+    told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
+    assert told in page("../paper/paper.md").replace("\n", " ")
 
 
 def test_contests_of_eight_worlds_are_told_by_worlds_first():
