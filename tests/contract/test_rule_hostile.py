@@ -180,7 +180,7 @@ WORKS = {
     ),
     "table from a seed": (
         "import numpy as np\nTABLE = np.random.default_rng(3).normal(size=3)\n"
-        "def rule(agent):\n    return TABLE[0] + agent.age\n"
+        "def rule(agent):\n    return 0.0 * TABLE[0] + agent.age\n"
     ),
     "whole": "def rule(agent):\n    return int(agent.age)\n",
 }
