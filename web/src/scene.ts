@@ -1,4 +1,4 @@
-// Draws discs, lines and polygons by WebGL2: one call for all of a sort.
+// Draws discs, lines and polygons by WebGL2: one call for all of a sort, and none where the picture is the last one.
 
 const DISC_VERTEX = `#version 300 es
 layout(location=0) in vec2 corner;
@@ -54,6 +54,7 @@ class Batch {
   floats = new Float32Array(1024);
   words = new Uint32Array(this.floats.buffer);
   used = 0;
+  private shown = new Uint32Array(0); // the words of the last picture
 
   constructor(readonly width: number) {}
 
@@ -72,6 +73,16 @@ class Batch {
   get count(): number {
     return this.used / this.width;
   }
+
+  /** Whether its things are others than at the last call. */
+  changed(): boolean {
+    const { words, used, shown } = this;
+    let at = shown.length === used ? 0 : -1;
+    while (at >= 0 && at < used && words[at] === shown[at]) at++;
+    if (at === used) return false;
+    this.shown = words.slice(0, used);
+    return true;
+  }
 }
 
 export class Scene {
@@ -89,6 +100,7 @@ export class Scene {
   private discBuffer!: WebGLBuffer;
   private lineBuffer!: WebGLBuffer;
   lost = false; // whether the browser took what draws away, as it may at any time
+  private shown = ""; // how the last picture was looked at
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
@@ -109,6 +121,7 @@ export class Scene {
     [this.discArray, this.discBuffer] = this.discLayout();
     [this.lineArray, this.lineBuffer] = this.lineLayout();
     this.lost = false;
+    this.shown = "";
   }
 
   begin(): void {
@@ -144,6 +157,10 @@ export class Scene {
   end(background: [number, number, number]): void {
     const { gl, canvas } = this;
     if (this.lost) return;
+    const view = [this.centerX, this.centerY, this.zoom, canvas.width, canvas.height, ...background].join();
+    const changed = [this.discs, this.lines, this.triangles].filter((each) => each.changed()).length > 0;
+    if (!changed && view === this.shown) return;
+    this.shown = view;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
