@@ -43,14 +43,14 @@ int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, co
   return self.get().set_actions(species, actions.data(), known);
 }
 
-void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
+int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
   need_rows(self, species, observation);
   need_rows(self, species, reward);
   need_rows(self, species, agent_id);
   const int32_t entries = self.get().shape().of[species].network.observation.size();
   if (observation.shape(2) != static_cast<size_t>(entries))
     throw nb::value_error("observations must have as many columns as there are entries");
-  self.read_observations(species, {observation.data(), reward.data(), agent_id.data()});
+  return self.read_observations(species, {observation.data(), reward.data(), agent_id.data()});
 }
 
 void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id) {

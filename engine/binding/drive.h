@@ -25,8 +25,9 @@ int64_t wrong_action(PythonSimulation& self, int32_t species, TableIn actions, c
 /// out of bounds. ValueError: an array has another shape.
 int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);
 
-/// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …).
-void read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);
+/// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …). Returns in how many
+/// slots another agent, or none, is now.
+int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);
 
 /// The same without what they sense.
 void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id);

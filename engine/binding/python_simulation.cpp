@@ -213,13 +213,14 @@ void PythonSimulation::reset(int index, uint64_t seed) {
   raise_faults();
 }
 
-void PythonSimulation::read_observations(int32_t species, const ObservationOut& out) {
+int64_t PythonSimulation::read_observations(int32_t species, const ObservationOut& out) {
   Simulation& simulation = get();
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};
   const Released released;
-  if (out.observation == nullptr) return simulation.read_rewards(species, out);
-  simulation.read_observations(species, out);
+  if (out.observation != nullptr) return simulation.read_observations(species, out);
+  simulation.read_rewards(species, out);
+  return 0;
 }
 
 /// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.

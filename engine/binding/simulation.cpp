@@ -320,10 +320,9 @@ void bind_simulation(nb::module_& module) {
           "read_observations", &read_observations, nb::arg("species"), nb::arg("observation"), nb::arg("reward"),
           nb::arg("agent_id"),
           nb::sig("def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: "
-                  "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None"),
+                  "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> int"),
           "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
-          "arrays of "
-          "(worlds, slots, …).")
+          "arrays of (worlds, slots, …). Returns in how many slots another agent, or none, is than `agent_id` had.")
       .def("read_rewards", &read_rewards, nb::arg("species"), nb::arg("reward"), nb::arg("agent_id"),
            nb::sig("def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: "
                    "numpy.typing.NDArray[numpy.int32]) -> None"),

@@ -34,28 +34,32 @@ float logit(float action, ActionBounds bounds) {
 /// Slots that a thread takes at once.
 constexpr int32_t SLOTS_AT_ONCE = 16;
 
-/// Writes what the agent in `slot` earned, and who is there now, into the row of the caller's arrays.
-void read_reward(const World& world, int32_t slot, const ObservationOut& out, int64_t row) {
+/// Writes what the agent in `slot` earned, and who is there now, into the row of the caller's arrays. Whether another
+/// agent, or none, is there than before.
+bool read_reward(const World& world, int32_t slot, const ObservationOut& out, int64_t row) {
   int32_t& id = out.agent_id[row];
+  const int32_t before = id;
   out.reward[row] = id >= 0 ? world.state.reward[slot * int64_t{world.shape->rollout}] : 0.0f;
   id = world.state.alive[slot] != 0 ? world.state.life[slot].agent_id : -1;
+  return id != before;
 }
 
-/// Writes all that is known of the agent in `slot` into the row of the caller's arrays.
-void read_observation(World& world, int32_t slot, int rank, const ObservationOut& out, int64_t row) {
+/// Writes all that is known of the agent in `slot` into the row of the caller's arrays; the answer of `read_reward`.
+bool read_observation(World& world, int32_t slot, int rank, const ObservationOut& out, int64_t row) {
   const ObservationShape& shape = world.species(slot).network.observation;
   float* const observation = out.observation + row * shape.size();
   const bool acted = out.agent_id[row] >= 0;
-  read_reward(world, slot, out, row);
+  const bool changed = read_reward(world, slot, out, row);
   if (out.agent_id[row] < 0) {
     if (acted) memset(observation, 0, static_cast<size_t>(shape.size()) * sizeof(float));
-    return;
+    return changed;
   }
   ObservationLine lines[WIDE_LINES];
   PackedObservation& seen = *reinterpret_cast<PackedObservation*>(lines);
   note_start(world, slot);
   observe(world, slot, rank, seen);
   unpack(shape, seen, observation);
+  return changed;
 }
 
 /// Visits both actions of every living agent of a species: its world, where the action is in the state, and in an array
@@ -125,21 +129,25 @@ void Simulation::count_meals(int32_t species, int64_t* out) const {
   }
 }
 
-void Simulation::read_observations(int32_t species, const ObservationOut& out) {
+int64_t Simulation::read_observations(int32_t species, const ObservationOut& out) {
   const FloatMode mode(flush_);
   const Species& own = shape_.of[species];
   const int32_t blocks = (own.capacity() + SLOTS_AT_ONCE - 1) / SLOTS_AT_ONCE;
   for (World& world : worlds_) gather_scene(Alone{}, world);
   std::atomic<int32_t> next{0};
+  std::atomic<int64_t> changed{0};
   pool_->run([&](int rank) {
+    int64_t here = 0;
     for (int32_t i = next.fetch_add(1); i < world_count() * blocks; i = next.fetch_add(1)) {
       const int32_t first = own.first_slot + i % blocks * SLOTS_AT_ONCE;
       const int32_t last = first + SLOTS_AT_ONCE < own.last_slot ? first + SLOTS_AT_ONCE : own.last_slot;
       const int64_t before = int64_t{i / blocks} * own.capacity() - own.first_slot;
       for (int32_t slot = first; slot < last; ++slot)
-        read_observation(world(i / blocks), slot, rank, out, before + slot);
+        here += read_observation(world(i / blocks), slot, rank, out, before + slot) ? 1 : 0;
     }
+    changed += here;
   });
+  return changed;
 }
 
 }  // namespace hedon

@@ -111,6 +111,16 @@ def test_settings_are_changed_as_when_a_config_is_loaded():
         make(CONFIG, overrides=["population.capacity=7"])
 
 
+def test_environments_of_one_world_take_overrides_too():
+    settings = ["population.capacity=7", "population.initial_count=3"]
+    assert len(hedon.env.ParallelEnv("baseline", overrides=settings).reset()[0]) == 3
+    own = hedon.env.AgentEnv("baseline", overrides=settings).simulation.config
+    assert own.species["agent"].population.capacity == 7
+    for kind in (hedon.env.ParallelEnv, hedon.env.AgentEnv):
+        with pytest.raises(hedon.ConfigError, match=r"population\.capacty: unknown name; did you mean capacity"):
+            kind("baseline", overrides=["population.capacty=7"])
+
+
 REFUSED = {
     "not a number": (lambda: np.full(SHAPE, np.nan), "must be from -1 to 1"),
     "too far": (lambda: np.full(SHAPE, 1.5), "must be from -1 to 1"),

@@ -155,14 +155,23 @@ def test_worlds_are_whole_where_ctrl_c_ends_a_repeat(stop, monkeypatch):
         paid += np.where(before == first, single.rewards, 0)
     count = 0
 
-    def run(steps: int) -> None:
-        nonlocal count
-        Simulation.run(held.simulation, steps)
-        count += 1
-        if count == stop:
-            raise KeyboardInterrupt
+    class Interrupted:
+        """The engine with a Ctrl-C in one of its steps."""
 
-    monkeypatch.setattr(held.simulation, "run", run)
+        def __init__(self, engine: Any) -> None:
+            self._engine = engine
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self._engine, name)
+
+        def run(self, steps: int) -> None:
+            nonlocal count
+            self._engine.run(steps)
+            count += 1
+            if count == stop:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(held.simulation, "engine", Interrupted(held.simulation.engine))
     with pytest.raises(KeyboardInterrupt):
         held.step(held.actions)
     monkeypatch.undo()

@@ -112,9 +112,9 @@ class Simulation:
         Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or `logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.
         """
 
-    def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
+    def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> int:
         """
-        Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …).
+        Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …). Returns in how many slots another agent, or none, is than `agent_id` had.
         """
 
     def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:

@@ -1,6 +1,6 @@
 """The life of one agent as an environment of Gymnasium."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,7 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             None to leave their motors in the middle of their range.
         render_mode: What `render` gives.
         threads: One world of usual size is fastest on one.
+        overrides: Settings that differ from those of the preset or file.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -55,8 +56,11 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         others: Policy | None = None,
         render_mode: str | None = None,
         threads: int = 1,
+        overrides: Iterable[str] = (),
     ) -> None:
-        self._vector = make(config, 1, seed, species, actions, repeat, max_steps, render_mode, threads)
+        self._vector = make(
+            config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
+        )
         if len(self._vector.groups) > 1:
             raise ArgumentError(f"species: must be one of {', '.join(self._vector.groups)}, that of the agent")
         (self._group,) = self._vector.groups.values()

@@ -151,39 +151,37 @@ class Group:
         with np.errstate(over="ignore"):
             self.actions[...] = array.reshape(self.actions.shape)
 
-    def _check(self, engine: Any) -> None:
-        """ArgumentError: an array is not as it was made, or an action is not what it can be."""
+    def _check(self) -> None:
+        """ArgumentError: an array is not as it was made."""
         for name, array in self._shared.items():
-            if not (array.flags.c_contiguous and array.flags.writeable):
+            flags = array.flags
+            if not (flags.c_contiguous and flags.writeable):
                 raise ArgumentError(f"{name}: must be as it was made, writeable and contiguous")
-        bad = engine.wrong_action(self._index, self.actions, self._form)
+
+    def _tell(self, give: Any) -> None:
+        """Gives the actions to a method of the engine, which refuses wrong ones. ArgumentError: it did."""
+        bad = give(self._index, self.actions, self._form)
         if bad >= 0:
             world, slot, motor = (int(i) for i in np.unravel_index(bad, self.actions.shape))
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]}) = {self.actions[world, slot, motor]}"
             rule = "a finite number" if self._form == "logit" else f"from {self.low:g} to {self.high:g}"
             raise ArgumentError(f"{place}: must be {rule}")
 
-    def _tell(self, engine: Any) -> None:
-        """Gives the actions, which are right, to the agents."""
-        engine.set_actions(self._index, self.actions, self._form)
-
     def _begin(self) -> None:
         """What follows is counted from here."""
         np.copyto(self.ids_before, self.ids)
+        self._late.fill(0)
         self._gone = self._gone[:0]
 
     def _look(self, engine: Any) -> None:
         """Reads what there is after the only step since `_begin`."""
-        engine.read_observations(self._index, self.observations, self.rewards, self.ids)
-        if self._late.any():
-            self._late.fill(0)
-        self._finish(engine)
+        changed = engine.read_observations(self._index, self.observations, self.rewards, self.ids)
+        self._finish(engine, changed=changed > 0)
 
     def _count(self, engine: Any, *, first: bool, last: bool) -> None:
         """Reads what there is after one of several steps since `_begin`."""
         if first:
             self.rewards.fill(0)
-            self._late.fill(0)
         acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
         if last:
             engine.read_observations(self._index, self.observations, paid, self.ids)
@@ -197,21 +195,22 @@ class Group:
             self._gone = np.concatenate([self._gone, _rows(np.nonzero(ended), acting, self._late, alive=False)])
             self._late[ended] = 0
         if last:
-            self._finish(engine)
+            self._finish(engine, changed=True)
             self.observations[self.terminated & ~self.alive] = 0
 
-    def _finish(self, engine: Any) -> None:
-        """What is derived from the ids of now and of before the steps."""
+    def _finish(self, engine: Any, *, changed: bool) -> None:
+        """What is derived from the ids of now and of before the steps, of which some differ if `changed`."""
         ids, before, alive, born, terminated = self._derived
         np.not_equal(ids, NOBODY, out=alive)
-        np.not_equal(ids, before, out=born)
-        if born.any():
+        if changed:
+            np.not_equal(ids, before, out=born)
             np.logical_and(born, before != NOBODY, out=terminated)
             born &= alive
             born.sum(axis=1, out=self.births)
             terminated.sum(axis=1, out=self.deaths)
             self.actions[born] = self._middle
         else:  # nobody came or went, as in most steps of few worlds
+            born.fill(False)
             terminated.fill(False)
             self.births.fill(0)
             self.deaths.fill(0)
@@ -271,13 +270,16 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
         for group, array in given:
             group._take(array)
         for group in groups.values():
-            group._check(engine)
+            group._check()
+        if len(groups) > 1:  # nobody may be told anything before all are right
+            for group in groups.values():
+                group._tell(engine.wrong_action)
+        for group in groups.values():
+            group._tell(engine.set_actions)
     except ArgumentError:
         for group, before in held:
             group.actions[...] = before
         raise
-    for group in groups.values():
-        group._tell(engine)
 
 
 def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, Any]]:

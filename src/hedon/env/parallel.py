@@ -1,6 +1,6 @@
 """One world as an environment of PettingZoo's Parallel API, whose agents appear and vanish, or are its slots."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         slots: Whether slots are the agents.
         render_mode: What `render` gives.
         threads: One world of usual size is fastest on one.
+        overrides: Settings that differ from those of the preset or file.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -59,9 +60,12 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         slots: bool = False,
         render_mode: str | None = None,
         threads: int = 1,
+        overrides: Iterable[str] = (),
     ) -> None:
         self.metadata = {"name": "hedon_v1", "render_modes": list(RENDER_MODES), "is_parallelizable": True}
-        self._vector: VectorEnv = make(config, 1, seed, species, actions, repeat, max_steps, render_mode, threads)
+        self._vector: VectorEnv = make(
+            config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
+        )
         self.render_mode = render_mode
         self.agents: list[str] = []
         self._begun, self._slots = False, slots

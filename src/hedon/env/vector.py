@@ -235,7 +235,7 @@ class VectorEnv:
         done, stopped = 0, None
         while done < self.repeat and stopped is None:
             try:
-                self._record.advance() if self._record else self.simulation.run(1)
+                self._record.advance() if self._record else engine.run(1)
             except KeyboardInterrupt as interrupt:  # raised by the engine when the step was done
                 stopped = interrupt
             done += 1
