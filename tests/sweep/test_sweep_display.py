@@ -33,6 +33,18 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
     assert f"{untold.folder}:finished" in lines
 
 
+def test_the_start_of_the_workers_does_not_count_into_the_time_that_is_left(tmp_path, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("hedon.cli.display.job.time.monotonic", lambda: now[0])
+    plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
+    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
+    stream = io.StringIO()
+    with JobDisplay(Console(file=stream, width=200), jobs) as display:
+        now[0] += 50  # they start
+        display.update(jobs[0], Moment(0, 500, 1000, 2.0, ({"alive": 7}, {"alive": 5}), (None, None), 64))
+    assert "25.0 %, 0 of 2 runs done, 500 world-steps/s, 6 s left" in stream.getvalue()
+
+
 def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_path):
     costs = f'[factor]\n"energy.basic_cost" = {[i / 1e4 for i in range(1, 31)]}\n'
     plan, store = planned(sweep_file(tmp_path, 1000, seeds=1, rest=costs), str(tmp_path / "place"))

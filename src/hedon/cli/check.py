@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hedon.record.error import RecordError
+from hedon.text import count
 
 
 def check(
@@ -50,9 +51,7 @@ def check(
             notes.append(note)
         elif replay:
             notes.append("not computed again, because of the problems")
-        typer.echo(
-            f"{run}: " + (f"{len(findings)} problem{'s' if len(findings) > 1 else ''}" if findings else "no problems")
-        )
+        typer.echo(f"{run}: " + (count(len(findings), "problem") if findings else "no problems"))
         for finding in findings:
             typer.echo(f"  wrong: {finding.where}: {finding.what}")
         for note in notes:

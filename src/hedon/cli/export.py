@@ -51,6 +51,7 @@ def export(
       hedon export phylogeny runs/baseline-corrected-s1 --format png --color w_action
       hedon export indices runs/baseline-corrected-s1 --points 100
     """
+    from hedon.cli.display.step import StepDisplay
     from hedon.export.indices import index_table
     from hedon.export.phylogeny import alife_table, last_step, newick, pedigree, picture
     from hedon.export.table import TableFormat, table_of, write_new, write_table
@@ -67,16 +68,21 @@ def export(
     opened = open_run(run)
     ending = {"alife": "csv", "newick": "nwk"}.get(chosen, chosen)
     target = out or Path(f"{run.resolve().name}-{what}.{ending}")
-    if what not in OF_A_WORLD:
-        write_table(table_of(opened, what), cast(TableFormat, chosen), target)
-    else:
-        agents = pedigree(opened, world, species)
-        now = last_step(opened, agents)
-        if what == "indices":
-            write_table(index_table(agents, now, points).lazy(), cast(TableFormat, chosen), target)
-        elif chosen == "alife":
-            write_table(alife_table(agents, opened.weight_names).lazy(), "csv", target)
+    with StepDisplay("exporting") as tell:
+        tell(0, 2, f"reading {what}")
+        if what not in OF_A_WORLD:
+            table = table_of(opened, what)
+            tell(1, 2, f"writing {target}")
+            write_table(table, cast(TableFormat, chosen), target)
         else:
-            content = picture(agents, now, opened.weight_names, color) if chosen == "png" else newick(agents, now)
-            write_new(target, lambda file: file.write(content))
+            agents = pedigree(opened, world, species)
+            now = last_step(opened, agents)
+            tell(1, 2, f"writing {target}")
+            if what == "indices":
+                write_table(index_table(agents, now, points).lazy(), cast(TableFormat, chosen), target)
+            elif chosen == "alife":
+                write_table(alife_table(agents, opened.weight_names).lazy(), "csv", target)
+            else:
+                content = picture(agents, now, opened.weight_names, color) if chosen == "png" else newick(agents, now)
+                write_new(target, lambda file: file.write(content))
     typer.echo(f"wrote {target}")

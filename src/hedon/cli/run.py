@@ -12,7 +12,7 @@ from hedon.cli.report import show_report
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
-from hedon.text import brief, printable
+from hedon.text import brief, count, printable
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -116,7 +116,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
     from hedon.record.schema import columns_of
 
     config, console = plan.config, make_console()
-    worlds, out = f"{len(plan.seeds)} world{'s' if len(plan.seeds) > 1 else ''}", printable(str(plan.out))
+    worlds, out = count(len(plan.seeds), "world"), printable(str(plan.out))
     console.print(
         f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {out}",
         soft_wrap=True,

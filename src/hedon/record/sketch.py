@@ -7,6 +7,7 @@ from html import escape
 import polars as pl
 
 from hedon.record.manifest import Manifest
+from hedon.text import count
 
 WIDTH, HEIGHT, EDGE = 460, 110, 16
 """Size of the figure, and the part at its edge for labels [px]."""
@@ -19,7 +20,7 @@ DASHES = ("", "6 3", "2 3", "6 3 2 3")
 def status_line(manifest: Manifest) -> str:
     """What a run is and how far it has come, in one line."""
     name = manifest.name or manifest.preset or "run"
-    worlds = f"{len(manifest.seeds)} world{'s' if len(manifest.seeds) != 1 else ''}"
+    worlds = count(len(manifest.seeds), "world")
     done = max(manifest.steps_done, default=0)
     fidelity = f" ({manifest.fidelity})" if manifest.fidelity else ""
     return f"{name}{fidelity}, {worlds}, {manifest.status} at step {done:,} of {manifest.steps_asked:,}"

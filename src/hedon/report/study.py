@@ -22,6 +22,7 @@ from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study
 from hedon.study.verdict_table import verdict
+from hedon.text import count
 
 TABLES = "tables"
 """Folder of the tables beside the page."""
@@ -90,8 +91,7 @@ def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultT
         _worlds_row(condition.label, inputs.worlds.get(condition.label, ()), len(scale.seeds))
         for condition in item.conditions
     ]
-    count = len(scale.seeds)
-    note = f"Asked for: {count} world{'s' if count > 1 else ''} of {scale.steps:,} steps"
+    note = f"Asked for: {count(len(scale.seeds), 'world')} of {scale.steps:,} steps"
     note += f"; the study has {len(item.scale.seeds)} of {item.scale.steps:,}"
     return make_table(f"{item.name}-worlds", "Made of", rows, note + ".")
 

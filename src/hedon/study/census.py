@@ -6,6 +6,7 @@ import polars as pl
 
 from hedon.analysis.world.record import WorldRecord
 from hedon.study.item import Condition, ItemInputs
+from hedon.text import count
 
 _NAMED = 3  # at most this many seeds that died out are named
 
@@ -50,12 +51,12 @@ def steps_reached(worlds: Iterable[WorldRecord]) -> int:
 def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
     """What a title says of one condition's worlds: how many and how long, and which of them died out."""
     living = [world.last_step for world in worlds if world.extinct_step is None]
-    count = f"{len(worlds)} world{'s' if len(worlds) > 1 else ''}"
+    told = count(len(worlds), "world")
     if not living:
         step = _steps(steps_reached(worlds))
-        return count, f"died out at step {step}" if len(worlds) == 1 else f"all died out by step {step}"
+        return told, f"died out at step {step}" if len(worlds) == 1 else f"all died out by step {step}"
     reach = _steps(max(living)) if min(living) == max(living) else f"{_steps(min(living))} to {_steps(max(living))}"
-    return f"{count}, {reach} steps", _died_out([world.seed for world in worlds if world.extinct_step is not None])
+    return f"{told}, {reach} steps", _died_out([world.seed for world in worlds if world.extinct_step is not None])
 
 
 def world_indices(groups: Iterable[Sequence[WorldRecord]]) -> dict[int, int]:

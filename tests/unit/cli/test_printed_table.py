@@ -48,6 +48,17 @@ def test_a_terminal_narrower_than_a_word_breaks_it() -> None:
     assert max(map(len, printed(20, PrintedTable(HEADERS, ROWS, text=(0, 1, 4))))) <= 20
 
 
+def test_settings_that_are_numbers_tell_rows_apart_in_every_part() -> None:
+    settings = [["0.1", "1"], ["0.1", "2"], ["0.2", "1"], ["0.2", "2"]]
+    rows = [[*pair, *[f"{i}{j:07}" for j in range(9)]] for i, pair in enumerate(settings)]
+    lines = printed(60, PrintedTable(["energy.basic_cost", "seeds", *(f"c{j}" for j in range(9))], rows))
+    heads = [line.split()[:2] for line in lines if "seeds" in line]
+    assert len(heads) > 1
+    assert heads == [["energy.basic_cost", "seeds"]] * len(heads)
+    for pair in settings:
+        assert len([line for line in lines if line.split()[:2] == pair]) == len(heads)
+
+
 def test_columns_that_do_not_fit_are_continued_with_the_first_one() -> None:
     numbers = [[str(seed), *[f"{seed}{i:07}" for i in range(12)]] for seed in (1, 2)]
     lines = printed(60, PrintedTable(["seed", *(f"c{i}" for i in range(12))], numbers))

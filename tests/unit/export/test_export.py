@@ -42,6 +42,13 @@ def test_a_table_reads_back_as_it_is(table: str, file_format: str, folder: Path,
     assert_frame_equal(found.cast(dict(wanted.schema)), wanted)  # pyright: ignore[reportArgumentType]
 
 
+def test_what_takes_long_is_told(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hedon.cli.display.step.QUIET_SECONDS", 0.0)
+    result = CliRunner().invoke(APP, ["agents", str(folder), "--out", str(tmp_path / "out.csv")])
+    assert "hedon: exporting: reading agents, step 1 of 2" in result.stderr
+    assert result.stdout == f"wrote {tmp_path / 'out.csv'}\n"
+
+
 def test_the_default_file_is_named_after_the_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert invoke("population", str(folder)) == "wrote run-population.csv\n"

@@ -47,6 +47,8 @@ class JobDisplay(Screen):
             job: That goes on.
             moment: How far it is.
         """
+        if not self._moments and not self._ended:  # until then workers started
+            self._seen = deque([(time.monotonic() - moment.seconds, 0)])
         self._moments[job.folder] = moment
         living = sum(step is None for step in _ends(job, moment).values())
         # Only worlds with living agents have steps still to run.

@@ -11,6 +11,7 @@ from hedon.study.cost import RequestCost
 from hedon.study.item import Item
 from hedon.study.request import Request
 from hedon.study.study import Study
+from hedon.text import count
 
 
 def catalogue(studies: Iterable[Study]) -> Group:
@@ -38,8 +39,8 @@ def listing(request: Request, cost: RequestCost) -> Group:
     headers = ("item", "what it is", "needs", "total", "still to run")
     table = PrintedTable(headers, rows, text=range(3), total=True)
     notes = [
-        f"Measured now: {speed.rate:,.0f} world-steps/s on {speed.threads} thread{'s' if speed.threads > 1 else ''}"
-        f" with {speed.agents:.0f} agents a world and {kinds} kind{'s' if kinds > 1 else ''} of food;"
+        f"Measured now: {speed.rate:,.0f} world-steps/s on {count(speed.threads, 'thread')}"
+        f" with {speed.agents:.0f} agents a world and {count(kinds, 'kind')} of food;"
         " worlds with more agents take longer, worlds with fewer take less time."
         for kinds, speed in cost.speeds.items()
     ]
@@ -51,7 +52,7 @@ def _needs(request: Request, item: Item) -> str:
         return "only settings"
     scale = request.scale(item)
     settings, worlds = len(item.conditions), len(scale.seeds)
-    parts = [f"{settings} setting{'s' if settings > 1 else ''}", f"{worlds} world{'s' if worlds > 1 else ''}"]
+    parts = [count(settings, "setting"), count(worlds, "world")]
     return ", ".join([*parts, f"{scale.steps:,} steps"])
 
 

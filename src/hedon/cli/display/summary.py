@@ -11,6 +11,7 @@ from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
+from hedon.text import count
 
 _QUANTITIES = {  # key of the summary: name
     "mean_lifetime": "mean lifetime of the dead [step]",
@@ -45,8 +46,9 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
     """
     notes = []
     if summary["extinct_worlds"]:
-        count = summary["extinct_worlds"]
-        notes.append(f"{count} of {len(summary['worlds'])} worlds died out; they count in the means above.")
+        notes.append(
+            f"{summary['extinct_worlds']} of {len(summary['worlds'])} worlds died out; they count in the means above."
+        )
     parts = [_Part(*each) for each in _parts(summary)]
     for part in parts:
         gone = sum(fare["extinct"] for fare in part.fares) - summary["extinct_worlds"]
@@ -101,7 +103,7 @@ def _parts(summary: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any],
 
 
 def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable | Text]:
-    count, sources = len(summary["worlds"]), summary["reported"]
+    worlds, sources = len(summary["worlds"]), summary["reported"]
     headers = ["mean over worlds", "value", "95 % interval"]
     headers += [f"{name} ({source['steps'] / 1e6:g}e6 steps)" for name, source in sources.items()]
     rows = []
@@ -110,11 +112,11 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
             reported = [_reported(source.get(key)) for source in sources.values()]
             rows.append([label, *_interval(part.means[key]), *reported])
     rows += [[f"weight {weight}", *_interval(part.means["weights"][weight])] for weight in part.shown]
-    if count < SHOWN_FROM:
+    if worlds < SHOWN_FROM:
         for line in (headers, *rows):
             del line[2]
     of = f", {part.species}" if part.species else ""
-    title = f"{_name(summary)}{of}: {count} world{'s' if count > 1 else ''}"
+    title = f"{_name(summary)}{of}: {count(worlds, 'world')}"
     said = [
         Text(f"{name}: {source['claim']}.", style="dim italic")
         for name, source in sources.items()

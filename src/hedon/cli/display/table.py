@@ -97,14 +97,14 @@ def _column(header: str, cells: tuple[str, ...], *, is_text: bool) -> _Column:
 
 
 def _key_count(columns: Sequence[_Column]) -> int:
-    """How many columns, from the left, tell all rows apart; of those that hold text, but the first in any case."""
-    count = 1
-    while count < len(columns) and columns[count].is_text:
-        rows = list(zip(*(column.cells for column in columns[:count]), strict=True))
-        if len(set(rows)) == len(rows):
-            break
-        count += 1
-    return count
+    """How many columns, from the left, tell all rows apart: texts, or numbers as of a setting. The first alone where it
+    takes more than half of them.
+    """
+    rows = list(zip(*(column.cells for column in columns), strict=True))
+    for count in range(1, len(columns) // 2 + 1):
+        if len({row[:count] for row in rows}) == len(rows):
+            return count
+    return 1
 
 
 def _needed(columns: Sequence[_Column]) -> int:
