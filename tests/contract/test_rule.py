@@ -222,3 +222,17 @@ def test_a_config_is_pinned_once(file):
     assert once.species["prey"].reward.rule == f"my_rules.py:same@{found[0].source.digest}"
     assert once.species["predator"].reward.rule == ""
     assert pinned(once, rules(once, [found[0].source])) == once
+
+
+def test_one_text_is_compiled_once_and_another_anew(file):
+    """A world that is made again, cloned or driven has the compiled rule that is there; a changed file does not."""
+
+    def address(*settings):
+        config = load_config("baseline", overrides=[*QUICK, f'reward.rule="{file}:curious"', *settings])
+        return rules(config)[0].compiled.address
+
+    first = address("reward.memory=1")
+    assert address("reward.memory=1") == first
+    assert address("reward.memory=2") != first, "the record of an agent is another one"
+    file.write_text(RULES.replace("0.1 *", "0.2 *"))
+    assert address("reward.memory=1") != first

@@ -142,7 +142,8 @@ def _solve(sums: Floats, p: int, measure: int) -> tuple[Floats, Floats]:
     omega, omega_z = means[:, begin : begin + 1], means[:, begin + 1 : begin + 1 + p]
     covariance = np.empty((len(sums), p, p))
     covariance[:, first, second] = covariance[:, second, first] = zz - z[:, first] * z[:, second]
-    s = omega_z / omega - z
+    with np.errstate(divide="ignore", invalid="ignore"):  # in a sample of nobody with children there is no differential
+        s = omega_z / omega - z
     beta = (np.linalg.pinv(covariance, rcond=_ROUNDING, hermitian=True) @ s[..., None])[..., 0]
     beta[:, covariance[0].diagonal() <= 0] = np.nan  # the first sample is the cohort itself
     return s, beta

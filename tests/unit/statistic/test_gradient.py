@@ -1,3 +1,5 @@
+import warnings
+
 import numpy as np
 
 from hedon.statistic.selection import linear_selection
@@ -12,3 +14,13 @@ def test_the_gradient_is_a_multiple_regression() -> None:
     design = np.column_stack([np.ones(500), z])
     np.testing.assert_allclose(beta, np.linalg.lstsq(design, omega, rcond=None)[0][1:], rtol=1e-9)
     np.testing.assert_allclose(s, [np.cov(omega, z[:, i], ddof=0)[0, 1] for i in range(3)], rtol=1e-9)
+
+
+def test_samples_of_nobody_with_children_are_no_warning() -> None:
+    """One of 12 has children: a third of all bootstrap samples leave it out."""
+    rng = np.random.default_rng(1)
+    omega = np.eye(12)[0] * 12
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table = linear_selection(rng.normal(size=(12, 2)), omega[:, None], np.arange(12), rng, 50)
+    assert np.isfinite(table[0, 0]).all()
