@@ -43,7 +43,8 @@ int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, co
   return self.get().set_actions(species, actions.data(), known);
 }
 
-int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id) {
+int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward,
+                          IdsOut agent_id) {
   need_rows(self, species, observation);
   need_rows(self, species, reward);
   need_rows(self, species, agent_id);

@@ -27,7 +27,8 @@ int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, co
 
 /// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …). Returns in how many
 /// slots another agent, or none, is now.
-int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward, IdsOut agent_id);
+int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward,
+                          IdsOut agent_id);
 
 /// The same without what they sense.
 void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id);

@@ -64,8 +64,8 @@ class PythonSimulation {
   /// Begins a world again with this seed. EngineError: there is no place for its initial agents or foods.
   void reset(int index, uint64_t seed);
 
-  /// `Simulation::read_observations`, or `read_rewards` if there is no array of observations, which counts nothing, with
-  /// the interpreter lock released.
+  /// `Simulation::read_observations`, or `read_rewards` if there is no array of observations, which counts nothing,
+  /// with the interpreter lock released.
   int64_t read_observations(int32_t species, const ObservationOut& out);
 
   /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises

@@ -110,8 +110,8 @@ class Simulation {
   /// agent are not read. Returns -1, or which number of an agent is out of bounds; then nobody is told anything.
   int64_t set_actions(int32_t species, const float* actions, ActionForm form);
 
-  /// Writes what the agents of an external species sense now, and what they earned in the last step. Returns in how many
-  /// slots another agent, or none, is now.
+  /// Writes what the agents of an external species sense now, and what they earned in the last step. Returns in how
+  /// many slots another agent, or none, is now.
   int64_t read_observations(int32_t species, const ObservationOut& out);
 
   /// The same without what they sense.
