@@ -66,13 +66,14 @@ def _ended(name: str, scores: pl.DataFrame) -> str:
     title, means = weight_title(name), scores["mean"]
     title += "," if "," in title else ""
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
-    chance = f"chance alone reaches {low:+.2f} to {high:+.2f}"
+    chance = f"chance alone reaches {low:+z.2f} to {high:+z.2f}"
     last = f"Of the agents born last (at most {LAST_AGENTS:,}), the mean {title}"
     if scores.height == 1:
-        return f"{last} is {means[0]:+.2f}, and {chance}"
+        return f"{last} is {means[0]:+z.2f}, and {chance}"
     outside = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
-    where = f"is {means.min():+.2f} to {means.max():+.2f} in {scores.height} worlds, on average"
-    return f"{last} {where} {means.mean():+.2f}; {chance}, and {outside} of them lie outside"
+    lie = "lies" if outside == 1 else "lie"
+    where = f"is {means.min():+z.2f} to {means.max():+z.2f} in {scores.height} worlds, on average"
+    return f"{last} {where} {means.mean():+z.2f}; {chance}, and {outside} of them {lie} outside"
 
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:

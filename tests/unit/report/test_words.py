@@ -59,6 +59,9 @@ def test_several_worlds_tell_how_many_went_beyond_chance(analysis):
     said = told(analysis, 2.0, (0.5, 0.1, -0.4))
     assert "is -0.40 to +0.50 in 3 worlds, on average +0.07" in said
     assert "and 2 of them lie outside: selected for" in said
+    said = told(analysis, 2.0, (0.5, -0.001, 0.2))
+    assert "is +0.00 to +0.50 in 3 worlds" in said, "a zero has no minus sign"
+    assert "and 1 of them lies outside: selected for" in said
 
 
 def test_agents_that_do_not_learn_are_named(tmp_path: Path):
@@ -80,7 +83,7 @@ def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analy
     assert len(said) == 2
     rows = analysis.tables["drift_world"].rows
     for name, line in zip(("w_normal", "w_action"), said, strict=True):
-        assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+.2f}" in line
+        assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+z.2f}" in line
     page, text = (files[name].read_text(encoding="utf-8") for name in ("report.html", "report.md"))
     assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Of the agents", page)
     order = [

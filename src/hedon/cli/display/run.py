@@ -12,6 +12,7 @@ from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
+from hedon.text import count
 
 FIRST_LINE_SECONDS = 1.0
 LINE_SECONDS = 10.0
@@ -63,9 +64,9 @@ def _labels(columns: Columns, seeds: tuple[int, ...]) -> list[str]:
 def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]) -> str:
     if extinct is not None:
         return f"extinct at step {extinct:,}"
-    parts = [f"{row['alive']} alive", f"{row['births']} births", f"{row['deaths']} deaths"]
+    parts = [f"{row['alive']} alive", count(row["births"], "birth"), count(row["deaths"], "death")]
     parts += [f"energy {row['energy_mean']:.2f}"] if row["alive"] else []
-    parts += [f"{name} {row[f'{name}_mean']:+.2f}" for name in weights if not math.isnan(row[f"{name}_mean"])]
+    parts += [f"{name} {row[f'{name}_mean']:+z.2f}" for name in weights if not math.isnan(row[f"{name}_mean"])]
     return ", ".join(parts)
 
 
