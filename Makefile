@@ -8,6 +8,8 @@ BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # make clusters of Ray, 200 MB (80 MB to download), S3 servers, and wheels.
 EXTRA := --extra rules --extra video
 LONG := $(EXTRA) --extra ray --extra remote --group store --group viewer --group cuda --group wheel
+# One more than there are processors: tests wait for browsers and for processes a fifth of the time.
+WORKERS := $(shell $(PYTHON) -c 'import os; print(os.cpu_count() + 1)')
 # What the site is made with.
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
@@ -27,7 +29,7 @@ test: sync
 	$(MAKE) --no-print-directory --jobs=3 --output-sync=line static sanitized suite
 
 suite: tools $(UV)
-	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
+	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 static: tools $(UV)
 	$(RUN) ruff check .
