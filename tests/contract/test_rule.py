@@ -224,15 +224,12 @@ def test_a_config_is_pinned_once(file):
     assert pinned(once, rules(once, [found[0].source])) == once
 
 
-def test_one_text_is_compiled_once_and_another_anew(file):
-    """A world that is made again, cloned or driven has the compiled rule that is there; a changed file does not."""
-
-    def address(*settings):
-        config = load_config("baseline", overrides=[*QUICK, f'reward.rule="{file}:curious"', *settings])
-        return rules(config)[0].compiled.address
-
-    first = address("reward.memory=1")
-    assert address("reward.memory=1") == first
-    assert address("reward.memory=2") != first, "the record of an agent is another one"
-    file.write_text(RULES.replace("0.1 *", "0.2 *"))
-    assert address("reward.memory=1") != first
+def test_what_a_rule_reads_is_read_again_for_each_world(tmp_path):
+    """A rule may read other files: its text alone does not say what it pays, so nothing compiled is kept by it."""
+    pay, rule = tmp_path / "pay", tmp_path / "rule.py"
+    rule.write_text(f"PAY = float(open({str(pay)!r}).read())\n\ndef paid(agent):\n    return PAY\n")
+    for amount in ("1", "2"):
+        pay.write_text(amount)
+        simulation = make_simulation(*QUICK, f'reward.rule="{rule}:paid"')
+        simulation.run(1)
+        assert simulation.worlds[0].view("reward").max() == float(amount)

@@ -35,10 +35,6 @@ from hedon.text import brief
 MAX_BYTES = 1_000_000
 """Size of the largest file of a rule [byte]: the manifest of a run keeps the whole text."""
 
-KEPT = 64
-"""Compiled rules that a process keeps: to compile one takes half a second."""
-_COMPILED: dict[Any, Any] = {}
-
 
 class RuleError(HedonError):
     """A rule that is not there, is not the one that a run began with, or cannot be used."""
@@ -114,15 +110,6 @@ class Rule:
         Raises:
             RuleError: Numba is not installed, or cannot compile the rule.
         """
-        key = (self.source.text, self.source.name, self.columns, self.neutral)
-        if key not in _COMPILED:
-            made = self._compile()
-            while len(_COMPILED) >= KEPT:
-                _COMPILED.pop(next(iter(_COMPILED)))
-            _COMPILED[key] = made
-        return _COMPILED[key]
-
-    def _compile(self) -> Any:
         try:
             numba: Any = import_module("numba")
         except ModuleNotFoundError as error:
