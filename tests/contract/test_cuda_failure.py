@@ -2,7 +2,6 @@
 
 import ctypes
 import os
-import platform
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,8 +19,6 @@ from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.resume import resume
 from hedon.experiment.simulation import BACKEND_VARIABLE
 from hedon.record.manifest import load_manifest
-
-pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 
 FEW = ("population.capacity=24", "population.initial_count=12")
 NEVER = -1

@@ -1,7 +1,6 @@
 """Whole runs through the emulated device: records, checkpoints, resuming on either side, the check of the folder."""
 
 import json
-import platform
 import signal
 import subprocess
 import sys
@@ -21,8 +20,6 @@ from hedon.experiment.resume import lock, resume
 from hedon.experiment.run import run
 from hedon.experiment.simulation import BACKEND_VARIABLE
 from hedon.record.manifest import load_manifest
-
-pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 
 SETTINGS = (
     "world.rollout_steps=32",

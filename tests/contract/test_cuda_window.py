@@ -3,8 +3,6 @@
 The kernels sum in the order of the CPU's, so equality is exact: of all state, after steps, learning and the audit.
 """
 
-import platform
-
 import numpy as np
 import pytest
 from cuda_emulation import build
@@ -15,8 +13,6 @@ from worlds import QUICK, RELEASED, make_simulation, set_scene
 from hedon.error import EngineError
 from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.simulation import Simulation
-
-pytestmark = pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 FEW = ("population.capacity=24", "population.initial_count=12")

@@ -1,7 +1,5 @@
 """Lives that nobody reads: worlds go on for ever, and who asks late is told what is lost."""
 
-import platform
-
 import numpy as np
 import pytest
 from cuda_emulation import emulated as emulated
@@ -119,7 +117,6 @@ def test_a_world_of_pettingzoo_never_ends():
     assert world.simulation.worlds[0].counters["deaths"] == died
 
 
-@pytest.mark.skipif(platform.machine() != "x86_64", reason="compares with AVX2")
 def test_a_device_keeps_the_same(emulated: str):
     processor, device = make("avx2"), make(emulated)
     for simulation in (processor, device):

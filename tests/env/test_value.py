@@ -1,6 +1,5 @@
 """Worlds as values: saved, restored, cloned, copied and pickled, they go on with the same bits."""
 
-import copy
 import pickle
 import random
 import subprocess
@@ -10,24 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from world_copy import LIVELY, PAIR, WAYS, digests
 from worlds import QUICK, RELEASED, make_simulation
 
 import hedon
 from hedon import ArgumentError, Simulation, load_config, make
 from hedon.env import VectorEnv
-
-LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=40", "population.initial_count=30")
-PAIR = (*LIVELY, "species.wise.body.radius=10", "species.led.body.radius=10", "species.led.sensor.ray_count=8")
-WAYS: dict[str, Callable[[Any], Any]] = {
-    "clone": lambda held: held.clone(),
-    "copy": copy.copy,
-    "deepcopy": copy.deepcopy,
-    "pickle": lambda held: pickle.loads(pickle.dumps(held)),
-}
-
-
-def digests(held: Any) -> list[str]:
-    return [world.digest() for world in getattr(held, "simulation", held).worlds]
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
