@@ -8,8 +8,8 @@ BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # make clusters of Ray, 200 MB (80 MB to download), S3 servers, and wheels.
 EXTRA := --extra rules --extra video
 LONG := $(EXTRA) --extra ray --extra remote --group store --group viewer --group cuda --group wheel
-# One more than there are processors: tests wait for browsers and for processes a fifth of the time.
-WORKERS := $(shell $(PYTHON) -c 'import os; print(os.cpu_count() + 1)')
+# One more than the processors that this may use: tests wait for browsers and for processes a fifth of the time.
+WORKERS = $(shell $(PYTHON) -c 'import os; print(len(getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count()))(0)) + 1)')
 # What the site is made with.
 SITE := --group docs
 # Builds below start their own jobs: make's job server does not reach them through uv.
