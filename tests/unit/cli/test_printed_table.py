@@ -59,6 +59,14 @@ def test_settings_that_are_numbers_tell_rows_apart_in_every_part() -> None:
         assert len([line for line in lines if line.split()[:2] == pair]) == len(heads)
 
 
+@pytest.mark.parametrize("last", ["x", "y"], ids=["not told apart", "told apart"])
+def test_texts_are_repeated_however_many_they_are(last: str) -> None:
+    rows = [["a", "b", "x", "1" * 30, "2" * 30], ["a", "b", last, "3" * 30, "4" * 30]]
+    lines = printed(50, PrintedTable(["one", "two", "three", "c", "d"], rows, text=(0, 1, 2)))
+    heads = [line.split()[:3] for line in lines if "two" in line]
+    assert heads == [["one", "two", "three"]] * 2
+
+
 def test_columns_that_do_not_fit_are_continued_with_the_first_one() -> None:
     numbers = [[str(seed), *[f"{seed}{i:07}" for i in range(12)]] for seed in (1, 2)]
     lines = printed(60, PrintedTable(["seed", *(f"c{i}" for i in range(12))], numbers))

@@ -166,7 +166,7 @@ def _weights(summary: Mapping[str, Any], part: _Part) -> PrintedTable:
 
 
 def _weight(value: float | None) -> str:
-    return NOTHING if value is None else f"{value:.2f}"
+    return NOTHING if value is None else f"{value:z.2f}"
 
 
 def _interval(interval: Mapping[str, Any]) -> tuple[str, str]:

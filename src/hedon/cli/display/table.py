@@ -97,14 +97,15 @@ def _column(header: str, cells: tuple[str, ...], *, is_text: bool) -> _Column:
 
 
 def _key_count(columns: Sequence[_Column]) -> int:
-    """How many columns, from the left, tell all rows apart: texts, or numbers as of a setting. The first alone where it
-    takes more than half of them.
+    """How many columns, from the left, tell all rows apart: texts, or numbers of settings, of at most half of them.
+    Where these do not, the columns of text at the left, but the first in any case.
     """
     rows = list(zip(*(column.cells for column in columns), strict=True))
-    for count in range(1, len(columns) // 2 + 1):
+    texts = next((i for i, column in enumerate(columns) if i > 0 and not column.is_text), len(columns))
+    for count in range(1, max(texts, len(columns) // 2) + 1):
         if len({row[:count] for row in rows}) == len(rows):
             return count
-    return 1
+    return texts
 
 
 def _needed(columns: Sequence[_Column]) -> int:
