@@ -81,7 +81,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
     tables = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
-    require_plain(tables, "--set")
+    require_plain(tables, f"{origin}, with changes")
     for name in [each for table in tables for each in table if each in ("preset", "fidelity", "complete")]:
         other = "--fidelity" if name == "fidelity" else "the preset or file itself"
         problems.append(Problem(name, f"is not a setting: give it with {other}"))
@@ -89,7 +89,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     if problems:
         raise ConfigError(origin, problems)
     name = {"name": str(source) if path is None else _name_of(path)}
-    return _from_layers([name, *below], [own, *tables], origin + " with --set" if tables else origin)
+    return _from_layers([name, *below], [own, *tables], f"{origin}, with changes" if tables else origin)
 
 
 def parse_config(text: str, origin: str) -> Config:

@@ -25,7 +25,7 @@ def parse_override(text: str) -> Table | Problem:
     path, sign, value_text = text.partition("=")
     names = parse_path(path.strip())
     if not sign or not names:
-        return Problem("--set", 'must be "section.name=value", as in energy.initial=20', repr(text))
+        return Problem(repr(text), 'must be "section.name=value", as in energy.initial=20')
     try:
         value = _value(value_text.strip())
     except (ValueError, RecursionError):

@@ -150,7 +150,7 @@ def _with_founders(config: Config, founders: Founders | None) -> Config:
     if config.world.founders:
         raise ArgumentError(
             "founders: the config names a table of founders, so give it, as in --founders RUN/founders.csv, or leave "
-            'it out with --set world.founders=""'
+            'it out: world.founders=""'
         )
     return config
 
@@ -163,7 +163,7 @@ def _with_networks(config: Config, networks: Networks | None) -> Config:
     if config.world.networks:
         raise ArgumentError(
             "networks: the config names a file of networks, so give it, as in --networks RUN/networks.npz, or leave it "
-            'out with --set world.networks=""'
+            'out: world.networks=""'
         )
     return config
 

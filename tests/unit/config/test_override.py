@@ -1,7 +1,9 @@
+import re
 from typing import Any
 
 import pytest
 
+from hedon import ConfigError, load_config
 from hedon.config.override import parse_override
 from hedon.config.problem import Problem
 
@@ -34,3 +36,12 @@ from hedon.config.problem import Problem
 def test_parse_override(text: str, tables: dict[str, Any] | None) -> None:
     found = parse_override(text)
     assert isinstance(found, Problem) if tables is None else found == tables
+
+
+@pytest.mark.parametrize(
+    "overrides", [["energy.inital=3"], ["energy.initial"], ["=3"], ["energy.initial=a b"], ["fidelity=text"]]
+)
+def test_errors_name_the_change_and_no_option_of_the_command_line(overrides: list[str]) -> None:
+    with pytest.raises(ConfigError, match=re.escape(overrides[0][:8])) as caught:
+        load_config("baseline", overrides=overrides)
+    assert "--set" not in str(caught.value)
