@@ -223,6 +223,27 @@ int64_t PythonSimulation::read_observations(int32_t species, const ObservationOu
   return 0;
 }
 
+void PythonSimulation::set_rule(NamedRule named, Rule rule) {
+  get().set_rule(named.species, named.use, rule);
+  rules_.push_back(std::move(named));
+}
+
+/// The agent of a fault, and where a rule is at fault, the rules of its species that can be meant.
+std::string PythonSimulation::about_agent(const World& world, const Fault& fault) const {
+  std::string text = ", agent " + std::to_string(fault.agent_id);
+  const bool paid = fault.status == Status::rule_not_finite;
+  if (!paid && fault.status != Status::rule_no_chance && fault.status != Status::rule_wrote) return text;
+  for (int32_t i = 0; i < world.head().living_count; ++i) {
+    const int32_t slot = world.state.living[i];
+    if (world.state.life[slot].agent_id != fault.agent_id) continue;
+    for (const NamedRule& each : rules_) {
+      if (each.species != world.shape->species_of(slot) || (each.use == RuleUse::reward) != paid) continue;
+      text += ", " + each.name;
+    }
+  }
+  return text;
+}
+
 /// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.
 void PythonSimulation::raise_faults() {
   Simulation& simulation = *simulation_;
@@ -236,7 +257,7 @@ void PythonSimulation::raise_faults() {
   const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
   std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) + ", step " +
                         std::to_string(fault.step) + ", value " + std::to_string(fault.value);
-  if (fault.agent_id >= 0) message += ", agent " + std::to_string(fault.agent_id);
+  if (fault.agent_id >= 0) message += about_agent(simulation.numbers(first), fault);
   if (fault.other_id >= 0) message += ", with agent " + std::to_string(fault.other_id);
   message += ", windows completed: " + std::to_string(fault.step / simulation.shape().steps);
   throw EngineError(message + ". " + text.remedy);

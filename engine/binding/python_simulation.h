@@ -19,6 +19,13 @@ namespace hedon {
 
 using WallsIn = nanobind::ndarray<const float, nanobind::shape<-1, 4>, nanobind::c_contig, nanobind::device::cpu>;
 
+/// A rule of a species, and what messages call it.
+struct NamedRule {
+  int32_t species;
+  RuleUse use;
+  std::string name;
+};
+
 class PythonSimulation {
  public:
   /// Arguments as `Simulation` has them; 0 threads for all processors, "" for the best kernel.
@@ -61,6 +68,9 @@ class PythonSimulation {
   /// Replaces all worlds by those of a string of `Simulation::pack`. Returns "", or why none was replaced.
   std::string unpack(std::string_view bytes);
 
+  /// `Simulation::set_rule`; faults of the rule tell its name.
+  void set_rule(NamedRule named, Rule rule);
+
   /// Begins a world again with this seed. EngineError: there is no place for its initial agents or foods.
   void reset(int index, uint64_t seed);
 
@@ -75,11 +85,13 @@ class PythonSimulation {
 
  private:
   void raise_faults();
+  std::string about_agent(const World& world, const Fault& fault) const;
   void need_working();
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
   int64_t id_ = 0;
+  std::vector<NamedRule> rules_;
   uint32_t turn_ = 0;  ///< counts calls of `step_batch`
   int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
 };

@@ -210,11 +210,12 @@ void set_networks(PythonSimulation& self, int index, int species,
 }
 
 /// The address of a function `Rule`. It must stay as long as the simulation: the caller holds it.
-void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address) {
+void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address,
+              const std::string& name) {
   if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");
   for (int32_t u = 0; u < RULE_USES; ++u) {
     if (use != EnumNames<RuleUse>::text[u]) continue;
-    self.get().set_rule(species, static_cast<RuleUse>(u), reinterpret_cast<Rule>(static_cast<uintptr_t>(address)));
+    self.set_rule({species, static_cast<RuleUse>(u), name}, reinterpret_cast<Rule>(static_cast<uintptr_t>(address)));
     return;
   }
   throw nb::value_error("a rule is for reward, hazard or birth");
@@ -304,9 +305,9 @@ void bind_simulation(nb::module_& module) {
       .def("reset", &S::reset, nb::arg("world"), nb::arg("seed"), "Begins a world again with this seed.")
       .def(
           "seed", [](S& s, int world) { return s.world(world).seed; }, nb::arg("world"))
-      .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"),
+      .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"), nb::arg("name"),
            "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
-           "*records, double *answers).")
+           "*records, double *answers). Faults of the rule tell its name.")
       .def("wrong_action", &wrong_action, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
            nb::sig("def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
                    "'logit') -> int"),

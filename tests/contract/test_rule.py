@@ -5,7 +5,7 @@ import pytest
 from two_stores import FED
 from worlds import CHILDLESS, DEATHLESS, QUICK, make_simulation
 
-from hedon import EngineError, load_config
+from hedon import EngineError, Simulation, load_config
 from hedon.config import ConfigError
 from hedon.config.layout import rule_columns
 from hedon.experiment.rule import RuleError, pinned, rules
@@ -184,6 +184,7 @@ def test_threads_and_checkpoints_change_nothing(file):
     [
         ("curios", r"has no function curios; did you mean curious\?"),
         ("wordy", r"it returns Literal.*: a rule returns one number"),
+        ("curious", r"an agent has no memory_1: set reward.memory to 1 or more; it has normal"),
         ("untyped", r"an agent has no hungr; it has normal, action, w_normal, w_action, age"),
         ("marked", "it reads neutral_1, a neutral marker: .*; genes that it may read are w_normal, w_action, and what"),
         ("marked_item", r"it reads neutral_1, a neutral marker"),
@@ -198,7 +199,19 @@ def test_a_rule_that_cannot_be_used_is_named(file, name, says):
 @pytest.mark.parametrize(("name", "value"), [("bad", "inf"), ("raising", "-?nan")])
 def test_a_rule_that_fails_stops_the_world(file, name, value):
     simulation = paid(file, name, *QUICK, *DEATHLESS)
-    with pytest.raises(EngineError, match=rf"rule_not_finite: .* step 2, value {value}, agent 0"):
+    with pytest.raises(
+        EngineError,
+        match=rf"rule_not_finite: .* step 2, value {value}, agent 0, reward.rule of agent \(my_rules.py:{name}\)",
+    ):
+        simulation.run(10)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_the_rule_of_the_species_that_failed_is_named(file):
+    rules = {"prey": "raising", "predator": "same"}
+    settings = [f'species.{name}.reward.rule="{file}:{rule}"' for name, rule in rules.items()]
+    simulation = Simulation(load_config("predator", overrides=[*settings, *QUICK]), [1], threads=1)
+    with pytest.raises(EngineError, match=r"agent \d+, reward.rule of prey \(my_rules.py:raising\), windows"):
         simulation.run(10)
 
 

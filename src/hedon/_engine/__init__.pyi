@@ -97,9 +97,9 @@ class Simulation:
 
     def seed(self, world: int) -> int: ...
 
-    def set_rule(self, species: int, use: str, address: int) -> None:
+    def set_rule(self, species: int, use: str, address: int, name: str) -> None:
         """
-        Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers).
+        Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers). Faults of the rule tell its name.
         """
 
     def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:

@@ -133,6 +133,8 @@ class Rule:
             self._refuse_neutral(f"'{name}'", error)
             near = nearest(name, self._seen)
             hint = f"; did you mean {near}?" if near else ""
+            if name.startswith("memory_"):
+                hint = f": set reward.memory to {name.removeprefix('memory_')} or more"
             raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error
         except KeyboardInterrupt:
             raise
