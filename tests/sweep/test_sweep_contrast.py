@@ -168,6 +168,9 @@ def test_a_pilot_says_how_many_worlds_are_needed(tmp_path):
     assert apart["needed"] == worlds_needed(4 / apart["sd"], paired=False)
     assert pairs["needed"] == worlds_needed(4 / pairs["sd"], paired=True)
     assert pairs["low"] <= pairs["needed"] <= pairs["high"]
+    # Worlds of one seed are alike here, so that four conditions know the spread no better than one.
+    least, most = (apart["sd"] * math.sqrt((SEEDS - 1) / stats.chi2.ppf(q, SEEDS - 1)) for q in (0.975, 0.025))
+    assert [apart["low"], apart["high"]] == [worlds_needed(4 / sd, paired=False) for sd in (least, most)]
     assert pairs["needed"] < 6 < 40 < apart["needed"], "worlds of one seed are alike"
     table.with_columns(pl.col("energy.basic_cost").alias("cost")).vstack(
         table.with_columns(pl.lit(0.5).alias("cost"))

@@ -58,7 +58,7 @@ class Spread:
         measure: what it is called.
         design: one of `DESIGNS`.
         sd: standard deviation, between the worlds of a condition, or of the differences of pairs.
-        low, high: bounds of its 95 % interval.
+        low, high: bounds of its 95 % interval, as if worlds of equal seeds were alike in all conditions.
         worlds: that it was taken from.
     """
 
@@ -132,13 +132,15 @@ def spreads(
     found = []
     for name, title in pilot.shown.items():
         if (pairs := _pairs(pilot, name, by, other, between)) is not None:
-            found += _spread(title, PAIRS, [pairs])
+            found += _spread(title, PAIRS, [pairs], len(pairs))
         tables = (
             [pilot.table] if not groups else [rows for _, rows in pilot.table.group_by(groups, maintain_order=True)]
         )
         tables += [] if other is None or name not in other.table.columns else [other.table]
-        worlds = [np.array(list(by_seed(rows, name).values()), np.float64) for rows in tables]
-        found += _spread(title, APART, worlds) + _spread(title, ALONE, worlds)
+        known = [by_seed(rows, name) for rows in tables]
+        worlds = [np.array(list(each.values()), np.float64) for each in known]
+        seeds = len(set().union(*known))
+        found += _spread(title, APART, worlds, seeds) + _spread(title, ALONE, worlds, seeds)
     if not found:
         raise SweepError("worlds differ in no measure, or there are fewer than two of a condition: nothing can be told")
     return found
@@ -159,14 +161,18 @@ def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None, between
     return np.array([two[seed] - one[seed] for seed in sorted(one.keys() & two.keys())], np.float64)
 
 
-def _spread(title: str, design: str, groups: Sequence[Any]) -> list[Spread]:
-    """The standard deviation within groups, pooled; none where it is not known or 0."""
+def _spread(title: str, design: str, groups: Sequence[Any], seeds: int) -> list[Spread]:
+    """The standard deviation within groups, pooled; none where it is not known or 0.
+
+    Worlds of equal seeds can be alike in all groups: then a group more tells nothing new. So the interval counts fewer
+    degrees of freedom than there are seeds.
+    """
     within = np.concatenate([each - each.mean() for each in groups if len(each)] or [np.zeros(0)])
     freedom = len(within) - sum(len(each) > 0 for each in groups)
     if freedom < 1 or not (within**2).sum() > 0:
         return []
     sd = math.sqrt(float((within**2).sum()) / freedom)
-    return [Spread(title, design, *distance_interval(np.full(freedom, sd)), len(within))]
+    return [Spread(title, design, *distance_interval(np.full(min(freedom, seeds - 1), sd)), len(within))]
 
 
 def power_answer(
