@@ -13,6 +13,7 @@ import pytest
 from sweep_case import FACTORS, assert_same_table, planned, run_sweep, sweep_file, table_of
 from typer.testing import CliRunner
 
+from hedon import RunPlan, load_config, run
 from hedon.cli.main import app
 from hedon.error import HedonError
 from hedon.jobs.part import parse_part
@@ -124,9 +125,18 @@ def test_another_sweep_is_not_mixed_in(tmp_path):
     file, place = sweep_file(tmp_path, 64), str(tmp_path / "mixed")
     planned(file, place)
     planned(file, place)
-    for other in (sweep_file(tmp_path, 128), sweep_file(tmp_path, 64, rest='[factor]\n"energy.basic_cost" = [0.5]\n')):
-        with pytest.raises(HedonError, match="holds another sweep"):
-            planned(other, place)
+    with pytest.raises(HedonError, match=r"holds a sweep of 64 steps, and .* asks for 128: .* do not get longer"):
+        planned(sweep_file(tmp_path, 128), place)
+    with pytest.raises(HedonError, match="holds another sweep"):
+        planned(sweep_file(tmp_path, 64, rest='[factor]\n"energy.basic_cost" = [0.5]\n'), place)
+
+
+def test_a_sweep_is_not_written_into_a_run(tmp_path):
+    run(RunPlan(load_config("small"), (1,), 8, tmp_path / "run", 1))
+    before = sorted((tmp_path / "run").rglob("*"))
+    with pytest.raises(HedonError, match="holds a run: give the sweep another place with --out"):
+        planned(sweep_file(tmp_path, 64), str(tmp_path / "run"))
+    assert sorted((tmp_path / "run").rglob("*")) == before
 
 
 def results(place: Path) -> dict[str, int]:

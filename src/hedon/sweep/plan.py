@@ -20,6 +20,7 @@ from hedon.config.rule_path import RULE_PATTERN, rule_places
 from hedon.config.validate import rebuild
 from hedon.experiment.argument import parse_seeds
 from hedon.jobs.store import Store
+from hedon.record.folder import holds_run
 from hedon.record.manifest import RuleSource
 from hedon.sweep.condition import DIGITS, Base, Condition, changes
 from hedon.sweep.error import SweepError
@@ -207,9 +208,16 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     Raises:
         SweepError: a sweep lives there that has no world of this one, or it cannot be written.
     """
+    if store.folder is not None and holds_run(store.folder):
+        raise SweepError(f"{store.location} holds a run: give the sweep another place with --out")
     plan, before = file.plan, load_plan(store) if store.read(PLAN) is not None else None
     if before is not None:
         shared = set(map(plan.key, plan.conditions)) & set(map(before.key, before.conditions))
+        if plan.steps != before.steps:
+            raise SweepError(
+                f"{store.location} holds a sweep of {before.steps:,} steps, and {plan.name}.toml asks for "
+                f"{plan.steps:,}: worlds of a sweep do not get longer, so give another place with --out"
+            )
         if not shared or not set(plan.seeds) & set(before.seeds):
             raise SweepError(
                 f"{store.location} holds another sweep, which has no world of that of {plan.name}.toml: give another "
