@@ -48,8 +48,13 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "threads": (lambda w: make(CONFIG, threads="two"), "threads = 'two': must be a whole number"),
     "given shape": (
         lambda w: w.step(np.zeros((1, 5, 2))),
-        r"actions: must be numbers of shape \(1, 6, 2\), not \(1, 5",
+        r"actions: must be numbers of shape \(1, 6, 2\) or \(6, 2\), not \(1, 5",
     ),
+    "given other axes": (
+        lambda w: w.step(np.zeros((1, 2, 6))),
+        r"actions: must be numbers of shape .*, not \(1, 2, 6\)",
+    ),
+    "a species twice": (lambda w: make(CONFIG, species=["agent", "agent"]), "species = .*: must be at least one name"),
     "given nothing": (lambda w: w.step(None), "actions: must be numbers of shape .*, not None"),
     "given text": (lambda w: w.step("left"), "actions: must be numbers of shape .*, not 'left'"),
     "given masks": (lambda w: w.step(np.ma.masked_array(np.zeros(SHAPE), True)), "must be numbers of shape"),
@@ -150,8 +155,43 @@ def test_a_wrong_action_of_one_species_leaves_those_of_all_as_they_were():
     assert all((worlds.actions[name] == before[name]).all() for name in before)
     assert worlds.save() == saved
     for each in (worlds, like):
-        each.simulation.run(5)
+        each.step(each.actions)
     assert worlds.simulation.worlds[0].digest() == like.simulation.worlds[0].digest()
+
+
+def test_actions_of_several_species_are_named_by_them():
+    worlds = make("predator", seed=1, threads=1)
+    with pytest.raises(
+        ArgumentError, match=r"actions: must be a dict of arrays by species \(prey, predator\), not ndarray"
+    ):
+        worlds.step(np.zeros(3))
+    with pytest.raises(ArgumentError, match=r"actions\['shark'\]: no such species is driven"):
+        worlds.step({**worlds.actions, "shark": np.zeros(3)})
+
+
+def test_a_table_of_all_slots_gives_each_its_own():
+    worlds = make("small", worlds=3, seed=1, threads=1)
+    table = np.linspace(-1, 1, worlds.actions.size, dtype=np.float32).reshape(-1, 2)
+    alive = worlds.alive.copy()
+    worlds.step(table)
+    old = alive & worlds.alive & ~worlds.groups["agent"].born
+    assert old.sum() > 10
+    np.testing.assert_array_equal(worlds.actions[old], table.reshape(worlds.actions.shape)[old])
+
+
+def test_only_the_environment_changes_its_worlds():
+    worlds = make(CONFIG, seed=1, threads=1)
+    other = worlds.simulation.clone()
+    calls = {
+        "run": lambda each: each.run(5),
+        "reset": lambda each: each.reset([3]),
+        "restore": lambda each: each.restore(worlds.simulation.save()),
+    }
+    for name, call in calls.items():
+        with pytest.raises(ArgumentError, match=f"{name}: an environment drives these worlds"):
+            call(worlds.simulation)
+        call(other)  # a copy of the worlds is free
+    assert worlds.simulation.worlds[0].step == 0
 
 
 def test_what_the_caller_wrote_stays_until_it_is_set_right():
@@ -175,6 +215,29 @@ def test_a_wrong_action_of_one_agent_in_gymnasium_leaves_none_behind():
     with pytest.raises(ArgumentError, match="must be from -1 to 1"):
         env.step(np.array([np.nan, 0.0], np.float32))
     assert (env._group.actions == before).all()
+
+
+@pytest.mark.parametrize(
+    ("others", "says"),
+    [
+        (3, "others: must be a function from observations to actions, not 3"),
+        (lambda seen: seen[:1], r"others: must return numbers of shape \(6, 2\), not \(1, 95\)"),
+        (lambda seen: None, r"others: must return numbers of shape \(6, 2\), not None"),
+        (lambda seen: np.full((6, 2), np.nan), r"others: returned \[\d, 0\] = nan: must be from -1 to 1"),
+        (lambda seen: np.full((6, 2), 2.0), r"others: returned \[\d, 0\] = 2.0: must be from -1 to 1"),
+    ],
+)
+def test_a_wrong_policy_of_the_others_is_named(others, says):
+    pytest.importorskip("gymnasium", reason='needs the optional packages: pip install "hedon[env]"')
+    from hedon.env import AgentEnv
+
+    def one_step():
+        env = AgentEnv(CONFIG, others=others)
+        env.reset(seed=1)
+        env.step(np.zeros(2, np.float32))
+
+    with pytest.raises(ArgumentError, match=says):
+        one_step()
 
 
 MASKED = np.ma.masked_array([0.0, 1.0], [False, True])

@@ -9,7 +9,7 @@ import pytest
 from command import hedon
 from worlds import QUICK
 
-from hedon import ArgumentError, RecordError, load_config, make, open_run, resume
+from hedon import ArgumentError, RecordError, load_config, make, open_run
 from hedon.check import check_run
 from hedon.experiment.replay import replay_run
 from hedon.report import write_report
@@ -101,10 +101,38 @@ def test_a_folder_can_be_read_while_its_worlds_go_on(tmp_path):
 
 def test_a_run_of_a_driver_cannot_be_resumed_and_says_so(tmp_path):
     drive(tmp_path / "run", CONFIG, 10)
-    with pytest.raises(ArgumentError, match='"external" takes actions from a program, so a run cannot have it'):
-        resume(tmp_path / "run", 100)
+    for words in (("resume", tmp_path / "run"), ("branch", tmp_path / "run", "--steps", 100)):
+        refused = hedon(*words)
+        assert refused.returncode == 2
+        assert "worlds that a program drove, and only such a program can go on" in " ".join(refused.stderr.split())
     done = hedon("check", tmp_path / "run")
     assert done.returncode == 0, done.stderr
+
+
+def test_no_advice_names_a_command_that_cannot_go_on(tmp_path):
+    killed = make(CONFIG, seed=1, threads=1, record=tmp_path / "killed")
+    killed.step(killed.actions)
+    told = hedon("check", tmp_path / "killed")
+    assert "is still running, or was killed" in " ".join(told.stdout.split())
+    assert "resume" not in told.stdout + told.stderr
+    assert str(open_run(tmp_path / "killed")).count(" of 2,147") == 0
+    killed.close()
+    drive(tmp_path / "run", CONFIG, 64)
+    (tmp_path / "run" / "population" / "part-000000.parquet").write_bytes(b"")
+    broken = hedon("check", tmp_path / "run")
+    assert broken.returncode == 1
+    assert "resume" not in broken.stdout + broken.stderr
+    assert "branch" not in broken.stdout + broken.stderr
+
+
+def test_the_records_take_the_dead_and_nobody_else(tmp_path):
+    with make(CONFIG, seed=1, threads=1, record=tmp_path / "run") as worlds:
+        (world,) = worlds.simulation.worlds
+        with pytest.raises(ArgumentError, match="deaths: the world is recorded, and its records take them"):
+            world.deaths()
+        assert not len(worlds.clone().simulation.worlds[0].deaths()["agent_id"])  # a copy has no records
+    with pytest.raises(ArgumentError, match=r"step: the records in .* are closed"):
+        worlds.step(worlds.actions)
 
 
 def test_wrong_arguments_of_records_are_named(tmp_path):

@@ -290,7 +290,7 @@ DRIVEN_WRONG: dict[str, tuple[Callable[[VectorEnv], bytes], str]] = {
     "worlds alone": (lambda w: w.simulation.save(), "hold worlds alone, without those who drive them"),
     "other actions": (lambda w: make(w.config, 2, species="led", actions="logit").save(), "driven in another way"),
     "other drivers": (lambda w: make(w.config, 2, species=["led", "wise"]).save(), "with another config"),
-    "more worlds": (lambda w: make(w.config, 3, species="led").save(), "there are 3 worlds, here 2|of other worlds"),
+    "more worlds": (lambda w: make(w.config, 3, species="led").save(), "there are 3 worlds, here 2"),
 }
 
 

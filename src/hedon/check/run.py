@@ -55,6 +55,11 @@ class _Folder:
     whole: bool = True
     """Whether all parts are there and readable."""
 
+    @property
+    def driven(self) -> bool:
+        """Whether a program told its agents what to do, so that no command goes on with it."""
+        return self.config is not None and bool(self.config.driven)
+
     def add(self, findings: Iterator[Finding]) -> int:
         before = len(self.findings)
         self.findings += findings
@@ -81,6 +86,7 @@ def check_run(path: Path | str) -> Verdict:
     folder = _Folder(path)
     _check_manifest(folder)
     _check_config(folder)
+    _note_status(folder)
     _check_checkpoints(folder)
     _check_tables(folder)
     _check_rows(folder)
@@ -119,13 +125,20 @@ def _check_manifest(folder: _Folder) -> None:
         if not 0 <= step <= manifest.steps_asked:
             what = f"steps_done is {step:,}, but must be from 0 to steps_asked = {manifest.steps_asked:,}"
             folder.findings.append(Finding(MANIFEST, what))
-    if manifest.status == "running":
+
+
+def _note_status(folder: _Folder) -> None:
+    if folder.manifest is None:
+        return
+    status, fault = folder.manifest.status, folder.manifest.fault
+    if status == "running":
+        again = "" if folder.driven else f" (`hedon resume {folder.path}` continues a killed run)"
         folder.notes.append(
             "the run is still running, or was killed: its last records may be incomplete, and missing agents are not "
-            f"reported (`hedon resume {folder.path}` continues a killed run)"
+            f"reported{again}"
         )
-    if manifest.status == "failed":
-        folder.notes.append("the run stopped at a fault" + (f": {manifest.fault}" if manifest.fault else ""))
+    if status == "failed":
+        folder.notes.append("the run stopped at a fault" + (f": {fault}" if fault else ""))
 
 
 def _check_config(folder: _Folder) -> None:
@@ -283,7 +296,7 @@ def _usable(folder: _Folder) -> Iterator[str]:
         bad = sum(name.startswith(f"{table}/") for name in names)
         if parts:
             yield f"{table}: {max(parts - bad, 0)} of {parts} files are undamaged"
-    for checkpoint in reversed(folder.checkpoints):
+    for checkpoint in () if folder.driven else reversed(folder.checkpoints):
         step, parts = checkpoint.head.step, checkpoint.head.parts
         if folder.manifest is None or CONFIG in names:
             yield f"checkpoint of step {step:,}: undamaged, and usable after the manifest and config are restored"

@@ -18,6 +18,11 @@ from hedon.text import brief
 class Config(Settings):
     """One run's settings, of which one can be changed; see `Settings`."""
 
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """The species whose agents act as a program tells them."""
+        return tuple(name for name, each in self.species.items() if each.learning.policy == "external")
+
     def with_(self, path: str, value: Any) -> "Config":
         """The same config with another value of one setting, checked.
 

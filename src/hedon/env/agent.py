@@ -13,6 +13,7 @@ from hedon.env.group import Form
 from hedon.env.make import make
 from hedon.env.vector import RENDER_MODES
 from hedon.error import ArgumentError, EngineError
+from hedon.text import brief
 
 Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 """From observations (agents, entries) to actions (agents, 2)."""
@@ -64,6 +65,8 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         if len(self._vector.groups) > 1:
             raise ArgumentError(f"species: must be one of {', '.join(self._vector.groups)}, that of the agent")
         (self._group,) = self._vector.groups.values()
+        if others is not None and not callable(others):
+            raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
         self._others = others
         self._slot = -1
         self.render_mode = render_mode
@@ -109,7 +112,8 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             time is over, and its id and slot.
 
         Raises:
-            ArgumentError: The action is not two numbers that it can be, or there was no `reset`.
+            ArgumentError: The action is not two numbers that it can be, or `others` answered none; or there was no
+                `reset`.
         """
         group, slot = self._group, self._slot
         if slot < 0:
@@ -119,7 +123,7 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             raise ArgumentError("action: must be two numbers, left and right")
         actions = group.actions.copy()  # so that one that is refused leaves none behind
         if self._others is not None:
-            actions[0] = self._others(group.observations[0])
+            actions[0] = self._asked(self._others(group.observations[0]))
         actions[0, slot] = given
         self._vector.step(actions)
         died = bool(group.terminated[0, slot])
@@ -129,6 +133,19 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         if died:
             self._slot = -1
         return told
+
+    def _asked(self, answer: Any) -> NDArray[Any]:
+        """What the policy of the others answered. ArgumentError: it is no table of actions."""
+        group, given = self._group, np.asarray(answer)
+        if given.shape != group.actions.shape[1:] or given.dtype.kind not in "fiu":
+            said = f"{given.shape} {given.dtype}" if given.ndim else brief(repr(answer))
+            raise ArgumentError(f"others: must return numbers of shape {group.actions.shape[1:]}, not {said}")
+        wrong = group.alive[0][:, None] & ~((given >= group.low) & (given <= group.high))
+        if wrong.any():
+            slot, motor = np.argwhere(wrong)[0]
+            place = f"others: returned [{slot}, {motor}] = {given[slot, motor]}"
+            raise ArgumentError(f"{place}: must be from {group.low:g} to {group.high:g}")
+        return given
 
     def render(self) -> Any:
         """A picture of the world: see `VectorEnv.render`."""

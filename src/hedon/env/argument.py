@@ -53,8 +53,7 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
         )
     known = list(config.species)
     if species is None:
-        external = [name for name, each in config.species.items() if each.learning.policy == "external"]
-        return tuple(external or known)
+        return config.driven or tuple(known)
     if not isinstance(species, str | Iterable):
         raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
     wanted = [species] if isinstance(species, str) else list(species)
@@ -64,8 +63,8 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
             hint = f"; did you mean {near}?" if near else ""
             there = ", ".join(known)
             raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {there}){hint}")
-    if not wanted:
-        raise ArgumentError("species: there must be at least one")
+    if not wanted or len(set(wanted)) < len(wanted):
+        raise ArgumentError(f"species = {brief(repr(wanted))}: must be at least one name, and each of them once")
     return tuple(name for name in known if name in wanted)
 
 

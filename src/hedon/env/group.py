@@ -145,9 +145,14 @@ class Group:
         if given is self.actions:
             return
         array = np.asarray(given)
-        if array.dtype.kind not in "fiu" or array.size != self.actions.size or np.ma.isMaskedArray(given):
+        table = (self.ids.size, len(ACTIONS))
+        if (
+            array.dtype.kind not in "fiu"
+            or array.shape not in (self.actions.shape, table)
+            or np.ma.isMaskedArray(given)
+        ):
             said = f"{array.shape} {array.dtype}" if array.ndim else brief(repr(given))
-            raise ArgumentError(f"actions: must be numbers of shape {self.actions.shape}, not {said}")
+            raise ArgumentError(f"actions: must be numbers of shape {self.actions.shape} or {table}, not {said}")
         with np.errstate(over="ignore"):
             self.actions[...] = array.reshape(self.actions.shape)
 
@@ -285,10 +290,11 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
 def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, Any]]:
     if len(groups) == 1:
         return [(next(iter(groups.values())), actions)]
-    if not isinstance(actions, Mapping) or not actions.keys() <= groups.keys():
-        raise ArgumentError(
-            f"actions = {brief(repr(actions))}: must be a dict of arrays by species ({', '.join(groups)})"
-        )
+    there = ", ".join(groups)
+    if not isinstance(actions, Mapping):
+        raise ArgumentError(f"actions: must be a dict of arrays by species ({there}), not {type(actions).__name__}")
+    if unknown := [name for name in actions if name not in groups]:
+        raise ArgumentError(f"actions[{brief(repr(unknown[0]))}]: no such species is driven (there are {there})")
     return [(groups[name], array) for name, array in actions.items()]
 
 

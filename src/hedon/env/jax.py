@@ -106,6 +106,7 @@ class JaxEnv:
         self._repeat = integer("repeat", repeat, 1, MAX_STEPS)
         self._max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
         self.simulation = Simulation(with_callers(config, names), range(count), threads, backend)
+        self.simulation._driven = True
         self._species = list(config.species).index(names[0])
         self.columns = observation_columns(config, names[0])
         self.slots = config.species[names[0]].population.capacity

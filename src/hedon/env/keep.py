@@ -49,6 +49,8 @@ def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
     found: Arrays = {}
     at = 0
     for (first, second, rows), (names, array) in zip(told["rows"], like.items(), strict=True):
+        if second == "steps" and rows != len(array):  # the first of all: a number for each world
+            raise ArgumentError(f"saved: there are {rows} worlds, here {len(array)}")
         shape = (rows, *array.shape[1:])
         count = rows * int(np.prod(array.shape[1:], dtype=np.int64))
         if (first, second) != names or (rows != len(array) and second != FREE) or rows < 0:

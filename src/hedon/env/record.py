@@ -57,6 +57,8 @@ class Record:
         seeds = different(seed_list(simulation.seeds))
         self.folder = folder("record", out)
         drive = Drive(config, seeds, MAX_STEPS, integer("frames", frames, 0, MAX_STEPS))
+        for world in simulation.worlds:
+            world._recorded = True
         self._simulation, self._frames, self._window = simulation, drive.frames, config.world.rollout_steps
         self._manifest = first_manifest(drive, simulation)
         self._held = ExitStack()
@@ -69,6 +71,11 @@ class Record:
         self._step, self._next, self._seconds = 0, 1, 0.0
         self._due = time.perf_counter() + CHECKPOINT_SECONDS
 
+    def require_open(self) -> None:
+        """ArgumentError: the records are closed."""
+        if self._manifest.ended is not None:
+            raise ArgumentError(f"step: the records in {self.folder} are closed: go on with a clone, which has none")
+
     def advance(self) -> None:
         """Advances the worlds by one step, and writes what is to be written then.
 
@@ -78,7 +85,7 @@ class Record:
         """
         begun = time.perf_counter()
         try:
-            self._simulation.run(1)
+            self._simulation.engine.run(1)
         except EngineError as error:
             self._manifest = replace(self._manifest, fault=str(error))
             self._recorder.fault(self._seconds)

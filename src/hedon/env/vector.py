@@ -51,7 +51,7 @@ class VectorEnv:
     Attributes:
         config: The config, with the policy `external` for the species that are driven.
         groups: The driven agents, by the name of their species, with more arrays: `Group`.
-        simulation: The worlds themselves, to be read between steps.
+        simulation: The worlds themselves, to be read between steps; nothing else advances or restores them.
         repeat: Steps of the worlds in one step.
         max_steps: Steps of a world after which its agents are truncated.
         render_mode: What `render` gives.
@@ -106,6 +106,7 @@ class VectorEnv:
 
     def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
         self.simulation, self.config = simulation, simulation.config
+        simulation._driven = True
         every = list(self.config.species)
         meals = (*self.config.food, *every)[: simulation.engine.meals(0).shape[1]]
         self.groups = {
@@ -214,7 +215,8 @@ class VectorEnv:
         arrays are then of that step.
 
         Args:
-            actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied there. With several
+            actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied there; also all slots as
+                one table, (worlds · slots, 2). With several
                 species a dictionary of them; a species that is not in it goes on as before.
 
         Returns:
@@ -224,10 +226,13 @@ class VectorEnv:
 
         Raises:
             ArgumentError: An action of a living agent is not a number that it can be. Nothing is changed by that:
-                `actions` has what it had before the call, also what was written into it and is wrong.
+                `actions` has what it had before the call, also what was written into it and is wrong. Or the worlds
+                are recorded, and their records are closed.
             EngineError: A world reports an error.
         """
         engine = self.simulation.engine
+        if self._record is not None:
+            self._record.require_open()
         act(engine, self.groups, actions)
         for group in self.groups.values():
             group._begin()

@@ -9,7 +9,7 @@ from hedon.config.dump import diff, digest
 from hedon.config.fixed import fixed_path
 from hedon.config.load import load_config
 from hedon.experiment import argument
-from hedon.experiment.checkpoint import check_head, restore, same_backend
+from hedon.experiment.checkpoint import check_head, require_undriven, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Display, RunPlan, free_folder
@@ -75,6 +75,7 @@ def plan_branch(
     folder = argument.folder("folder", folder)
     old = open_run(folder).manifest
     config = load_config(folder / CONFIG)
+    require_undriven(folder, config)
     changed = load_config(folder / CONFIG, overrides=overrides)
     step = None if at is None else argument.integer("at", at, 0, argument.MAX_STEPS)
     checkpoint, _ = find_checkpoint(folder, step)

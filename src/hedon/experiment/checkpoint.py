@@ -2,6 +2,7 @@
 
 import os
 from importlib.metadata import version
+from pathlib import Path
 
 from hedon import _engine
 from hedon.config.config import Config
@@ -57,6 +58,23 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
     worlds = (len(head.sampled), len(head.digests))
     if worlds != (len(seeds) * len(config.species), len(seeds)) or sorted(head.parts) != sorted(TABLE_FOLDERS):
         raise RecordError(f"{name} is not complete: worlds or tables are missing")
+
+
+def require_undriven(folder: Path, config: Config) -> None:
+    """Refuses to go on with worlds whose agents a program told what to do.
+
+    Args:
+        folder: Of their records.
+        config: That they were run with.
+
+    Raises:
+        RecordError: They are such worlds.
+    """
+    if config.driven:
+        raise RecordError(
+            f"{folder} has records of worlds that a program drove, and only such a program can go on with them: make "
+            "new worlds with hedon.make, or keep some with VectorEnv.save"
+        )
 
 
 def same_backend(backend: str | None) -> str:

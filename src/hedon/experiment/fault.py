@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hedon.config.load import load_config
 from hedon.error import EngineError
-from hedon.experiment.checkpoint import check_head, restore, same_backend
+from hedon.experiment.checkpoint import check_head, require_undriven, restore, same_backend
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG
@@ -47,6 +47,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
     if manifest.fault is None:
         raise RecordError(f"{folder} recorded no fault: its status is {manifest.status}")
     config = load_config(folder / CONFIG)
+    require_undriven(folder, config)
     checkpoint, _ = find_checkpoint(folder)
     simulation = Simulation(config, manifest.seeds, threads, same_backend(manifest.backend), manifest.rules)
     step = start = 0

@@ -132,13 +132,12 @@ class Display(Protocol):
 
 def _without_caller(config: Config) -> Config:
     """The config. ArgumentError: a species waits for actions, which a run has nobody to give."""
-    for name, species in config.species.items():
-        if species.learning.policy == "external":
-            place = f"species.{name}.learning.policy" if len(config.species) > 1 else "learning.policy"
-            raise ArgumentError(
-                f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
-                'hedon.make (docs/guide/environment.md), or choose "ppo", "fixed", "random" or "idle"'
-            )
+    for name in config.driven:
+        place = f"species.{name}.learning.policy" if len(config.species) > 1 else "learning.policy"
+        raise ArgumentError(
+            f'{place}: "external" takes actions from a program, so a run cannot have it: drive the worlds with '
+            'hedon.make (docs/guide/environment.md), or choose "ppo", "fixed", "random" or "idle"'
+        )
     return config
 
 

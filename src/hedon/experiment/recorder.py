@@ -68,7 +68,7 @@ class Recorder:
             EngineError: It was called too seldom, and `partial` is false: some are lost.
         """
         for world in self.simulation.worlds:
-            lives = world.deaths(partial=partial)
+            lives = world._take_deaths(partial=partial)
             if len(lives["agent_id"]):
                 self.writer.append("agents", agent_rows(world, lives))
         if time.perf_counter() >= self.flush_due:

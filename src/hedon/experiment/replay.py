@@ -36,7 +36,7 @@ def replay_run(folder: Path | str, threads: int = 0, display: Display | None = N
     if not kept or kept[0] >= steps:
         return (), "not computed again: there is no checkpoint before the end"
     config = parse_config(run.config_text, str(run.path))
-    if any(species.learning.policy == "external" for species in config.species.values()):
+    if config.driven:
         return (), "not computed again: another program told its agents what to do"
     start = kept[0]
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:

@@ -9,7 +9,7 @@ from pathlib import Path
 from hedon.config.dump import digest
 from hedon.config.load import load_config
 from hedon.experiment import argument
-from hedon.experiment.checkpoint import check_head, restore, same_backend
+from hedon.experiment.checkpoint import check_head, require_undriven, restore, same_backend
 from hedon.experiment.device import device_problem, is_device
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
@@ -80,6 +80,7 @@ def lock(
     with FolderLock(folder):
         manifest = open_run(folder).manifest
         config = load_config(folder / CONFIG)
+        require_undriven(folder, config)
         checkpoint, faults = find_checkpoint(folder)
         if checkpoint is not None:
             check_head(checkpoint.head, config, manifest.seeds, f"the checkpoint of {folder}")

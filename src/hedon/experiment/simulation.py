@@ -82,6 +82,7 @@ class Simulation:
     ) -> None:
         self.config = given.config
         self._given, self._backend = given, backend
+        self._driven = False  # by an environment
         self._threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
             raise ArgumentError(f"backend: must be the name of an instruction set, not {backend!r}")
@@ -96,13 +97,22 @@ class Simulation:
         self.rules = rules
         for rule in self.rules:
             species = list(self.config.species).index(rule.species)
-            self.engine.set_rule(species, rule.use, rule.compiled.address)
+            name = f"{rule.use}.rule of {rule.species} ({rule.source.file}:{rule.source.name})"
+            self.engine.set_rule(species, rule.use, rule.compiled.address, name)
         self.worlds = tuple(World(self.engine, i, self.config) for i in range(len(seeds)))
 
     @property
     def seeds(self) -> tuple[int, ...]:
         """The seed of each world."""
         return tuple(world.seed for world in self.worlds)
+
+    def _require_free(self, call: str) -> None:
+        """ArgumentError: an environment drives these worlds, and would not know of this call."""
+        if self._driven:
+            raise ArgumentError(
+                f"{call}: an environment drives these worlds, and nobody else may change them: call its step, reset or "
+                "restore"
+            )
 
     def run(self, steps: int) -> None:
         """Advances every world that is not extinct; agents learn at the end of each window.
@@ -115,10 +125,11 @@ class Simulation:
             steps: How many steps; any number, not only whole windows.
 
         Raises:
-            ArgumentError: `steps` is negative or not a whole number.
+            ArgumentError: `steps` is negative or not a whole number, or an environment advances the worlds.
             EngineError: A world reports an error; it names the world, the step and the agent.
             KeyboardInterrupt: Ctrl-C was pressed; the worlds have done fewer steps than `steps`.
         """
+        self._require_free("run")
         self.engine.run(integer("steps", steps, 0, MAX_RUN_STEPS))
 
     def set_founders(self, founders: Founders) -> None:
@@ -127,6 +138,7 @@ class Simulation:
         Raises:
             FounderError: The table does not fit the config.
         """
+        self._require_free("set_founders")
         founders.require(self.config)
         for world in self.worlds:
             agents = world.agents()
@@ -144,6 +156,7 @@ class Simulation:
         Raises:
             NetworkError: The networks do not fit the config.
         """
+        self._require_free("set_networks")
         networks.require(self.config)
         names = list(self.config.species)
         for world in self.worlds:
@@ -171,6 +184,7 @@ class Simulation:
             ArgumentError: It is no list of seeds, or there are more or fewer than worlds.
             EngineError: There is no room for the initial agents or foods of a world.
         """
+        self._require_free("reset")
         wanted = seed_list(seeds, MAX_WORLD_SEED)
         if len(wanted) != len(self.worlds):
             raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(wanted)}")
@@ -196,6 +210,7 @@ class Simulation:
         Raises:
             ArgumentError: It is something else, or is damaged. The worlds then stay as they are.
         """
+        self._require_free("restore")
         self._unpack(saved)
         self._restore(saved)
 

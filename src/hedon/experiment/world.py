@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import choose_species, layouts, store_columns
-from hedon.error import EngineError
+from hedon.error import ArgumentError, EngineError
 from hedon.experiment.state import State
 
 
@@ -26,6 +26,7 @@ class World:
         self._engine = engine
         self.index = index
         self.config = config
+        self._recorded = False
 
     @property
     def seed(self) -> int:
@@ -140,7 +141,13 @@ class World:
 
         Raises:
             EngineError: Some are lost, and `partial` is false. Nothing is taken then.
+            ArgumentError: The world is recorded (`hedon.make(record=…)`): its records take them.
         """
+        if self._recorded:
+            raise ArgumentError("deaths: the world is recorded, and its records take them: read them there, at the end")
+        return self._take_deaths(partial=partial)
+
+    def _take_deaths(self, *, partial: bool) -> dict[str, NDArray[Any]]:
         lost = self.lost_deaths
         if lost and not partial:
             room = len(self.view("death_log.birth_step"))

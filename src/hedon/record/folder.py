@@ -82,8 +82,8 @@ def require_no_run(folder: Path) -> None:
     """
     if holds_run(folder):
         raise RecordError(
-            f"{folder} already holds a run: continue it with `hedon resume {shlex.quote(str(folder))}`, "
-            "choose another folder, or remove it first"
+            f"{folder} already holds a run: choose another folder, remove it first, or continue what `hedon run` made "
+            f"with `hedon resume {shlex.quote(str(folder))}`"
         )
 
 

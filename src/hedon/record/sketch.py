@@ -13,6 +13,8 @@ WIDTH, HEIGHT, EDGE = 460, 110, 16
 """Size of the figure, and the part at its edge for labels [px]."""
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#6b7884")
 """Colors of the worlds, in turn: Okabe & Ito (2008)."""
+OPEN = 2**31 - 1
+"""The most steps that a run can have: so many are asked of worlds that a program drives, for as long as it does."""
 DASHES = ("", "6 3", "2 3", "6 3 2 3")
 """Colors of the species of a world, in turn."""
 
@@ -23,7 +25,8 @@ def status_line(manifest: Manifest) -> str:
     worlds = count(len(manifest.seeds), "world")
     done = max(manifest.steps_done, default=0)
     fidelity = f" ({manifest.fidelity})" if manifest.fidelity else ""
-    return f"{name}{fidelity}, {worlds}, {manifest.status} at step {done:,} of {manifest.steps_asked:,}"
+    end = f" of {manifest.steps_asked:,}" if manifest.steps_asked < OPEN else ""
+    return f"{name}{fidelity}, {worlds}, {manifest.status} at step {done:,}{end}"
 
 
 def run_html(title: str, manifest: Manifest, population: pl.DataFrame) -> str:

@@ -2,19 +2,21 @@
 
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
+from hedon.error import ArgumentError
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.summary import plain
-from hedon.report.topic import TOPICS, Tell, run_topics, tell_nobody
+from hedon.report.topic import TOPICS, Tell, require_topics, run_topics, tell_nobody
 from hedon.report.words import answers
+from hedon.text import brief
 
 ANALYSIS = "analysis"
 """Folder of the answers within the folder of a single run."""
@@ -47,7 +49,12 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
 
     Raises:
         RecordError, ConfigError: a run cannot be read.
+        TopicError: there is no such topic.
+        ArgumentError: these are no runs, as `open_run` gives them.
     """
+    require_topics(topics)
+    if not isinstance(runs, Iterable) or not all(isinstance(run, Run) for run in runs):
+        raise ArgumentError(f"runs: must be a list of runs, as open_run gives them, not {brief(repr(runs))}")
     tell(0, len(topics), "reading the records")
     conditions = by_condition(read_worlds(runs))
     tables = {table.name: table for table in run_topics(conditions, topics, tell)}

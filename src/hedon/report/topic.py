@@ -1,11 +1,11 @@
 """The list of topics, by the names that `hedon analyze --only` takes."""
 
-import difflib
 from collections.abc import Callable, Sequence
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
+from hedon.config.problem import nearest
 from hedon.error import HedonError
 from hedon.study.verdict_table import verdict
 
@@ -33,6 +33,23 @@ class TopicError(HedonError):
     """There is no topic of that name."""
 
 
+def require_topics(names: Sequence[str]) -> Sequence[str]:
+    """The same names.
+
+    Args:
+        names: Of topics.
+
+    Raises:
+        TopicError: one of them is none.
+    """
+    for name in names:
+        if name not in TOPICS:
+            near = nearest(name, TOPICS)
+            hint = f"; did you mean {near}?" if near else "."
+            raise TopicError(f"there is no topic {name!r}{hint} There are: {', '.join(TOPICS)}")
+    return names
+
+
 def choose_topics(names: str | None) -> tuple[str, ...]:
     """The topics of a list such as "lifetime,selection", in their order; all of them for None.
 
@@ -41,12 +58,7 @@ def choose_topics(names: str | None) -> tuple[str, ...]:
     """
     if names is None:
         return tuple(TOPICS)
-    wanted = [name.strip() for name in names.split(",") if name.strip()]
-    for name in wanted:
-        if name not in TOPICS:
-            near = difflib.get_close_matches(name, TOPICS, n=1)
-            hint = f"; did you mean {near[0]}?" if near else ""
-            raise TopicError(f"--only: there is no topic {name!r}{hint} There are: {', '.join(TOPICS)}")
+    wanted = require_topics([name.strip() for name in names.split(",") if name.strip()])
     return tuple(name for name in TOPICS if name in wanted)
 
 

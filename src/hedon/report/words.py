@@ -98,6 +98,8 @@ def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
 
 def _seconds(worlds: Sequence[WorldRecord], runs: Sequence[Run]) -> float | None:
     """What the steps of the runs of these worlds took; None where a run does not say it [s]."""
+    if any(world.config.driven for world in worlds):
+        return None  # no command goes on with them
     names = {world.run for world in worlds}
     times = [run.manifest.run_seconds for run in runs if run.path.name in names]
     known = [time for time in times if time]

@@ -2,6 +2,7 @@ import csv
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
@@ -9,6 +10,7 @@ from resumed_run import small_run
 from rich.console import Console
 from synthetic_run import write_run
 
+from hedon import ArgumentError
 from hedon.analysis.agent.lifetime import mean_lifetime
 from hedon.analysis.result import make_table
 from hedon.cli.display.analysis import analysis_group
@@ -138,3 +140,13 @@ def test_choosing_topics() -> None:
     assert choose_topics("selection, lifetime") == ("lifetime", "selection")
     with pytest.raises(TopicError, match="no topic 'selecton'; did you mean selection"):
         choose_topics("selecton")
+
+
+def test_what_is_no_topic_or_no_run_is_named(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=1, worlds=1))
+    with pytest.raises(TopicError, match="no topic 'regmie'; did you mean regime"):
+        analyze([run], topics=["regmie"])
+    wrong: Any = analyze
+    for runs in (run, "runs/mine", ["runs/mine"], 5):
+        with pytest.raises(ArgumentError, match="runs: must be a list of runs, as open_run gives them"):
+            wrong(runs)
