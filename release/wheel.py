@@ -7,6 +7,7 @@ system differs in assembly of the x87 alone, which no extension uses.
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -60,10 +61,15 @@ def build_wheel(source: Path, python: str, processor: str, out: Path) -> Path:
     )
     here = next(raw.glob("*.whl"))
     call(sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", f"linux_{processor}", here)
+    # auditwheel takes the name of a platform for its own processor alone: it says which C library is needed, for any.
+    call(sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", raw / "found", next(raw.glob("*.whl")))
+    found = next((raw / "found").glob("*.whl"))
+    needed = max((int(a), int(b)) for a, b in re.findall(r"manylinux_(\d+)_(\d+)", found.name))
+    if needed > GLIBC:
+        sys.exit(f"{found.name} needs a newer C library than {GLIBC[0]}.{GLIBC[1]}")
     policy = f"manylinux_{GLIBC[0]}_{GLIBC[1]}_{processor}"
-    there = next(raw.glob("*.whl"))
-    call(sys.executable, "-m", "auditwheel", "repair", "--plat", policy, "--wheel-dir", out, there)
-    return next(out.glob(f"hedon-*-{tag}-{tag}-*_{processor}.whl"))
+    call(sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", policy, found)
+    return Path(shutil.copy(next((raw / "found").glob("*.whl")), out))
 
 
 def uv() -> str:
