@@ -17,6 +17,7 @@ from pathlib import Path
 from tempfile import gettempdir
 
 import pytest
+from s3_place import use_server
 from sweep_case import assert_kept_whole, assert_same_table, planned, run_sweep, sweep_file, table_of
 from test_ray import KILLS, STEPS, parent, two_nodes
 
@@ -47,14 +48,7 @@ def port() -> Iterator[int]:
 @pytest.fixture
 def url(port: int, monkeypatch: pytest.MonkeyPatch) -> str:
     """A place on the server, which all that reads the environment finds."""
-    for name, value in {
-        "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-        "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-        "AWS_ACCESS_KEY_ID": "hedon-test-key",
-        "AWS_SECRET_ACCESS_KEY": "hedon-test-key",
-        "AWS_DEFAULT_REGION": "us-east-1",
-    }.items():
-        monkeypatch.setenv(name, value)
+    use_server(port, monkeypatch)
     lab = f"lab-{secrets.token_hex(8)}"
     import_module("s3fs").S3FileSystem(skip_instance_cache=True).mkdir(lab)
     return f"s3://{lab}/sweep"

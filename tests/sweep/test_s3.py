@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from s3_place import KEY, use_server
 from sweep_case import (
     assert_goes_on_elsewhere,
     assert_kept_whole,
@@ -28,7 +29,6 @@ from hedon.jobs.store import PASSING, Store
 from hedon.sweep.work import make_task
 
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
-KEY = "hedon-test-key"
 STEPS = 5_120
 SMALL, LARGE = 3_000_000, 105_000_000
 """Sizes of contents that arrive in one request, and in parts [byte]."""
@@ -107,14 +107,7 @@ def server(tmp_path_factory) -> Iterator[Path]:
     words = ["--host", "127.0.0.1", "--port", str(port), "--access-key", KEY, "--secret-key", KEY, str(root)]
     process = subprocess.Popen([SERVER, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with pytest.MonkeyPatch.context() as monkeypatch:
-        for name, value in {
-            "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-            "AWS_ACCESS_KEY_ID": KEY,
-            "AWS_SECRET_ACCESS_KEY": KEY,
-            "AWS_DEFAULT_REGION": "us-east-1",
-            "FSSPEC_S3_ENDPOINT_URL": f"http://127.0.0.1:{port}",
-        }.items():
-            monkeypatch.setenv(name, value)
+        use_server(port, monkeypatch)
         try:
             until = time.monotonic() + 30
             while True:
