@@ -2,71 +2,14 @@
 
 import numpy as np
 import pytest
-from view_page import serving, story_server
+from story_page import backend, native, run_to, set_knob, stage
 
 import hedon.env
-from hedon import Simulation, load_config
+from hedon import load_config
 from hedon.demography.life import birth_rate, hazard
-from hedon.view.story import PAGE, SCENES
+from hedon.view.story import SCENES
 
-pytest_plugins = ("view_fixture",)
-STAGES = ("creature", "learning", "life", "family", "contest", "sandbox")
-
-
-@pytest.fixture(scope="module")
-def server():
-    with serving(story_server()) as running:
-        yield running
-
-
-@pytest.fixture
-def article(server, watch):
-    """Opens the article, at a scene or at the address of a link."""
-
-    def open_at(scene, address=""):
-        watched = watch(f"{server.link}{PAGE}{address}")
-        watched.until(f"hedon.scenes.sandbox && hedon.scenes.{scene}")
-        if not address:
-            watched.get(f"hedon.scenes.{scene}.section.scrollIntoView({{ behavior: 'instant' }})")
-            if scene in STAGES:
-                watched.until(f"hedon.scenes.{scene}.stage.live?.ready")
-        return watched
-
-    return open_at
-
-
-def stage(name):
-    return f"hedon.scenes.{name}.stage"
-
-
-def run_to(watched, name, step):
-    watched.get(f"void {stage(name)}.runTo({step})")
-    watched.until(f"!{stage(name)}.running && {stage(name)}.live.last >= {step}", 200)
-
-
-def set_knob(watched, name, path, value):
-    """Moves a slider to a value, as a reader does, and lets it go."""
-    watched.get(
-        f"""(() => {{
-          const knob = document.querySelector(`#{name} input[data-path="{path}"]`);
-          knob.value = "{value}";
-          knob.dispatchEvent(new Event("input", {{ bubbles: true }}));
-          knob.dispatchEvent(new Event("change", {{ bubbles: true }}));
-        }})()"""
-    )
-    watched.until(f"{stage(name)}.live.ready")
-
-
-def backend(watched, name):
-    return "" if watched.get(f"{stage(name)}.live.fused") else "portable"
-
-
-def native(watched, name, file, step, *changes, seed=1):
-    """The same world by the engine in Python."""
-    config = load_config(SCENES / f"{file}.toml", overrides=changes)
-    simulation = Simulation(config, seeds=[seed], backend=backend(watched, name))
-    simulation.run(step)
-    return simulation.worlds[0]
+pytest_plugins = ("view_fixture", "story_fixture")
 
 
 def address_of(watched, name):
