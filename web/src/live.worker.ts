@@ -195,14 +195,16 @@ function slotOf(world: Engine, id: number): number {
   return living.subarray(0, world.number("head.living_count")).find((slot) => Number(ids[slot]) === id) ?? -1;
 }
 
-/** What each of the living has earned until now. */
+/** What each of the living has earned and eaten until now. */
 function windowEnd(world: Engine): WindowEnd {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const [id, reward] = [world.view("life.agent_id")!, world.view("life.reward")!];
+  const [eaten, kinds] = [world.view("eaten") as Int32Array, layout!.meals.length];
   return {
     step: world.number("head.step"),
     id: Int32Array.from(living, (slot) => Number(id[slot])),
     reward: Float32Array.from(living, (slot) => Number(reward[slot])),
+    meals: Int32Array.from(living, (slot) => eaten.subarray(slot * kinds, (slot + 1) * kinds).reduce((sum, each) => sum + each, 0)),
   };
 }
 

@@ -1,10 +1,11 @@
 // What each agent got of reward in each window, between two times of learning: whether it learns shows there.
 
-/** The living at the end of a window, with the reward of their lives until then. */
+/** The living at the end of a window, with the reward and the meals of their lives until then. */
 export interface WindowEnd {
   step: number;
   id: Int32Array;
   reward: Float32Array;
+  meals: Int32Array;
 }
 
 /** One window of a life: its part from a step to another, and the reward in it. */

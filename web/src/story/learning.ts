@@ -1,5 +1,5 @@
 // Scene 2: the creature learns by itself; what it eats over time, and its path before and after.
-import { show, styleColor } from "../element";
+import { counted, show, styleColor } from "../element";
 import { Chart } from "./chart";
 import { ONE_COLOR } from "./creature";
 import { bindGuess } from "./guess";
@@ -9,8 +9,7 @@ import { Stage } from "./stage";
 
 const ROUNDS = 80; // windows with learning
 const PATH = 500; // steps of a path
-const FIRST = 5; // rounds that "before" is a mean over
-const BEFORE_LEAST = 0.2; // meals per 1,000 steps that a ratio is at least taken to
+const FEW = 5; // rounds at the start and at the end that the answer compares
 
 export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.learning!, { scene: "learning", speed: 2, coloring: ONE_COLOR, chosen: 0, threads: 1, trace: true });
@@ -19,17 +18,14 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: ROUNDS, label: "rounds of learning" }, { low: 0, high: 40, label: "meals / 1,000 steps" });
   const guess = bindGuess(section);
   const run = section.querySelector<HTMLButtonElement>("#learning-run")!;
-  let meals: [number, number][] = []; // step, meals so far
+  let meals: number[] = [0]; // at the end of each round: what it ate until then
   let path: number[] = []; // x, y of every step of the first and the last ones
+  let lastPace = NaN; // units per step on the path that ends with the last round
 
   /** Meals per 1,000 steps between two rounds. */
-  const rate = (from: number, to: number): number => {
-    const at = (round: number) => meals.findLast(([step]) => step <= round * window) ?? [0, 0];
-    const [a, b] = [at(from), at(to)];
-    return b[0] > a[0] ? (1000 * (b[1] - a[1])) / (b[0] - a[0]) : 0;
-  };
+  const rate = (from: number, to: number): number => (1000 * (meals[to]! - meals[from]!)) / ((to - from) * window);
   const draw = () => {
-    const rounds = Math.floor(stage.live.last / window);
+    const rounds = meals.length - 1;
     const points = Array.from({ length: Math.max(rounds - 1, 0) }, (_, i): [number, number] => [i + 2, rate(i, i + 2)]);
     chart.y.high = Math.max(40, ...points.map(([, y]) => y));
     chart.x.high = Math.max(ROUNDS, rounds);
@@ -43,21 +39,26 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     return (2 * way) / (to - from);
   };
   const answer = () => {
-    const [before, after] = [rate(0, FIRST), rate(ROUNDS - FIRST, ROUNDS)];
-    const times = after / Math.max(before, BEFORE_LEAST);
+    const [before, after] = [meals[FEW]!, meals[ROUNDS]! - meals[ROUNDS - FEW]!];
+    const ate = (count: number) => (count === 0 ? "nothing" : counted(count, "meal"));
+    const times = after / before;
+    const more = before > 0 && times > 1 ? `: ${show(times, times < 10 ? 1 : 0)} times as many` : "";
     const guessed = guess.value() ? ` You guessed ${guess.value()} times.` : "";
-    guess.answer(`Before: ${show(before, 1)} meals per 1,000 steps. After: ${show(after, 1)}, ${show(times, 1)} times as many.${guessed} It moves ${show(pace(2 * PATH, path.length))} units per step, at first ${show(pace(0, 2 * PATH))}.`);
+    const moves = `It moves ${lastPace.toFixed(2)} units per step, at first ${pace(0, 2 * PATH).toFixed(2)}.`;
+    guess.answer(`In its first ${FEW} rounds it ate ${ate(before)}, in its last ${FEW} ${ate(after)}${more}.${guessed} ${moves}`);
   };
 
   stage.onBegin = () => {
-    [meals, path] = [[[0, 0]], []];
+    [meals, path, lastPace] = [[0], [], NaN];
     guess.answer("");
   };
-  stage.onMoment = ({ frame, lives, trace }) => {
-    const eaten = lives[0]?.eaten[0] ?? 0;
-    if (frame.step > meals[meals.length - 1]![0]) meals.push([frame.step, eaten]);
-    path.push(...trace);
-    if (path.length > 4 * PATH) path.splice(2 * PATH, path.length - 4 * PATH);
+  stage.onMoment = ({ frame, ends, trace }) => {
+    for (const end of ends) meals[end.step / window] = end.meals[0]!;
+    for (let i = 0; i < trace.length; i += 2) {
+      path.push(trace[i]!, trace[i + 1]!);
+      if (path.length > 4 * PATH) path.splice(2 * PATH, 2);
+      if (frame.step - (trace.length - i) / 2 + 1 === steps) lastPace = pace(2 * PATH, path.length);
+    }
   };
   stage.onPicture = () => {
     const line = (from: number, to: number, color: string, width: number) => {
@@ -75,7 +76,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     const round = Math.min(Math.floor(stage.live.last / window), ROUNDS);
     run.textContent = stage.running ? `Learning: round ${round} of ${ROUNDS}` : stage.live.last >= steps ? "Again, with other luck" : "Let it learn";
     run.disabled = stage.running;
-    if (stage.live.last >= steps) answer();
+    if (meals.length > ROUNDS) answer();
   };
   const learn = async () => {
     if (stage.live.last >= steps) stage.begin(stage.seed + 1);
@@ -85,7 +86,6 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   run.addEventListener("click", () => void learn());
   const read = bindKnobs(section, stage, () => stage.begin());
   section.querySelector("#learning-sit")!.addEventListener("click", () => {
-    stage.set(["food.normal.gene.initial_mean"], "0");
     stage.set(["genome.action.initial_mean"], "-10");
     read();
     stage.begin();

@@ -1,0 +1,60 @@
+"""What scenes 1 to 4 of the article say and count is what happens, however a reader goes through them."""
+
+import re
+
+import numpy as np
+import pytest
+from story_page import backend, stage
+
+from hedon import Simulation, load_config
+from hedon.view.story import SCENES
+
+pytest_plugins = ("view_fixture", "story_fixture")
+
+WINDOW = 1024
+ROUNDS = 80
+
+
+def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article):
+    """All in one order, as on a machine without limits: the engine in Python has the same numbers."""
+    watched = article("learning")
+    learning = stage("learning")
+    watched.page.locator("#learning .guess input").fill("7")
+    steps = ROUNDS * WINDOW
+    watched.until(f"{learning}.live.advance({steps}, 1e6, {{ trace: true }})")
+    simulation = Simulation(load_config(SCENES / "learning.toml"), seeds=[1], backend=backend(watched, "learning"))
+    eaten, places = [0], []
+    while (step := simulation.worlds[0].step) < steps:
+        part = 1 if step < 500 or step >= steps - 500 else min(WINDOW - step % WINDOW, steps - 500 - step)
+        simulation.run(part)
+        agents = simulation.worlds[0].agents()
+        if part == 1:
+            places.append((agents["x"][0], agents["y"][0]))
+        if simulation.worlds[0].step % WINDOW == 0:
+            eaten.append(int(agents["eaten"].sum()))
+    watched.until(f"{learning}.live.last >= {steps}", 200)
+    shown = watched.get(f"Array.from({{ length: {ROUNDS} }}, (_, i) => {learning}.rate(i, i + 1))")
+    assert shown == pytest.approx(1000 * np.diff(eaten) / WINDOW)
+    assert min(shown[ROUNDS // 2 :]) > 0, "one that has learned eats in each round"
+    early, late = (np.hypot(*np.diff(part, axis=0).T).mean() for part in (places[:500], places[500:]))
+    before, after = eaten[5], eaten[ROUNDS] - eaten[ROUNDS - 5]
+    times = f"{after / before:.0f} times as many"
+    watched.until("!document.querySelector('#learning .answer').hidden")
+    assert watched.get("document.querySelector('#learning .answer').textContent") == (
+        f"In its first 5 rounds it ate {before} meals, in its last 5 {after} meals: {times}. "
+        f"You guessed 7 times. It moves {late:.2f} units per step, at first {early:.2f}."
+    )
+
+
+def test_one_that_moving_hurts_differs_in_nothing_else(article):
+    watched = article("learning")
+    learning = stage("learning")
+    watched.page.locator("#learning-sit").click()
+    watched.until(f"[...{learning}.changes].join() === 'genome.action.initial_mean,-10'")
+    watched.until(f"{learning}.live.ready && {learning}.live.last === 0")
+    watched.until(f"{learning}.live.advance({ROUNDS * WINDOW}, 1e6, {{ trace: true }})")
+    watched.until("!document.querySelector('#learning .answer').hidden", 200)
+    told = watched.get("document.querySelector('#learning .answer').textContent")
+    late, early = (float(number) for number in re.findall(r"\d\.\d\d", told))
+    assert 0.4 < late / early < 0.7, "about half as much as at first"
+    assert watched.get(f"{learning}.rate(75, 80)") < 0.5, "hardly eats"
