@@ -4,7 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from story_page import backend, stage
+from story_page import backend, native, set_knob, stage
+from view_page import sized
 
 from hedon import Simulation, load_config
 from hedon.view.story import SCENES
@@ -58,3 +59,61 @@ def test_one_that_moving_hurts_differs_in_nothing_else(article):
     late, early = (float(number) for number in re.findall(r"\d\.\d\d", told))
     assert 0.4 < late / early < 0.7, "about half as much as at first"
     assert watched.get(f"{learning}.rate(75, 80)") < 0.5, "hardly eats"
+
+
+def test_twenty_lives_are_counted_and_reset_stops_them(article):
+    watched = article("life")
+    life = stage("life")
+    many = watched.page.locator("#life-many")
+    many.click()
+    watched.until(f"{life}.lives().length > 1")
+    assert re.fullmatch(r"Life \d+ of 20: stop", many.inner_text())
+    assert watched.page.locator("#life-one").is_disabled()
+    watched.page.locator("#life").get_by_role("button", name="Reset").click()
+    watched.until("document.querySelector('#life-many').textContent === '20 lives'")
+    watched.page.wait_for_timeout(700)  # two lives would have begun by now
+    assert watched.get(f"[{life}.lives().length, {life}.seed, {life}.live.last, {life}.running]") == [0, 1, 0, False]
+    many.click()
+    watched.until(f"{life}.lives().length === 20")
+    watched.until("!document.querySelector('#life-one').disabled")
+    lived, seed = watched.get(f"[{life}.lives()[19], {life}.seed]")
+    for step, alive in ((lived - 1, True), (lived, False)):
+        assert (0 in native(watched, "life", "life", step, seed=seed).agents()["agent_id"]) == alive
+
+
+def test_curves_and_sliders_of_a_life_tell_the_same_numbers(article):
+    watched = article("life")
+    life = stage("life")
+    set_knob(watched, "life", "hazard.kappa", "0.03")
+    told = watched.get("[...document.querySelectorAll('#life .knobs output')].map((each) => each.textContent)")
+    death, child = watched.get(
+        f"[{life}.curve.hazard({life}, 0, 0), {life}.curve.birth({life}, 40)].map((rate) => 1000 * rate)"
+    )
+    assert told == ["0.004 energy", f"{death:.2f} / 1,000 steps", "0.2 per energy", f"{child:.2f} / 1,000 steps"]
+
+
+def test_a_finger_scrolls_over_the_curves_and_moves_only_their_dots(article):
+    watched = article("life", **sized(390))
+    life = stage("life")
+    watched.get("document.querySelector('#life-curves').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    watched.until(f"{life}.pictures > 3")
+    box = watched.page.locator("#life-curves").bounding_box()
+    fingers = watched.page.context.new_cdp_session(watched.page)
+
+    def swipe(x, y):
+        """From a place of the curves, 60 pixels up."""
+        for moved in range(0, 61, 10):
+            kind = "touchMove" if moved else "touchStart"
+            fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y - moved}]})
+        fingers.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    before = watched.get("scrollY")
+    swipe(box["x"] + box["width"] / 2, box["y"] + 100)
+    watched.until(f"scrollY > {before} + 20")
+    assert watched.get(f"{life}.changes.size") == 0
+    watched.page.wait_for_timeout(300)  # until it scrolls no more
+    before = watched.get("scrollY")
+    box = watched.page.locator("#life-curves").bounding_box()
+    swipe(box["x"] + 47, box["y"] + 78)
+    watched.until(f"{life}.changes.has('hazard.kappa')")
+    assert watched.get("scrollY") == before

@@ -10,35 +10,38 @@ import { Stage } from "./stage";
 const MOST_ENERGY = 40; // of the plot
 const MOST_STEPS = 30_000; // of a life that is waited for
 const MANY = 20; // lives
+const WATCHED = 64; // steps between two pictures of one life
+const PIECE = 2048; // steps between two looks at one of many lives
+const GRAB = 26; // pixels around a dot where it can be taken
 const POINTS = 80; // of a curve
 
+type Grip = "death" | "child"; // a dot at the end of a curve
+
 /** Chances per step: see `hedon.config.life`. */
-export function hazard(stage: Stage, energy: number, age: number): number {
+export function hazard(stage: Stage, energy: number, age: number, kappa = stage.value("hazard.kappa")): number {
   const of = (name: string) => stage.value(`hazard.${name}`);
   const odds = of("alpha_energy") * Math.exp(-of("beta_energy") * energy);
-  return (of("kappa") * odds) / (1 + odds) + of("alpha_age") * Math.exp(of("beta_age") * age);
+  return (kappa * odds) / (1 + odds) + of("alpha_age") * Math.exp(of("beta_age") * age);
 }
 
-export function birth(stage: Stage, energy: number): number {
+export function birth(stage: Stage, energy: number, kappa = stage.value("birth.kappa")): number {
   const of = (name: string) => stage.value(`birth.${name}`);
-  return of("kappa") / (1 + Math.exp(of("logit_offset") - of("beta") * energy));
+  return kappa / (1 + Math.exp(of("logit_offset") - of("beta") * energy));
 }
 
 export function life(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.life!, { scene: "life", speed: 8, coloring: ONE_COLOR, chosen: 0, threads: 1 });
-  const per = { low: 0, high: 1, label: "chance per 1,000 steps" };
+  const per = { low: 0, high: 1, label: "expected per 1,000 steps" };
   const curves = new Chart(section.querySelector("#life-curves")!, { low: 0, high: MOST_ENERGY, label: "energy" }, per);
   const dots = new Chart(section.querySelector("#life-dots")!, { low: 0, high: 10_000, label: "length of a life [steps]" }, { low: 0, high: 1, label: "" });
   const guess = bindGuess(section);
   const buttons = ["one", "many"].map((name) => section.querySelector<HTMLButtonElement>(`#life-${name}`)!);
   let lives: number[] = [];
   let ended = false;
-  let busy = false;
+  const grips: Record<Grip, [number, number]> = { death: [0, 0], child: [MOST_ENERGY, 0] };
+  let busy = ""; // which life runs, of how many
+  let turn = 0; // a number of its own for each time that lives are asked for: it ends those before
 
-  /** Runs until the founder is dead; notes how long it lived. */
-  const toDeath = async () => {
-    while (!ended && !stage.live.error && stage.live.last < MOST_STEPS) await stage.runTo(stage.live.last + 64);
-  };
   stage.onBegin = () => (ended = false);
   stage.onMoment = ({ dead }) => {
     const founder = dead.find((each) => each.id === 0);
@@ -57,10 +60,11 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     curves.begin();
     curves.line(death, red);
     curves.line(child, green);
-    curves.dot(0, death[0]![1], red, 8);
-    curves.dot(MOST_ENERGY, child[POINTS]![1], green, 8);
-    curves.text("death", 1.5, death[0]![1] + per.high * 0.04, red);
-    curves.text("a child", MOST_ENERGY - 1.5, child[POINTS]![1] + per.high * 0.04, green, "right");
+    [grips.death, grips.child] = [death[0]!, child[POINTS]!];
+    curves.dot(...grips.death, red, 8);
+    curves.dot(...grips.child, green, 8);
+    curves.text("deaths", 1.5, death[0]![1] + per.high * 0.04, red);
+    curves.text("children", MOST_ENERGY - 1.5, child[POINTS]![1] + per.high * 0.04, green, "right");
     if (founder && !ended) {
       const energy = Math.min(founder.energy, MOST_ENERGY);
       curves.line([[energy, 0], [energy, per.high]], styleColor("--quiet"), 1, [3, 3]);
@@ -74,7 +78,8 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   };
   stage.onWords = () => {
     draw();
-    for (const each of buttons) each.disabled = busy;
+    buttons[0]!.disabled = stage.play.disabled = busy !== "";
+    buttons[1]!.textContent = busy ? `${busy}: stop` : `${MANY} lives`;
     if (lives.length === 0) return;
     const sorted = [...lives].sort((a, b) => a - b);
     const middle = sorted.length > 2 ? ` Half of ${sorted.length} lives ended before ${show(sorted[Math.floor(sorted.length / 2)])}.` : "";
@@ -83,43 +88,60 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     const children = founder ? `, with ${founder.children} ${founder.children === 1 ? "child" : "children"}` : "";
     guess.answer(`It lived ${show(lives[lives.length - 1])} steps${children}.${guessed}${middle}`);
   };
-  const some = async (count: number) => {
-    busy = true;
-    for (let i = 0; i < count; i++) {
-      if (stage.live.last > 0 || ended) stage.begin(stage.seed + 1);
-      await toDeath();
-    }
-    busy = false;
+  const stop = () => {
+    [busy, turn] = ["", turn + 1];
   };
-  buttons[0]!.addEventListener("click", () => void some(1));
-  buttons[1]!.addEventListener("click", () => void some(MANY));
-  const read = bindKnobs(section, stage, () => {
+  /** Runs until the founder is dead, a piece at a time, as often as it is asked; nothing else stops it but `stop`. */
+  const some = async (count: number, piece: number) => {
+    const own = ++turn;
+    for (let i = 1; i <= count && own === turn; i++) {
+      busy = `Life ${i} of ${count}`;
+      if (stage.live.last > 0 || ended) stage.begin(stage.seed + 1);
+      while (own === turn && !ended && !stage.live.error && stage.live.last < MOST_STEPS) await stage.runTo(stage.live.last + piece);
+    }
+    if (own === turn) stop();
+  };
+  buttons[0]!.addEventListener("click", () => void some(1, WATCHED));
+  buttons[1]!.addEventListener("click", () => (busy ? stop() : void some(MANY, PIECE)));
+  const anew = () => {
+    stop();
     lives = [];
     stage.begin();
+  };
+  const rate = (expected: number) => `${show(1000 * expected)} / 1,000 steps`;
+  const read = bindKnobs(section, stage, anew, {
+    "energy.basic_cost": (value) => `${show(value)} energy`,
+    "hazard.kappa": (value) => rate(hazard(stage, 0, 0, value)),
+    "hazard.beta_energy": (value) => `${show(value)} per energy`,
+    "birth.kappa": (value) => rate(birth(stage, MOST_ENERGY, value)),
   });
   section.addEventListener("reset", () => {
+    stop();
     lives = [];
     guess.answer("");
   });
-  bindDrag(curves, stage, read, () => {
-    lives = [];
-    stage.begin();
-  });
+  bindDrag(curves, stage, grips, read, anew);
   Object.assign(stage, { lives: () => lives, curve: { hazard, birth } });
   return {
     section,
     stage,
     open: async (place) => {
+      stop();
       await openStage(stage, place);
       read();
     },
   };
 }
 
-/** The dots on the curves: up and down is how likely; with death, left and right is how fast food protects. */
-function bindDrag(chart: Chart, stage: Stage, read: () => void, begin: () => void): void {
+/** The dots on the curves: up and down is how many. Beside the dots a finger scrolls the page. */
+function bindDrag(chart: Chart, stage: Stage, grips: Record<Grip, [number, number]>, read: () => void, begin: () => void): void {
   const { canvas } = chart;
-  let held = "";
+  let held: Grip | undefined;
+  const under = ({ clientX, clientY }: { clientX: number; clientY: number }): Grip | undefined =>
+    (["death", "child"] as const).find((grip) => {
+      const [x, y] = chart.page(...grips[grip]);
+      return Math.hypot(clientX - x, clientY - y) <= GRAB;
+    });
   const put = (path: string, value: number) => {
     const knob = stage.host.querySelector<HTMLInputElement>(`input[data-path="${path}"]`)!;
     knob.value = String(value); // which takes the nearest value that the slider has
@@ -134,14 +156,21 @@ function bindDrag(chart: Chart, stage: Stage, read: () => void, begin: () => voi
     } else put("birth.kappa", chance * (1 + Math.exp(stage.value("birth.logit_offset") - stage.value("birth.beta") * MOST_ENERGY)));
     read();
   };
+  canvas.addEventListener("touchstart", (event) => under(event.touches[0]!) && event.preventDefault(), { passive: false });
   canvas.addEventListener("pointerdown", (event) => {
+    held = under(event);
+    if (!held) return;
     canvas.setPointerCapture(event.pointerId);
-    held = chart.place(event)[0] < MOST_ENERGY / 2 ? "death" : "child";
     move(event);
   });
-  canvas.addEventListener("pointermove", (event) => held && move(event));
-  canvas.addEventListener("pointerup", () => {
-    if (held) begin();
-    held = "";
+  canvas.addEventListener("pointermove", (event) => {
+    canvas.classList.toggle("grip", held !== undefined || under(event) !== undefined);
+    if (held) move(event);
   });
+  for (const end of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(end, () => {
+      if (held) begin();
+      held = undefined;
+    });
+  }
 }
