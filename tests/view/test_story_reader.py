@@ -61,6 +61,51 @@ def test_one_that_moving_hurts_differs_in_nothing_else(article):
     assert watched.get(f"{learning}.rate(75, 80)") < 0.5, "hardly eats"
 
 
+def test_it_strolls_by_itself_and_says_how_to_take_over(article):
+    watched = article("creature")
+    creature = stage("creature")
+    hint = watched.page.locator("#creature .hint")
+    watched.until(f"{creature}.live.last > 3 && {creature}.frame")
+    assert "strolls by itself" in hint.inner_text()
+    assert "begin anew" in hint.inner_text()
+    watched.page.keyboard.press("ArrowUp")
+    watched.until("document.querySelector('#creature .hint').hidden")
+
+
+def test_arrow_keys_steer_after_a_click_on_a_guess_or_a_slider(article):
+    watched = article("creature")
+    creature = stage("creature")
+    no = watched.page.locator("#creature input[value=no]")
+    slider = watched.page.locator("#creature input[type=range]").last
+    for used in (no, watched.page.locator("#creature .guess label").last, slider):
+        used.click(position={"x": 12, "y": 9})
+        watched.until("document.activeElement === document.body")
+        watched.get(f"{creature}.setPlaying(false)")
+        before = [no.is_checked(), slider.input_value()]
+        watched.page.keyboard.down("ArrowLeft")
+        watched.until(f"{creature}.playing && {creature}.track().includes('l')")
+        watched.page.keyboard.up("ArrowLeft")
+        assert [no.is_checked(), slider.input_value()] == before
+        watched.page.locator("#creature").get_by_role("button", name="Reset").click()
+    slider.focus()
+    watched.page.keyboard.press("ArrowRight")
+    assert slider.input_value() == "0.5", "who came by keys moves the slider"
+
+
+@pytest.mark.parametrize("width", [1400, 390])
+def test_sliders_stay_on_the_screen_with_the_arena(width, article):
+    watched = article("creature", **sized(width))
+    watched.page.locator("#creature input[value=yes]").check()
+    watched.until("!document.querySelector('#creature .answer').hidden")
+    for name, seen in (("creature", ".view"), ("learning", ".view"), ("life", "#life-curves")):
+        top = watched.page.locator(f"#{name} {seen}").bounding_box()["y"]
+        knobs = watched.page.locator(f"#{name} .knobs").bounding_box()
+        assert knobs["y"] + knobs["height"] - top < 844, name
+    section = watched.page.locator("#creature").bounding_box()
+    knobs = watched.page.locator("#creature .knobs").bounding_box()
+    assert width < 800 or knobs["y"] + knobs["height"] - section["y"] < 900
+
+
 def test_twenty_lives_are_counted_and_reset_stops_them(article):
     watched = article("life")
     life = stage("life")

@@ -22,6 +22,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   let strolling = !CALM.matches;
   let command = ".";
   const guess = bindGuess(section);
+  const hint = section.querySelector<HTMLElement>(".hint")!;
   const told = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
 
   const takeOver = () => {
@@ -67,6 +68,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   };
   stage.onPicture = () => drawMotors(stage, commands[command]!, [least, most]);
   stage.onWords = () => {
+    hint.hidden = !strolling;
     const life = stage.life();
     if (!life) return;
     const meals = life.eaten[0]!;
@@ -78,6 +80,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   };
 
   bindSteering(stage, keys, takeOver, (place) => (goal = place));
+  releaseFocus(section);
   section.addEventListener("reset", () => (strolling = false));
   const read = bindKnobs(section, stage, () => {
     strolling = false;
@@ -124,6 +127,16 @@ function bindSteering(stage: Stage, keys: Set<string>, takeOver: () => void, go:
   });
   canvas.addEventListener("pointermove", (event) => event.buttons > 0 && point(event));
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => go());
+}
+
+/** Sliders and choices that a pointer used let go of the arrow keys, which steer; who came there by keys keeps them. */
+function releaseFocus(section: HTMLElement): void {
+  const release = () => {
+    const { activeElement } = document;
+    if (activeElement instanceof HTMLInputElement && section.contains(activeElement)) activeElement.blur();
+  };
+  section.addEventListener("click", (event) => event.detail > 0 && setTimeout(release)); // a label gives the focus after it
+  section.addEventListener("pointerdown", () => document.addEventListener("pointerup", () => setTimeout(release), { once: true }));
 }
 
 /** Both motors as flames behind the body: the longer, the stronger. */

@@ -43,7 +43,7 @@ export class Stage {
   readonly arena: Arena;
   readonly ink: CanvasRenderingContext2D; // above the arena, in pixels of the page
   readonly play = button("Play", "main");
-  readonly again = button("Reset");
+  readonly again = Object.assign(button("Reset"), { title: "Begin again: the first world, with every slider as at first" });
   readonly bar = element("div", { class: "bar" });
   private readonly clock = element("span", { class: "clock" });
   private readonly same = element("a", { class: "permalink", text: "link" });
