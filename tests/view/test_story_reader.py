@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from story_page import backend, native, set_knob, stage
+from story_page import backend, native, run_to, set_knob, stage
 from view_page import sized
 
 from hedon import Simulation, load_config
@@ -162,3 +162,91 @@ def test_a_finger_scrolls_over_the_curves_and_moves_only_their_dots(article):
     swipe(box["x"] + 47, box["y"] + 78)
     watched.until(f"{life}.changes.has('hazard.kappa')")
     assert watched.get("scrollY") == before
+
+
+def click_agent(watched, some):
+    x, y = watched.get(
+        f"""(() => {{
+          const {{ frame, arena }} = {stage("family")};
+          const i = [...frame.id].indexOf({some});
+          return arena.scene.toPage(frame.x[i], frame.y[i]);
+        }})()"""
+    )
+    watched.page.mouse.click(x, y)
+
+
+def test_n_goes_through_the_living_that_have_a_parent_wherever_the_focus_is(article):
+    watched = article("family")
+    family = stage("family")
+    watched.get(f"{family}.setPlaying(false)")
+    run_to(watched, "family", 400)
+    watched.until(f"{family}.frame.step === 400 && !document.querySelector('#family-next').disabled")
+    agents = native(watched, "family", "family", 400).agents()
+    expected = sorted(int(i) for i in agents["agent_id"][agents["parent_id"] >= 0])
+    assert len(expected) > 5
+    watched.get(f"{family}.choose(0)")
+    seen = []
+    for step in range(len(expected)):
+        watched.page.keyboard.press("n") if step % 2 else watched.page.locator("#family-next").click()
+        seen.append(watched.get(f"{family}.chosen"))
+    assert seen == expected
+    watched.page.keyboard.press("n")
+    assert watched.get(f"{family}.chosen") == expected[0]
+
+
+def test_the_card_tells_meals_and_age_of_child_and_parent_also_of_the_dead(article):
+    watched = article("family")
+    family = stage("family")
+    watched.get(f"{family}.setPlaying(false)")
+    run_to(watched, "family", 1100)
+    card = watched.page.locator("#family-card")
+    child, parent = watched.get(
+        f"""{family}.pairs().filter(([child, parent]) => child.death < 0 && parent.death < 0)
+          .map(([child, parent]) => [child.id, parent.id])[0]"""
+    )
+    agents = native(watched, "family", "family", 1100).agents()
+
+    def lived(some):
+        [at] = np.flatnonzero(agents["agent_id"] == some)
+        eaten, age = int(agents["eaten"][at].sum()), 1100 - int(agents["birth_step"][at])
+        return f"{eaten} meal{'' if eaten == 1 else 's'} in {age:,} steps of life"
+
+    number = watched.page.locator("#family-number")
+    number.fill(str(child))
+    number.press("Enter")
+    watched.until(f"document.querySelector('#family-card').textContent.startsWith('Creature {child}:')")
+    own, its_parent = card.locator("p").all_inner_texts()[:2]
+    assert lived(child) in own
+    assert its_parent.startswith(f"Its parent, {parent}:")
+    assert lived(parent) in its_parent
+    dead = watched.get(f"[...{family}.live.lives.all()].find((life) => life.death >= 0).id")
+    number.fill(str(dead))
+    number.press("Enter")
+    watched.until(f"document.querySelector('#family-card').textContent.startsWith('Creature {dead} (dead):')")
+    number.fill("99999")
+    number.press("Enter")
+    assert number.input_value() == str(dead), "nobody has that number yet"
+
+
+def test_a_click_on_empty_ground_takes_the_card_away(article):
+    watched = article("family")
+    family = stage("family")
+    watched.get(f"{family}.setPlaying(false)")
+    watched.until("document.querySelector('#family-card').textContent.startsWith('Creature 39')")
+    click_agent(watched, 5)
+    watched.until("document.querySelector('#family-card').textContent.startsWith('Creature 5:')")
+    box = watched.page.locator("#family canvas.world").bounding_box()
+    watched.page.mouse.click(box["x"] + 3, box["y"] + 3)
+    watched.until("document.querySelector('#family-card').textContent.startsWith('Click a creature')")
+    assert watched.page.locator("#family-number").input_value() == ""
+
+
+def test_on_a_phone_the_card_is_under_the_arena_and_no_key_is_named(article):
+    watched = article("family", **sized(390))
+    arena, card, chart = (
+        watched.page.locator(f"#family {each}").bounding_box() for each in (".view", ".card", ".chart")
+    )
+    assert arena["y"] + arena["height"] < card["y"] < chart["y"]
+    assert card["y"] + card["height"] - arena["y"] < 844
+    assert watched.page.locator("#family-next").inner_text() == "Next child"
+    assert "arrow keys" not in watched.page.locator("#creature .words").inner_text()

@@ -1,6 +1,6 @@
 // Scene 4: many agents; a family in one color, and what children have of their parents.
 import type { Coloring } from "../color";
-import { element, show, styleColor } from "../element";
+import { counted, element, show, styleColor } from "../element";
 import type { Life } from "../types";
 import { Chart } from "./chart";
 import { bindGuess } from "./guess";
@@ -9,7 +9,7 @@ import { Stage } from "./stage";
 
 const ORANGE = 3; // its place among the distinct colors
 const RANGE = 3; // of the plot of feelings
-const FIRST = 0; // the agent that is chosen at first
+const FIRST = 39; // the agent that is chosen at first: in the first world its family grows
 
 export function family(section: HTMLElement, worlds: Worlds): Scene {
   let root = -1;
@@ -19,7 +19,7 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     scale: "distinct",
     value: (life) => (life && root >= 0 && stage.live.lives.founder(life.id) === root ? ORANGE : NaN),
   };
-  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", speed: 2, coloring });
+  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", speed: 4, coloring });
   const gene = (name: string) => stage.world.layout.genes.findIndex((each) => each.name === name);
   const [meal, moving] = [gene("w_normal"), gene("w_action")];
   const chart = new Chart(
@@ -29,12 +29,21 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
   );
   const guess = bindGuess(section);
   const card = section.querySelector<HTMLElement>("#family-card")!;
+  const number = section.querySelector<HTMLInputElement>("#family-number")!;
+  const next = section.querySelector<HTMLButtonElement>("#family-next")!;
 
   const choose = (id: number) => {
-    [stage.chosen, stage.live.chosen] = [id, id];
+    stage.chosen = id;
     root = id < 0 ? -1 : stage.live.lives.founder(id);
     stage.notes.set("agent", String(id));
     if (id < 0) stage.notes.delete("agent");
+    number.value = id < 0 ? "" : String(id);
+  };
+  /** The living that have a parent, in the order of their ids. */
+  const children = (): number[] => [...(stage.frame?.id ?? [])].filter((id) => (stage.life(id)?.parent ?? -1) >= 0);
+  const chooseNext = () => {
+    const ids = children();
+    if (ids.length > 0) choose(ids.find((id) => id > stage.chosen) ?? ids[0]!);
   };
   /** Every child whose parent is known, with its parent. */
   const pairs = (): [Life, Life][] =>
@@ -50,25 +59,26 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     chart.begin();
     chart.line([[-RANGE, -RANGE], [RANGE, RANGE]], styleColor("--rule"), 1);
     const [plain, mark] = [styleColor("--before"), styleColor("--family")];
-    for (const [child, parent] of known) {
-      const kin = root >= 0 && stage.live.lives.founder(child.id) === root;
-      const within = (value: number) => Math.min(Math.max(value, -RANGE), RANGE);
+    const within = (value: number) => Math.min(Math.max(value, -RANGE), RANGE);
+    const dots = known.map(([child, parent]) => ({ child, parent, kin: root >= 0 && stage.live.lives.founder(child.id) === root }));
+    for (const { child, parent, kin } of dots.sort((a, b) => Number(a.kin) - Number(b.kin))) {
       chart.dot(within(parent.genome[meal]!), within(child.genome[meal]!), kin ? mark : plain, kin ? 4 : 3);
     }
     const own = stage.life();
-    if (own) card.replaceChildren(...about(own));
+    card.replaceChildren(...(own ? about(own) : [element("p", { text: "Click a creature, or take the next child." })]));
+    next.disabled = children().length === 0;
     if (guess.value() && known.length > 0) guess.answer(verdict(known));
   };
   const about = (own: Life): HTMLElement[] => {
     const parent = stage.life(own.parent);
     const feels = (life: Life) => `a meal feels like ${show(life.genome[meal])}, moving like ${show(life.genome[moving])}`;
-    const age = (own.death >= 0 ? own.death : stage.live.last) - own.birth;
-    const ate = `${show(own.eaten[0])} meals in ${show(age)} steps of life, ${own.children} ${own.children === 1 ? "child" : "children"}`;
+    const ate = (life: Life) => `${counted(life.eaten[0]!, "meal")} in ${counted((life.death >= 0 ? life.death : stage.live.last) - life.birth, "step")} of life`;
+    const dead = (life: Life) => (life.death >= 0 ? " (dead)" : "");
     const kin = stage.frame ? [...stage.frame.id].filter((id) => stage.live.lives.founder(id) === root).length : 0;
-    const lines = [`Creature ${own.id}${own.death >= 0 ? " (dead)" : ""}: ${feels(own)}; ${ate}.`];
-    lines.push(parent ? `Its parent, ${parent.id}: ${feels(parent)}.` : "It is a founder.");
+    const lines = [`Creature ${own.id}${dead(own)}: ${feels(own)}; ${ate(own)}, ${own.children} ${own.children === 1 ? "child" : "children"}.`];
+    lines.push(parent ? `Its parent, ${parent.id}${dead(parent)}: ${feels(parent)}; ${ate(parent)}.` : "It is a founder.");
     if (parent) lines.push("Its network began at random, with nothing that the parent had learned.");
-    lines.push(`${kin} of its family live.`);
+    lines.push(kin === 1 ? "One of its family lives." : `${kin} of its family live.`);
     return lines.map((text) => element("p", { text }));
   };
   const verdict = (known: [Life, Life][]): string => {
@@ -85,12 +95,14 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     const { frame } = stage;
     if (frame) choose(stage.arena.pick(stage.live, frame, ...stage.arena.scene.toWorld(event.clientX, event.clientY)));
   });
-  canvas.addEventListener("keydown", (event) => {
-    const ids = stage.frame?.id;
-    if (event.key.toLowerCase() !== "n" || !ids || ids.length === 0) return;
+  document.addEventListener("keydown", (event) => {
+    const writes = (event.target as HTMLElement).matches("input:not([type=radio], [type=range], [type=checkbox]), select, textarea");
+    if (event.key.toLowerCase() !== "n" || !stage.seen || writes || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
-    choose(ids.find((id) => id > stage.chosen) ?? ids[0]!);
+    chooseNext();
   });
+  next.addEventListener("click", chooseNext);
+  number.addEventListener("change", () => choose(stage.life(number.valueAsNumber) ? number.valueAsNumber : stage.chosen));
   section.addEventListener("reset", () => guess.answer(""));
   Object.assign(stage, { choose, pairs });
   return {
