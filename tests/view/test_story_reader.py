@@ -42,7 +42,7 @@ def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article)
     times = f"{after / before:.0f} times as many"
     watched.until("!document.querySelector('#learning .answer').hidden")
     assert watched.get("document.querySelector('#learning .answer').textContent") == (
-        f"In its first 5 rounds it ate {before} meals, in its last 5 {after} meals: {times}. "
+        f"It ate {before} meals in its first 5 rounds and {after} meals in its last 5: {times}. "
         f"You guessed 7 times. It moves {late:.2f} units per step, at first {early:.2f}."
     )
 
@@ -65,11 +65,33 @@ def test_it_strolls_by_itself_and_says_how_to_take_over(article):
     watched = article("creature")
     creature = stage("creature")
     hint = watched.page.locator("#creature .hint")
-    watched.until(f"{creature}.live.last > 3 && {creature}.frame")
+    watched.until(f"{creature}.live.last > 3 && {creature}.frame && !document.querySelector('#creature .hint').hidden")
     assert "strolls by itself" in hint.inner_text()
     assert "begin anew" in hint.inner_text()
     watched.page.keyboard.press("ArrowUp")
     watched.until("document.querySelector('#creature .hint').hidden")
+
+
+@pytest.mark.parametrize("ground", ["light", "dark"])
+def test_rays_have_the_colors_that_the_caption_names(ground, article):
+    watched = article("creature", **sized(1400, ground))
+    watched.get(
+        f"""(() => {{
+          const {{ scene }} = {stage("creature")}.arena;
+          const disc = scene.disc.bind(scene);
+          window.ends = new Set();
+          scene.disc = (x, y, radius, color, ...form) => {{
+            if (radius < 2) ends.add([0, 8, 16].map((bits) => (color >> bits) & 255).join());
+            disc(x, y, radius, color, ...form);
+          }};
+        }})()"""
+    )
+    watched.until("ends.size === 2")
+    colors = [tuple(map(int, end.split(","))) for end in watched.get("[...ends]")]
+    gray, green = sorted(colors, key=lambda color: max(color) - min(color))
+    assert max(gray) - min(gray) < 30
+    assert green[1] > max(green[0], green[2]) + 30
+    assert "green at food, gray at walls" in watched.page.locator("#creature figcaption").inner_text()
 
 
 def test_arrow_keys_steer_after_a_click_on_a_guess_or_a_slider(article):
@@ -98,9 +120,10 @@ def test_sliders_stay_on_the_screen_with_the_arena(width, article):
     watched.page.locator("#creature input[value=yes]").check()
     watched.until("!document.querySelector('#creature .answer').hidden")
     for name, seen in (("creature", ".view"), ("learning", ".view"), ("life", "#life-curves")):
-        top = watched.page.locator(f"#{name} {seen}").bounding_box()["y"]
+        arena = watched.page.locator(f"#{name} {seen}").bounding_box()
         knobs = watched.page.locator(f"#{name} .knobs").bounding_box()
-        assert knobs["y"] + knobs["height"] - top < 844, name
+        assert knobs["y"] > arena["y"] + arena["height"], f"{name}: no answer above moves them"
+        assert knobs["y"] + knobs["height"] - arena["y"] < 844, name
     section = watched.page.locator("#creature").bounding_box()
     knobs = watched.page.locator("#creature .knobs").bounding_box()
     assert width < 800 or knobs["y"] + knobs["height"] - section["y"] < 900
@@ -126,10 +149,28 @@ def test_twenty_lives_are_counted_and_reset_stops_them(article):
         assert (0 in native(watched, "life", "life", step, seed=seed).agents()["agent_id"]) == alive
 
 
+def drawn(watched, chart):
+    """Notes from now on what a chart writes, and the colors of its last picture in their order."""
+    watched.get(
+        f"""(() => {{
+          const ink = document.getElementById("{chart}").getContext("2d");
+          const own = (name) => ink[name].bind(ink);
+          const [fill, fillText, setTransform] = [own("fill"), own("fillText"), own("setTransform")];
+          const noted = window.drawn = {{ words: new Set(), colors: [], last: [] }};
+          ink.fill = () => (noted.colors.push(ink.fillStyle), fill());
+          ink.fillText = (text, ...where) => (noted.words.add(text), fillText(text, ...where));
+          ink.setTransform = (...all) => ([noted.last, noted.colors] = [noted.colors, []], setTransform(...all));
+        }})()"""
+    )
+
+
 def test_curves_and_sliders_of_a_life_tell_the_same_numbers(article):
     watched = article("life")
     life = stage("life")
     set_knob(watched, "life", "hazard.kappa", "0.03")
+    drawn(watched, "life-curves")
+    watched.until("drawn.words.size > 3")
+    assert not any("chance" in words for words in watched.get("[...drawn.words]")), "there can be more than one"
     told = watched.get("[...document.querySelectorAll('#life .knobs output')].map((each) => each.textContent)")
     death, child = watched.get(
         f"[{life}.curve.hazard({life}, 0, 0), {life}.curve.birth({life}, 40)].map((rate) => 1000 * rate)"
@@ -226,6 +267,20 @@ def test_the_card_tells_meals_and_age_of_child_and_parent_also_of_the_dead(artic
     number.fill("99999")
     number.press("Enter")
     assert number.input_value() == str(dead), "nobody has that number yet"
+
+
+def test_dots_of_kin_are_drawn_above_the_others(article):
+    watched = article("family")
+    family = stage("family")
+    watched.get(f"{family}.setPlaying(false)")
+    run_to(watched, "family", 400)
+    watched.get(f"{family}.choose({family}.pairs()[0][0].id)")
+    drawn(watched, "family-dots")
+    watched.until("drawn.last.length > 3")
+    colors = watched.get("drawn.last")
+    kin = watched.get("getComputedStyle(document.documentElement).getPropertyValue('--family').trim()")
+    assert 0 < colors.count(kin) < len(colors)
+    assert kin not in colors[: -colors.count(kin)]
 
 
 def test_a_click_on_empty_ground_takes_the_card_away(article):

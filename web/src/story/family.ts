@@ -86,8 +86,8 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     const [children, parents] = [known.map(([child]) => child.genome[meal]!), known.map(([, parent]) => parent.genome[meal]!)];
     const strangers = apart(children, [...parents.slice(1), parents[0]!]);
     return (
-      `Only what feels good. In this world ${known.length} children differ from their parents by ${show(apart(children, parents))} in how a meal feels, ` +
-      `from other parents by ${show(strangers)}. How to find food each has to learn anew.`
+      `Only what feels good. In this world ${known.length} children differ from their parents by ${apart(children, parents).toFixed(2)} in how a meal feels, ` +
+      `from other parents by ${strangers.toFixed(2)}. How to find food each has to learn anew.`
     );
   };
   const { canvas } = stage.arena.scene;

@@ -45,7 +45,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     const more = before > 0 && times > 1 ? `: ${show(times, times < 10 ? 1 : 0)} times as many` : "";
     const guessed = guess.value() ? ` You guessed ${guess.value()} times.` : "";
     const moves = `It moves ${lastPace.toFixed(2)} units per step, at first ${pace(0, 2 * PATH).toFixed(2)}.`;
-    guess.answer(`In its first ${FEW} rounds it ate ${ate(before)}, in its last ${FEW} ${ate(after)}${more}.${guessed} ${moves}`);
+    guess.answer(`It ate ${ate(before)} in its first ${FEW} rounds and ${ate(after)} in its last ${FEW}${more}.${guessed} ${moves}`);
   };
 
   stage.onBegin = () => {

@@ -85,7 +85,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     const middle = sorted.length > 2 ? ` Half of ${sorted.length} lives ended before ${show(sorted[Math.floor(sorted.length / 2)])}.` : "";
     const guessed = guess.value() ? ` You guessed ${show(Number(guess.value()))}.` : "";
     const founder = stage.life();
-    const children = founder ? `, with ${founder.children} ${founder.children === 1 ? "child" : "children"}` : "";
+    const children = founder ? `, with ${founder.children || "no"} ${founder.children === 1 ? "child" : "children"}` : "";
     guess.answer(`It lived ${show(lives[lives.length - 1])} steps${children}.${guessed}${middle}`);
   };
   const stop = () => {
