@@ -1,5 +1,6 @@
 """What tests of the article share: its scenes, and the same worlds by the engine in Python."""
 
+from collections.abc import Callable
 from typing import Any
 
 from view_page import Watched
@@ -46,3 +47,18 @@ def native(watched: Watched, name: str, file: str, step: int, *changes: str, see
     simulation = Simulation(config, seeds=[seed], backend=backend(watched, name))
     simulation.run(step)
     return simulation.worlds[0]
+
+
+def address_of(watched: Watched, name: str) -> str:
+    """The address of the scene's link, once it tells of the digest of now."""
+    digest = f"{stage(name)}.live.digest()"
+    watched.until(f"{digest} && document.querySelector('#{name} .permalink').href.endsWith({digest}.slice(0, 8))")
+    return watched.get(f"new URL(document.querySelector('#{name} .permalink').href).hash")
+
+
+def opened(article: Callable[..., Watched], name: str, address: str) -> Watched:
+    """A second reader, who opens the link."""
+    other = article(name, address)
+    other.until("hedon.opened !== ''", 200)
+    other.until(f"document.querySelector('#{name} .digest').textContent.includes('as in the link')")
+    return other
