@@ -8,6 +8,8 @@ from hedon.view.story import SCENES
 
 pytest_plugins = ("view_fixture", "story_fixture")
 
+SCORE = "document.querySelector('#contest-score').textContent"
+KNOBS = "[...document.querySelectorAll('#contest input[data-path]')].map((knob) => knob.value)"
 BAD = {"species.blue.reward.meal_coef": "-8", "species.blue.genome.action.initial_mean": "0"}
 
 
@@ -20,13 +22,103 @@ def test_a_contest_is_counted_and_its_link_carries_choice_and_seed(article):
     same = native(watched, "contest", "contest", 100, *(f"{path}={value}" for path, value in BAD.items()))
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
     other = opened(article, "contest", address)
-    values = "[...document.querySelectorAll('#contest input[data-path]')].map((knob) => knob.value)"
-    assert other.get(values) == list(BAD.values())
+    assert other.get(KNOBS) == list(BAD.values())
     chances = f"[[5, 5], [0, 3], [3, 4]].map((each) => {stage('contest')}.luck(...each))"
     assert watched.get(chances) == [1 / 32, 1, 5 / 16]
-    watched.get(f"{stage('contest')}.results().push([3, 5], [9, 1], [4, 4], [7, 2])")
-    watched.until("document.querySelector('#contest-score').textContent.includes('You win 2 of 3 worlds')")
-    watched.until("document.querySelector('#contest-score').textContent.includes('as well or better by luck in 50 of')")
+
+
+def test_the_worlds_of_a_contest_stand_in_a_table_and_are_compared_with_a_coin(article):
+    watched = article("contest")
+    ends = [(1, 3, 5), (2, 9, 1), (3, 4, 4), (4, 7, 2)]
+    for seed, blue, orange in ends:
+        watched.get(f"{stage('contest')}.results().push({{ seed: {seed}, blue: {blue}, orange: {orange} }})")
+    watched.until(f"{SCORE}.endsWith('2 won, 1 lost, 1 drawn. A coin does that or better in 50 of 100 tries.')")
+    cells = watched.get("[...document.querySelectorAll('#contest tbody td')].map((cell) => cell.textContent)")
+    assert cells == [str(value) for end in ends for value in end]
+    assert "room for 40 of each" in watched.get("document.querySelector('#contest .words').innerText")
+    rings = f"""(() => {{
+      const {{ arena, live, frame, camera }} = {stage("contest")};
+      let drawn = 0;
+      const {{ scene }} = arena;
+      const disc = scene.disc;
+      scene.disc = (...given) => (drawn += (given[6] ?? 0) > 0 ? 1 : 0);
+      arena.draw(live, frame, camera.coloring, -1);
+      scene.disc = disc;
+      return [drawn, frame.species.length];
+    }})()"""
+    watched.until(f"{stage('contest')}.frame")
+    drawn, agents = watched.get(rings)
+    assert (drawn, agents) == (0, 32), "a ring would make one side look larger"
+
+
+def rests(watched, name):
+    """Whether the world of a scene stays at its first step while the page goes on."""
+    watched.until(f"{stage(name)}.live.ready")
+    drawn = watched.get("hedon.pictures")
+    watched.until(f"hedon.pictures > {drawn} + 15")
+    return watched.get(f"[{stage(name)}.running, {stage(name)}.live.last]") == [False, 0]
+
+
+def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article):
+    watched = article("contest")
+    begin = watched.page.locator("#contest-one")
+    reset = watched.page.locator("#contest").get_by_role("button", name="Reset")
+    begin.click()
+    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.startsWith('World of seed 1: step ')")
+    set_knob(watched, "contest", "species.blue.reward.meal_coef", -8)
+    assert rests(watched, "contest")
+    begin.click()
+    watched.until(f"{stage('contest')}.live.last > 100")
+    reset.click()
+    assert rests(watched, "contest")
+    watched.until(f"{SCORE} === 'No world yet.'")
+    assert watched.get(KNOBS) == ["5", "5"]
+    begin.click()
+    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.endsWith('of 20,480. ')")
+
+
+def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
+    watched = article("contest", "#scene=contest&seed=3&step=9000&species.blue.reward.meal_coef=-8")
+    watched.until(f"{SCORE}.startsWith('World of seed 3: step') && {SCORE}.endsWith('of 9,000. ')")
+    assert watched.get(KNOBS) == ["-8", "5"]
+    assert watched.get(f"{stage('contest')}.live.last") < 9000
+    watched.page.locator("#contest").get_by_role("button", name="Reset").click()
+    assert rests(watched, "contest")
+
+
+TEXTS = """((meal, moving) => {
+  const { stage } = hedon.scenes.contest;
+  stage.set(["species.blue.reward.meal_coef"], String(meal));
+  stage.set(["species.blue.genome.action.initial_mean"], String(moving));
+  const { prototype } = CanvasRenderingContext2D;
+  const { fillText } = prototype;
+  const found = {};
+  prototype.fillText = function (words, x, y) {
+    const { width } = this.measureText(words);
+    const left = this.textAlign === "right" ? x - width : x;
+    if (this.canvas.id === "contest-map") found[words] = [left, y - 11, left + width, y + 2];
+    fillText.call(this, words, x, y);
+  };
+  stage.onWords();
+  prototype.fillText = fillText;
+  const { clientWidth, clientHeight } = document.querySelector("#contest-map");
+  return [found.you, found.evolution, [46, 10, clientWidth - 10, clientHeight - 34], Object.keys(found)];
+})"""
+
+
+def test_the_names_on_the_map_stay_inside_and_apart(article):
+    watched = article("contest")
+    watched.until(f"{stage('contest')}.live.last === 0 && {stage('contest')}.frame")
+    watched.get(f"{stage('contest')}.results().push({{ seed: 1, blue: 3, orange: 5 }})")
+    watched.until("document.querySelector('#contest-map').clientHeight > 0")
+    for meal, moving in ((-8, 8), (8, 8), (-8, -8), (8, -8), (2, 0), (-1.5, 0.5), (0.5, 0)):
+        you, evolution, axes, words = watched.get(f"{TEXTS}({meal}, {moving})")
+        for left, top, right, bottom in (you, evolution):
+            assert axes[0] <= left < right <= axes[2], (meal, moving)
+            assert axes[1] <= top < bottom <= axes[3], (meal, moving)
+        apart = you[0] > evolution[2] or you[2] < evolution[0] or you[1] > evolution[3] or you[3] < evolution[1]
+        assert apart, (meal, moving)
+        assert {"8", "-8"} <= set(words), "the axes end where the sliders do"
 
 
 @pytest.mark.long
@@ -36,8 +128,8 @@ def test_bad_feelings_lose_to_evolution(article):
         set_knob(watched, "contest", path, value)
     watched.page.locator("#contest-one").click()
     watched.until(f"{stage('contest')}.results().length === 1", 900)
-    [[blue, orange]] = watched.get(f"{stage('contest')}.results()")
-    assert blue < orange
+    [end] = watched.get(f"{stage('contest')}.results()")
+    assert end["blue"] < end["orange"]
     watched.until("document.querySelector('#contest-score').textContent.includes('evolution wins')")
     watched.until("!document.querySelector('#contest-map').hidden")
     same = native(watched, "contest", "contest", 20480, *(f"{path}={value}" for path, value in BAD.items()))

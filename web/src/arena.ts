@@ -24,6 +24,7 @@ export class Arena {
   readonly scene: Scene;
   showRays = true;
   showTrail = true;
+  rings = true; // around all species but the first
   follow = false;
   marked = new Set<number>(); // agents of the branch that is chosen in the tree
   drawMilliseconds = 0; // of the last frame, on the page's side
@@ -126,7 +127,7 @@ export class Arena {
       const { radius } = body;
       const known = colors[i] !== UNKNOWN;
       this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouth, known ? 0 : 0.3, middle);
-      if (species > 0) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
+      if (species > 0 && this.rings) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
     }
     if (this.marked.size > 0) this.markBranch(source, frame);
     if (at >= 0) this.markKin(source, frame, at);

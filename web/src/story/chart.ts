@@ -8,6 +8,7 @@ export interface Axis {
 }
 
 const [LEFT, BOTTOM, TOP, RIGHT] = [46, 34, 10, 10]; // pixels around the plot
+const SPOT = 8; // radius of a dot with a name [pixel]
 
 export class Chart {
   private readonly ink: CanvasRenderingContext2D;
@@ -74,6 +75,27 @@ export class Chart {
     this.ink.fillStyle = color;
     this.ink.textAlign = align;
     this.ink.fillText(words, this.px(x), this.py(y));
+  }
+
+  /** A dot with its name, both kept within the axes: beside it, or some lines higher, where another name is beside it. */
+  named(words: string, x: number, y: number, color: string, lines = 0): void {
+    const { ink } = this;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const px = Math.min(Math.max(this.px(x), LEFT + SPOT), width - RIGHT - SPOT);
+    const py = Math.min(Math.max(this.py(y), TOP + SPOT), height - BOTTOM - SPOT);
+    for (const [radius, fill] of [[SPOT, "#ffffff"], [SPOT - 2, color]] as const) {
+      ink.beginPath();
+      ink.arc(px, py, radius, 0, 2 * Math.PI);
+      ink.fillStyle = fill;
+      ink.fill();
+    }
+    const left = px > (LEFT + width - RIGHT) / 2;
+    ink.textAlign = left ? "right" : "left";
+    const at = [px + (left ? -12 : 12), py + 4 - 20 * lines] as const;
+    [ink.strokeStyle, ink.lineWidth, ink.lineJoin] = ["#14171c", 3, "round"]; // so that it can be read on any color
+    ink.strokeText(words, ...at);
+    ink.fillStyle = "#ffffff";
+    ink.fillText(words, ...at);
   }
 
   /** The place of an event, within the axes. */

@@ -1,6 +1,6 @@
 // Scene 5: the reader's feelings against evolution's, in one arena; how many worlds of several each wins.
 import type { Coloring } from "../color";
-import { show, styleColor } from "../element";
+import { element, show, styleColor } from "../element";
 import { Chart } from "./chart";
 import evidence from "./evidence.json";
 import { bindKnobs } from "./knob";
@@ -9,9 +9,16 @@ import { Stage } from "./stage";
 
 const STEPS = 20_480;
 const MORE = 4; // worlds besides the first
-const PIECE = 256; // steps between two looks at a world that runs
+const FITTEST = Math.max(...evidence.surface.value.flat());
 const [BLUE, ORANGE] = [0, 3]; // their places among the distinct colors
+const SPAN = 8; // of a feeling, on the sliders and on the map
 const FEELINGS = ["species.blue.reward.meal_coef", "species.blue.genome.action.initial_mean"];
+
+interface End {
+  seed: number;
+  blue: number;
+  orange: number;
+}
 
 /** The chance that a fair coin falls heads at least `wins` times of `worlds`. */
 export function luck(wins: number, worlds: number): number {
@@ -28,14 +35,16 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.contest!, { scene: "contest", speed: 4, coloring });
   const most = stage.value("species.blue.population.capacity");
   const lines = new Chart(section.querySelector("#contest-lines")!, { low: 0, high: STEPS, label: "steps" }, { low: 0, high: most, label: "alive" });
-  const { surface } = evidence;
-  const range = { low: surface.low, high: surface.high };
+  stage.arena.rings = false; // the sides differ by color alone
+  const range = { low: -SPAN, high: SPAN };
   const map = new Chart(section.querySelector("#contest-map")!, { ...range, label: "a meal feels like" }, { ...range, label: "moving feels like" });
   const score = section.querySelector<HTMLElement>("#contest-score")!;
+  const table = section.querySelector("table")!;
   const buttons = ["one", "more"].map((name) => section.querySelector<HTMLButtonElement>(`#contest-${name}`)!);
   let course: [number, number, number][] = []; // step, blue, orange
-  let results: [number, number][] = []; // blue and orange at the end of each world
+  let results: End[] = []; // how many live at the end of each world
   let busy = false;
+  let turn = 0; // how often worlds were begun or forgotten: whoever waited for an earlier turn stops
 
   stage.onBegin = () => (course = []);
   stage.onMoment = ({ frame }) => {
@@ -50,44 +59,45 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     for (const each of buttons) each.disabled = busy;
     buttons[1]!.disabled ||= results.length === 0;
     if (results.length > 0) drawMap();
-    const running = busy ? `World ${results.length + 1}: step ${show(stage.live.last)} of ${show(STEPS)}. ` : "";
+    const running = stage.running ? `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(stage.aim)}. ` : "";
     score.textContent = running + verdict(results) || "No world yet.";
+    table.hidden = results.length === 0;
+    const cells = ({ seed, blue, orange }: End) => [seed, blue, orange].map((value) => element("td", { text: String(value) }));
+    table.tBodies[0]!.replaceChildren(...results.map((end) => element("tr", {}, ...cells(end))));
   };
   const drawMap = () => {
     map.canvas.hidden = false;
     map.begin();
-    const { value } = surface;
-    const side = (surface.high - surface.low) / value.length;
-    const top = Math.max(...value.flat());
+    const { value, low, high } = evidence.surface;
+    const apart = (high - low) / (value.length - 1); // of the points that were measured
+    const edge = (i: number) => Math.min(Math.max(low + (i - 0.5) * apart, -SPAN), SPAN);
     value.forEach((row, a) =>
-      row.forEach((fit, f) => {
-        const light = Math.round(12 + (76 * Math.max(fit, 0)) / top);
-        const [x, y] = [surface.low + f * side, surface.low + a * side];
-        map.box(x, y, x + side, y + side, `hsl(260 45% ${light}%)`);
-      }),
+      row.forEach((fit, f) => map.box(edge(f), edge(a), edge(f + 1), edge(a + 1), `hsl(260 45% ${Math.round(12 + (76 * Math.max(fit, 0)) / FITTEST)}%)`)),
     );
-    const place = (x: number, y: number): [number, number] => [clip(x), clip(y)];
-    const clip = (each: number) => Math.min(Math.max(each, surface.low), surface.high);
-    const mark = (words: string, x: number, y: number, color: string) => {
-      const [px, py] = place(x, y);
-      map.dot(px, py, "#ffffff", 8);
-      map.dot(px, py, color, 6);
-      map.text(words, px + (px > 4 ? -0.6 : 0.6), py + 0.3, "#ffffff", px > 4 ? "right" : "left");
-    };
-    mark("evolution", stage.value("species.orange.reward.meal_coef"), stage.value("species.orange.genome.action.initial_mean"), styleColor("--orange"));
-    mark("you", stage.value(FEELINGS[0]!), stage.value(FEELINGS[1]!), styleColor("--blue"));
+    const evolution = [stage.value("species.orange.reward.meal_coef"), stage.value("species.orange.genome.action.initial_mean")] as const;
+    const you = [stage.value(FEELINGS[0]!), stage.value(FEELINGS[1]!)] as const;
+    const near = Math.abs(you[0] - evolution[0]) < 5 && Math.abs(you[1] - evolution[1]) < 1.2; // so that their names would meet
+    map.named("evolution", ...evolution, styleColor("--orange"));
+    map.named("you", ...you, styleColor("--blue"), !near ? 0 : you[1] > evolution[1] ? 1 : -1);
   };
   const some = async (count: number) => {
+    const own = ++turn;
     busy = true;
     for (let i = 0; i < count; i++) {
       if (stage.live.last > 0) stage.begin(stage.seed + 1);
-      while (stage.live.last < STEPS && !stage.live.over && !stage.live.error) await stage.runTo(Math.min(stage.live.last + PIECE, STEPS));
-      const end = course[course.length - 1];
-      if (end && !stage.live.error) results.push([end[1], end[2]]);
+      await stage.runTo(STEPS);
+      if (own !== turn) return;
+      note();
     }
     busy = false;
   };
+  /** Keeps how the world ended, if it did. */
+  const note = () => {
+    const end = course[course.length - 1];
+    if (end && !stage.live.error && (stage.live.last >= STEPS || stage.live.over)) results.push({ seed: stage.seed, blue: end[1], orange: end[2] });
+  };
   const clear = () => {
+    turn++;
     results = [];
     busy = false;
     map.canvas.hidden = true;
@@ -103,28 +113,30 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     stage.begin(1);
   });
   section.addEventListener("reset", clear);
+  section.querySelector("#contest-top")!.textContent = show(FITTEST, 1);
   Object.assign(stage, { results: () => results, luck });
   return {
     section,
     stage,
     open: async (place) => {
       clear();
-      await openStage(stage, place);
-      read();
-      const end = course[course.length - 1];
-      if (end && stage.live.last >= STEPS) results = [[end[1], end[2]]];
+      const own = turn;
+      await openStage(stage, place, read);
+      if (own === turn) note();
     },
   };
 }
 
-function verdict(results: [number, number][]): string {
+/** How the last world ended, and what a fair coin would have done in all that somebody won. */
+function verdict(results: End[]): string {
   if (results.length === 0) return "";
-  const [blue, orange] = results[results.length - 1]!;
+  const { blue, orange } = results[results.length - 1]!;
   const last = `Blue ${blue}, orange ${orange}: ${blue > orange ? "you win" : blue < orange ? "evolution wins" : "a draw"}.`;
   if (results.length === 1) return last;
-  const decided = results.filter(([a, b]) => a !== b);
-  const wins = decided.filter(([a, b]) => a > b).length;
-  const better = wins * 2 >= decided.length;
-  const chance = better ? luck(wins, decided.length) : luck(decided.length - wins, decided.length);
-  return `${last} You win ${wins} of ${decided.length} worlds. Equal feelings would do ${better ? "as well or better" : "as badly or worse"} by luck in ${show(100 * chance, 0)} of 100 tries.`;
+  const won = results.filter((end) => end.blue > end.orange).length;
+  const lost = results.filter((end) => end.blue < end.orange).length;
+  const counts = `${last} ${won} won, ${lost} lost, ${results.length - won - lost} drawn.`;
+  if (won + lost === 0) return counts;
+  const chance = 100 * luck(Math.max(won, lost), won + lost);
+  return `${counts} A coin does that or ${won >= lost ? "better" : "worse"} in ${chance < 1 ? "less than 1" : show(chance, 0)} of 100 tries.`;
 }

@@ -13,13 +13,14 @@ export interface Scene {
   open?: (place: Place) => Promise<void>;
 }
 
-/** Begins the world of a link and runs it to its step. */
-export async function openStage(stage: Stage, place: Place): Promise<void> {
+/** Begins the world of a link and runs it to its step; `begun` is called between the two, to show what the link changes. */
+export async function openStage(stage: Stage, place: Place, begun: () => void = () => {}): Promise<void> {
   stage.changes.clear();
   for (const [path, value] of place.changes) {
     const wrong = stage.set([path], value);
     if (wrong) throw new Error(wrong);
   }
   stage.begin(place.seed);
+  begun();
   await stage.runTo(place.step, place.digest);
 }

@@ -135,6 +135,11 @@ export class Stage {
     return this.goal !== undefined;
   }
 
+  /** The step that it runs to; -1 if to none. */
+  get aim(): number {
+    return this.goal?.step ?? -1;
+  }
+
   /** Where it is. */
   place(): Place {
     return { scene: this.camera.scene, seed: this.seed, step: this.live.last, digest: this.live.digest(), changes: this.changes, notes: this.notes };
