@@ -137,6 +137,9 @@ def test_bad_feelings_lose_to_evolution(article):
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
 
 
+ANSWER = "document.querySelector('#chance-answer').textContent"
+
+
 def test_a_guess_is_drawn_before_the_answer_by_pointer_and_by_keys(article):
     watched = article("chance")
     plot = watched.page.locator("#chance-plot")
@@ -149,11 +152,11 @@ def test_a_guess_is_drawn_before_the_answer_by_pointer_and_by_keys(article):
     watched.until("!document.querySelector('#chance-real').disabled")
     address = watched.get("new URL(document.querySelector('#chance-link').href).hash")
     watched.page.locator("#chance-real").click()
-    watched.until("document.querySelector('#chance-answer').textContent.includes('ended at 0.5')")
+    watched.until(f"{ANSWER}.includes('ended at 0.5')")
     watched.page.locator("#chance-drift").click()
-    watched.until(
-        "/Of 16 genes that do nothing, \\d+ ended/.test(document.querySelector('#chance-answer').textContent)"
-    )
+    watched.until(f"{ANSWER}.includes('Of 100 genes that do nothing, some 2 go so far, up or down (p = 0.02)')")
+    watched.page.locator("#chance-link").click()
+    watched.until("document.querySelector('#chance-link').textContent === 'link copied'")
     other = article("chance", address)
     other.until("!document.querySelector('#chance-real').disabled")
     other.page.locator("#chance-reset").click()

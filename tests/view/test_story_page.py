@@ -89,6 +89,17 @@ def test_the_article_is_small():
 def test_the_numbers_of_scenes_5_and_6_are_those_of_the_committed_results():
     made = runpy.run_path(str(ROOT / "web" / "evidence.py"))["text"]()
     assert (STORY / "evidence.json").read_text() == made, "call: python web/evidence.py"
+    course, p = json.loads(made)["course"], {}
+    for name in ("meal", "moving"):
+        drawn = course[name]
+        inside = course["chance"]["low"][-1] < drawn["mean"][-1] < course["chance"]["high"][-1]
+        assert inside == (drawn["p"] > 0.05), "the drawing shows what p says"
+        assert course["chance"]["low"][0] < drawn["mean"][0] < course["chance"]["high"][0], "both begin alike"
+        p[name] = f"{drawn['p']:.2f}"
+    told = " ".join(Words(scene("chance")).words)
+    assert told.index("fell from 5") < told.index(f"(p = {p['moving']})") < told.index(f"(p = {p['meal']})")
+    assert re.search(r"where it fell to .9\.5,", told)
+    assert re.search(r"where it crosses to .9\.5 ", (ROOT / "docs" / "results" / "start.md").read_text())
     means = {row["weight"]: row["mean"] for row in json.loads(made)["ends"]["mean"] if row["seed"] == 1}
     orange = load_config(SCENES / "contest.toml").species["orange"]
     assert orange.reward.meal_coef == means["w_normal"]

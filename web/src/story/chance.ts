@@ -1,8 +1,8 @@
-// Scene 6: the reader draws how a feeling went; then what was measured, and what genes did that nothing selects.
+// Scene 6: the reader draws how a feeling went; then what was measured, and what chance does to genes that nothing selects.
 import { show, styleColor } from "../element";
 import { Chart } from "./chart";
 import evidence from "./evidence.json";
-import { addressOf } from "./link";
+import { addressOf, copyAddress } from "./link";
 import type { Scene } from "./scene";
 
 const { course } = evidence;
@@ -21,13 +21,14 @@ export function chance(section: HTMLElement): Scene {
   const food = section.querySelector<HTMLInputElement>("#chance-food")!;
   const link = section.querySelector<HTMLAnchorElement>("#chance-link")!;
   let guess: number[] = [];
-  let shown = 0; // 1 with the measured course, 2 with the neutral genes too
-  const measured = () => (food.checked ? course.meal : course.moving);
+  let shown = 0; // 1 with the measured course, 2 with what chance does too
+  const gene = () => (food.checked ? course.meal : course.moving);
+  const measured = () => gene().mean;
   const points = (values: number[]) => values.map((value, i): [number, number] => [course.step[i]!, value]);
 
   const draw = () => {
     chart.begin();
-    if (shown >= 2) for (const gene of course.neutral) chart.line(points(gene), styleColor("--before"), 1);
+    if (shown >= 2) chart.area(points(course.chance.low), points(course.chance.high), styleColor("--before"));
     if (shown >= 1) chart.line(points(measured()), styleColor("--mark"), 3);
     if (guess.length > 0) {
       chart.line(points(guess), styleColor("--ink"), 2, [6, 4]);
@@ -48,9 +49,7 @@ export function chance(section: HTMLElement): Scene {
     const off = guess.reduce((sum, value, i) => sum + Math.abs(value - measured()[i]!), 0) / guess.length;
     const first = `You are off by ${show(off, 1)} on average. It ended at ${show(measured()[LAST], 1)}.`;
     if (shown === 1) return first;
-    const ends = course.neutral.map((gene) => gene[LAST]!);
-    const beyond = ends.filter((end) => Math.abs(end - 5) >= Math.abs(measured()[LAST]! - 5)).length;
-    return `${first} Of 16 genes that do nothing, ${beyond} ended at least as far from 5.`;
+    return `${first} Of 100 genes that do nothing, some ${show(100 * gene().p, 0)} go so far, up or down (p = ${gene().p.toFixed(2)}).`;
   };
   const put = (step: number, value: number) => {
     const to = Math.round((step / course.step[LAST]!) * LAST);
@@ -93,7 +92,7 @@ export function chance(section: HTMLElement): Scene {
   link.addEventListener("click", (event) => {
     event.preventDefault();
     history.replaceState(null, "", link.href);
-    void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse; the address has it too
+    copyAddress(link);
   });
   new ResizeObserver(draw).observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);

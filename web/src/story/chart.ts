@@ -59,6 +59,16 @@ export class Chart {
     ink.setLineDash([]);
   }
 
+  /** What lies between two lines, from left to right, shaded. */
+  area(low: [number, number][], high: [number, number][], color: string): void {
+    const { ink } = this;
+    ink.beginPath();
+    for (const [x, y] of [...low, ...[...high].reverse()]) ink.lineTo(this.px(x), this.py(y));
+    [ink.fillStyle, ink.globalAlpha] = [color, 0.35];
+    ink.fill();
+    ink.globalAlpha = 1;
+  }
+
   dot(x: number, y: number, color: string, radius = 4): void {
     this.ink.beginPath();
     this.ink.arc(this.px(x), this.py(y), radius, 0, 2 * Math.PI);

@@ -19,6 +19,13 @@ export function addressOf({ scene, seed, step, digest, changes, notes }: Place):
   return `#${link}`;
 }
 
+/** Copies the page's address, and says so for a moment in the link that was clicked. */
+export function copyAddress(link: HTMLAnchorElement): void {
+  void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse; the address has it too
+  link.textContent = "link copied";
+  setTimeout(() => (link.textContent = "link"), 1500);
+}
+
 /** The place of an address; undefined if it names none. Paths of settings have dots, notes have none. */
 export function placeOf(address: string): Place | undefined {
   const link = new URLSearchParams(address.replace(/^#/, ""));

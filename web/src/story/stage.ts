@@ -7,7 +7,7 @@ import type { Actions, Moment } from "../live.worker";
 import { save } from "../csv";
 import { command, refusal } from "../settings";
 import type { Frame, Life, LiveWorld } from "../types";
-import { addressOf, type Place, SHORT } from "./link";
+import { addressOf, copyAddress, type Place, SHORT } from "./link";
 
 const PICTURE_MS = 12; // of work for a world that plays, between two pictures
 const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
@@ -214,9 +214,7 @@ export class Stage {
     event.preventDefault();
     const address = addressOf(this.place());
     history.replaceState(null, "", address);
-    void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse; the address has it too
-    this.same.textContent = "link copied";
-    setTimeout(() => (this.same.textContent = "link"), 1500);
+    copyAddress(this.same);
     const config = button("Save the config", "link");
     config.addEventListener("click", () => save(`${this.world.name}.toml`, this.world.toml));
     const same = element("code", { text: command(this.world, this.changes, this.seed, this.live.last) });
