@@ -188,3 +188,15 @@ def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
         with other.page.expect_download() as waiting:
             other.page.locator("#sandbox-picture").click()
         assert waiting.value.path().read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_link_of_a_world_that_plays_has_letters_too(article):
+    watched = article("sandbox")
+    sandbox = stage("sandbox")
+    watched.until(f"{sandbox}.playing && {sandbox}.live.last > 10")
+    watched.page.locator("#sandbox .permalink").click()
+    watched.until("location.hash.includes('&digest=')")
+    step, digest = watched.get(f"[{sandbox}.live.last, {sandbox}.live.digest()]")
+    assert f"&step={step}&" in watched.get("location.hash")
+    assert watched.get("location.hash").endswith(digest[:8])
+    assert watched.get("document.querySelector('#sandbox .how').textContent").startswith("The same world on a command")

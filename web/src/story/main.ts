@@ -28,8 +28,8 @@ async function begin(): Promise<void> {
     seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
   }
   requestAnimationFrame(picture);
-  await openAddress();
   window.addEventListener("hashchange", () => void openAddress().catch(complain));
+  await openAddress();
 }
 
 /** A scene that comes into sight has its world, and one that leaves it rests. */
@@ -44,6 +44,7 @@ function see({ target, isIntersecting }: IntersectionObserverEntry): void {
 }
 
 async function openAddress(): Promise<void> {
+  by("notice").hidden = true;
   const place = placeOf(location.hash);
   if (!place) return;
   const scene = scenes[place.scene];
@@ -62,8 +63,10 @@ function picture(): void {
 
 function complain(error: unknown): void {
   by("notice").hidden = false;
-  by("notice").textContent = error instanceof Error ? error.message : String(error);
+  by("notice").querySelector("span")!.textContent = error instanceof Error ? error.message : String(error);
 }
+
+by("notice").querySelector("button")!.addEventListener("click", () => (by("notice").hidden = true));
 
 by("theme").addEventListener("click", () => {
   const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");

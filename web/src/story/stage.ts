@@ -69,7 +69,10 @@ export class Stage {
     this.chosen = camera.chosen ?? -1;
     this.play.addEventListener("click", () => this.setPlaying(!this.playing));
     this.again.addEventListener("click", () => this.reset());
-    this.same.addEventListener("click", (event) => this.copy(event));
+    this.same.addEventListener("click", (event) => {
+      event.preventDefault();
+      void this.copy();
+    });
     this.bar.append(this.play, this.again, this.clock, this.same, this.mark);
     this.how.hidden = true;
     (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
@@ -210,15 +213,18 @@ export class Stage {
     this.onWords();
   }
 
-  private copy(event: Event): void {
-    event.preventDefault();
+  /** Copies the link. A world that plays rests first, since only then it has a digest. */
+  private async copy(): Promise<void> {
+    const { live } = this;
+    if (this.playing && !this.running) await this.runTo(live.last);
+    if (live !== this.live) return; // another began since
     const address = addressOf(this.place());
     history.replaceState(null, "", address);
     copyAddress(this.same);
     const config = button("Save the config", "link");
     config.addEventListener("click", () => save(`${this.world.name}.toml`, this.world.toml));
     const same = element("code", { text: command(this.world, this.changes, this.seed, this.live.last) });
-    const said = this.edited ? "You steered, so only the link has these bits. It began as " : "The same bits in Python: ";
+    const said = this.edited ? "You steered, so only the link has this world. It began as " : "The same world on a command line: ";
     this.how.replaceChildren(said, same, " ", config);
     this.how.hidden = false;
   }
