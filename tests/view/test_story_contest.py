@@ -1,5 +1,6 @@
 """What a reader does in the article's last scenes, by script: the contest, the guess that is drawn, and the sandbox."""
 
+import numpy as np
 import pytest
 from story_page import address_of, native, opened, run_to, set_knob, stage
 
@@ -187,7 +188,27 @@ def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
         assert other.get(f"{sandbox}.value('food.poison.gives.energy')") == -2
         with other.page.expect_download() as waiting:
             other.page.locator("#sandbox-picture").click()
-        assert waiting.value.path().read_bytes().startswith(b"\x89PNG")
+        picture = waiting.value.path().read_bytes()
+        assert picture.startswith(b"\x89PNG")
+        assert int.from_bytes(picture[16:20], "big") >= 1600, "it can be printed"
+        other.until("document.querySelector('#sandbox canvas.world').width < 1600")
+
+
+def test_the_chart_of_the_sandbox_begins_with_the_world_and_counts_food_and_every_species(article):
+    watched = article("sandbox")
+    sandbox = stage("sandbox")
+    watched.until(f"{sandbox}.course().length > 1")
+    assert watched.get(f"{sandbox}.course()[0]") == [0, 60, 50, 6]
+    watched.until(f"{sandbox}.live.last > 40")
+    steps = watched.get(f"{sandbox}.course().map(([step]) => step)")
+    assert len(steps) > 2
+    assert min(np.diff(steps)) >= 16
+    watched.page.locator("button[data-world=seasons]").click()
+    watched.until(f"{sandbox}.world.name === 'seasons' && {sandbox}.course()[0]?.length === 3")
+    caption = watched.get("document.querySelector('#sandbox figcaption').textContent")
+    assert "redator" not in caption, "this world has none"
+    colors = watched.get("getComputedStyle(document.querySelector('#sandbox-scale')).backgroundImage")
+    assert colors.index("rgb(61, 111, 216)") < colors.index("rgb(196, 120, 0)"), "blue is little, amber is much"
 
 
 def test_the_link_of_a_world_that_plays_has_letters_too(article):

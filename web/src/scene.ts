@@ -89,6 +89,7 @@ export class Scene {
   centerX = 0;
   centerY = 0;
   zoom = 1; // pixels of the canvas per unit
+  enlarged = 1; // times as many pixels as the screen needs
   private readonly gl: WebGL2RenderingContext;
   private readonly discs = new Batch(DISC_WORDS);
   private readonly lines = new Batch(LINE_WORDS);
@@ -194,7 +195,7 @@ export class Scene {
 
   /** Fits the canvas to its place on the page; true if its size changed. */
   resize(): boolean {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = this.enlarged * Math.min(window.devicePixelRatio || 1, 2);
     const [width, height] = [Math.round(this.canvas.clientWidth * ratio), Math.round(this.canvas.clientHeight * ratio)];
     if (width === this.canvas.width && height === this.canvas.height) return false;
     [this.canvas.width, this.canvas.height] = [width, height];

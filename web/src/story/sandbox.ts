@@ -1,8 +1,7 @@
 // Scene 7: other worlds to change; pictures, videos, configs and links of them.
-import type { Coloring } from "../color";
+import { type Coloring, ramp } from "../color";
 import { save } from "../csv";
-import { styleColor } from "../element";
-import { columnOf } from "../series";
+import { by, styleColor } from "../element";
 import { configFile } from "../settings";
 import { Chart } from "./chart";
 import { bindKnobs } from "./knob";
@@ -10,18 +9,21 @@ import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
 const VIDEO_MS = 8000; // of a video
+const PICTURE_WIDTH = 1600; // of a picture, at least [pixel]
+const APART = 16; // steps between two points of the chart
 const ABOUT: Record<string, string> = {
   predators: "Predators (ringed) eat prey. Both learn, and what the sight of the other feels like evolves.",
   poison: "Violet food costs energy. Poison can even feel good to a newborn.",
-  seasons: "Food grows twice as fast in summer and not at all in winter.",
+  seasons: "A year has 8,192 steps. Food grows twice as fast in summer, about step 2,048, and not at all in winter, about 6,144.",
   pitfalls: "Triangles hurt all that touch them.",
 };
 
 export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   const coloring: Coloring = { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! };
   const stage = new Stage(section, worlds.predators!, { scene: "sandbox", speed: 2, coloring });
-  const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive" });
+  const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive (gray: food)" });
   const reads: (() => void)[] = [];
+  let course: [step: number, food: number, ...alive: number[]][] = [];
   let name = "predators";
 
   const choose = (next: string) => {
@@ -31,14 +33,22 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
     for (const each of section.querySelectorAll<HTMLElement>(".knobs")) each.hidden = each.dataset.world !== name;
     section.querySelector("#sandbox-about")!.textContent = ABOUT[name]!;
   };
-  stage.onBegin = () => stage.notes.set("world", name);
+  stage.onBegin = () => {
+    course = [];
+    stage.notes.set("world", name);
+  };
+  stage.onMoment = ({ frame: { step, species, foodX } }) => {
+    const last = course[course.length - 1]?.[0];
+    if (last !== undefined && step < last + APART) return;
+    const alive = stage.world.layout.species.map((_, s) => species.reduce((sum, each) => sum + (each === s ? 1 : 0), 0));
+    course.push([step, foodX.length, ...alive]);
+  };
   stage.onWords = () => {
-    const { series, layout } = stage.live;
-    const counts = layout.species.map((species) => series.get(columnOf(layout, species, "alive")));
     chart.x.high = Math.max(1000, stage.live.last);
-    chart.y.high = Math.max(10, ...counts.flat());
+    chart.y.high = course.reduce((most, [, ...counts]) => Math.max(most, ...counts), 10);
     chart.begin();
-    counts.forEach((values, i) => chart.line(values.map((value, k) => [series.step[k]!, value]), styleColor(i === 0 ? "--blue" : "--orange")));
+    stage.world.layout.species.forEach((_, s) => chart.line(course.map((row) => [row[0], row[s + 2]!]), styleColor(s === 0 ? "--blue" : "--orange")));
+    chart.line(course.map(([step, food]) => [step, food]), styleColor("--before"), 1);
   };
   for (const box of section.querySelectorAll<HTMLElement>(".knobs")) {
     choose(box.dataset.world!);
@@ -56,18 +66,26 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
     });
   }
   section.addEventListener("reset", read);
-  section.querySelector("#sandbox-picture")!.addEventListener("click", () => stage.arena.scene.canvas.toBlob((blob) => blob && saveBlob(`${name}.png`, blob)));
+  by("sandbox-scale").style.background = `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((share) => ramp(share, 1)).join()})`;
+  section.querySelector("#sandbox-picture")!.addEventListener("click", () => {
+    const { scene } = stage.arena;
+    const draw = () => stage.arena.draw(stage.live, stage.frame, coloring, stage.chosen);
+    scene.enlarged = Math.max(1, PICTURE_WIDTH / scene.canvas.width);
+    draw();
+    scene.canvas.toBlob((blob) => blob && saveBlob(`${name}.png`, blob)); // of this moment
+    scene.enlarged = 1;
+    draw();
+  });
   section.querySelector("#sandbox-config")!.addEventListener("click", () => save(`${name}.toml`, configFile(stage.world, stage.changes)));
   bindVideo(section.querySelector("#sandbox-video")!, stage, () => name);
-  Object.assign(stage, { choose });
+  Object.assign(stage, { choose, course: () => course });
   return {
     section,
     stage,
     autoplay: true,
     open: async (place) => {
       choose(place.notes.get("world") ?? "predators");
-      await openStage(stage, place);
-      read();
+      await openStage(stage, place, read);
     },
   };
 }
