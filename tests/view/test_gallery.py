@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 from urllib.parse import parse_qsl
 
+import numpy as np
 import pytest
 from project_files import ROOT
 from view_page import serving, story_server
@@ -34,6 +35,7 @@ class Place:
     scene: str
     file: str
     step: int
+    title: str
     sentence: str
     changes: dict[str, str] = field(default_factory=dict)
     notes: dict[str, str] = field(default_factory=dict)
@@ -51,26 +53,44 @@ class Place:
 
 PLACES = {
     "learned": Place(
-        "learning", "learning", 81920, "It has learned: the gray path is how it began, the pink one how it goes on."
+        "learning",
+        "learning",
+        81920,
+        "It has learned",
+        "The gray path is how it began, the pink one how it goes on.",
     ),
     "dislikes-moving": Place(
         "learning",
         "learning",
         20480,
-        "Moving hurts it, and a meal is worth nothing to it: it hardly stirs.",
+        "Moving hurts",
+        "Moving hurts this one, and a meal is worth nothing to it: it moves far less than the one that likes meals.",
         {"food.normal.gene.initial_mean": "0", "genome.action.initial_mean": "-10"},
     ),
     "family": Place(
-        "family", "family", 700, "One family, by its color, among the others after 700 steps.", notes={"agent": "0"}
+        "family",
+        "family",
+        2000,
+        "One family",
+        "A founder, with a pink ring, and its four descendants among the others after 2,000 steps.",
+        notes={"agent": "13"},
     ),
     "predators": Place(
         "sandbox",
         "predators",
         300,
-        "Six predators, ringed, have begun to eat; pale is full of energy.",
+        "Predators and prey",
+        "Six predators, with orange rings, have begun to eat. Amber is full of energy, blue has little.",
         notes={"world": "predators"},
     ),
-    "pitfalls": Place("sandbox", "pitfalls", 300, "Triangles hurt who touches them.", notes={"world": "pitfalls"}),
+    "pitfalls": Place(
+        "sandbox",
+        "pitfalls",
+        300,
+        "Pitfalls",
+        "Triangles hurt whoever touches them.",
+        notes={"world": "pitfalls"},
+    ),
 }
 
 
@@ -85,7 +105,8 @@ def addresses() -> dict[str, str]:
 )
 def test_the_gallery_has_the_bits_of_the_engine():
     def section(name: str, place: Place) -> str:
-        return f"\n## {place.sentence}\n\n![{place.sentence}]({name}.png)\n\n`{place.address(place.digest())}`\n"
+        shown = f"![{place.title}]({name}.png)\n\n{place.sentence}"
+        return f"\n## {place.title}\n\n{shown}\n\n`{place.address(place.digest())}`\n"
 
     made = HEAD + "".join(section(*each) for each in PLACES.items())
     if PICTURES:
@@ -127,3 +148,26 @@ def test_the_exercises_have_places_that_exist_and_a_data_sheet():
         rows = list(csv.DictReader(file))
     assert [row["exercise"] for row in rows] == ["1", "2", "3"]
     assert {"pair", "seed", "step", "reward", "energy", "blue", "orange", "vote_before"} <= set(rows[0])
+    assert {"meals", "age", "parent_meal_feels", "parent_meals", "parent_age"} <= set(rows[0])
+
+
+def test_the_second_exercise_shows_what_a_child_inherits():
+    """Of the children that it asks for: feelings are those of the parents, and what was learned is not."""
+    world = Simulation(load_config(SCENES / "family.toml"), seeds=[1])
+    lives = {}  # as last seen, also of the dead
+    for step in range(10, 2001, 10):
+        world.run(10)
+        agents = world.worlds[0].agents()
+        rate = 1000 * agents["eaten"][:, 0] / np.maximum(step - agents["birth_step"], 1)
+        columns = (agents["parent_id"], step - agents["birth_step"], agents["genome"][:, 0], rate)
+        seen = dict(
+            zip(agents["agent_id"].tolist(), zip(*(each.tolist() for each in columns), strict=True), strict=True)
+        )
+        lives |= seen
+    old = [(own, lives[own[0]]) for own in seen.values() if own[0] >= 0 and own[1] >= 500]
+    assert len(old) > 30, "a class has enough of them"
+    feeling, meals = (np.corrcoef([[child[k], parent[k]] for child, parent in old], rowvar=False)[0, 1] for k in (2, 3))
+    text = (TEACHING / "README.md").read_text()
+    assert f"over the {len(old)} children" in text
+    assert f"correlate by {feeling:.2f}" in text
+    assert re.search(f"meals per 1,000 steps by .{abs(meals):.2f}\\.", text)
