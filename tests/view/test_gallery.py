@@ -88,7 +88,7 @@ PLACES = {
         "pitfalls",
         300,
         "Pitfalls",
-        "Triangles hurt whoever touches them.",
+        "Triangles hurt all that touch them.",
         notes={"world": "pitfalls"},
     ),
 }

@@ -44,7 +44,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   let course: [number, number, number][] = []; // step, blue, orange
   let results: End[] = []; // how many live at the end of each world
   let busy = false;
-  let turn = 0; // how often worlds were begun or forgotten: whoever waited for an earlier turn stops
+  let turn = 0; // how often worlds were begun or forgotten: what waited for a world of an earlier turn stops
 
   stage.onBegin = () => (course = []);
   stage.onMoment = ({ frame }) => {
