@@ -21,6 +21,7 @@ LONGEST = (
     "test_ppo.py",
     "test_sweep_run.py",
     "test_module.py",
+    "test_story_reader.py",
     "test_picture.py",
     "test_docs.py",
     "test_cuda_run.py",
