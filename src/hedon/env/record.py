@@ -72,7 +72,11 @@ class Record:
         self._due = time.perf_counter() + CHECKPOINT_SECONDS
 
     def require_open(self) -> None:
-        """ArgumentError: the records are closed."""
+        """Refuses a step after the end of the records.
+
+        Raises:
+            ArgumentError: They are closed.
+        """
         if self._manifest.ended is not None:
             raise ArgumentError(f"step: the records in {self.folder} are closed: go on with a clone, which has none")
 

@@ -14,7 +14,7 @@ WIDTH, HEIGHT, EDGE = 460, 110, 16
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#6b7884")
 """Colors of the worlds, in turn: Okabe & Ito (2008)."""
 OPEN = 2**31 - 1
-"""The most steps that a run can have: so many are asked of worlds that a program drives, for as long as it does."""
+"""The most steps that a run can have: asked of worlds that a program drives, since nobody knows for how long."""
 DASHES = ("", "6 3", "2 3", "6 3 2 3")
 """Colors of the species of a world, in turn."""
 
