@@ -25,6 +25,7 @@ from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
 from hedon.config.settings import PROVENANCE
+from hedon.config.species import ONLY
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import build
 from hedon.error import ArgumentError
@@ -53,6 +54,8 @@ SEQUEL_PRESETS = (
 OUR_PRESETS = ("seasons", "appetite")
 """Conditions that are ours."""
 PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
+MISTYPED = 0.75
+"""How alike two names of species are at least, if one is a typing error for the other: a letter of four."""
 FIDELITIES = ("corrected", "released", "text")
 """Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
 
@@ -214,6 +217,21 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
     return [*_preset_layers(preset), _settings_of(_FOLDER / "overlays" / f"{name}.toml"), *_own_fidelity(preset, name)]
 
 
+def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
+    """Species that overrides name, and that are hardly new ones: of almost the same name as one that is there.
+
+    A new species takes the place of the only one that has no name, so a typing error would leave no other.
+    """
+    known = below.get("species")
+    there = list(known) if isinstance(known, dict) and known else [ONLY]
+    named = [each["species"] for each in overrides if isinstance(each.get("species"), dict)]
+    new = [name for name in dict.fromkeys(name for each in named for name in each) if name not in there]
+    message = "there is no such species; a new one of so close a name goes into a file"
+    return [
+        Problem(f"species.{name}", message, nearest=near) for name in new if (near := nearest(name, there, MISTYPED))
+    ]
+
+
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
     problems = [problem for layer in above for problem in renamed(layer)]
@@ -222,7 +240,8 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     complete = above[0].get("complete") is True
     above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
     merged = stack([*below, *above])
-    problems = [*_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
+    mistyped = _mistyped_species(stack([*below, above[0]]), above[1:])
+    problems = [*mistyped, *_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
     problems += settle_stores(merged)
     settle_genes(merged)
     if problems:

@@ -154,14 +154,15 @@ def single(value: float) -> float:
     return rounded if abs(rounded) >= SMALLEST else 0.0
 
 
-def nearest(name: str, names: Iterable[str]) -> str | None:
+def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
     """The valid name closest to the given one, or None if none is close.
 
     Args:
         name: as a user gave it.
         names: the valid ones.
+        alike: how alike they must be, from 0 to 1, as `difflib` measures it.
     """
     if len(name) > LINE:  # no valid name is so long, and a comparison would take long
         return None
-    matches = get_close_matches(name, list(names), n=1, cutoff=0.6)
+    matches = get_close_matches(name, list(names), n=1, cutoff=alike)
     return matches[0] if matches else None

@@ -45,3 +45,16 @@ def test_errors_name_the_change_and_no_option_of_the_command_line(overrides: lis
     with pytest.raises(ConfigError, match=re.escape(overrides[0][:8])) as caught:
         load_config("baseline", overrides=overrides)
     assert "--set" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("preset", "override", "near"),
+    [
+        ("baseline", "species.agnet.birth.kappa=0", "agent"),
+        ("predator", "species.pray.population.capacity=4", "prey"),
+    ],
+)
+def test_a_species_with_a_typing_error_takes_nobodys_place(preset: str, override: str, near: str) -> None:
+    with pytest.raises(ConfigError, match=rf"there is no such species; .*; did you mean {near}\?"):
+        load_config(preset, overrides=[override])
+    assert list(load_config("baseline", overrides=["species.guest.birth.kappa=0"]).species) == ["guest"]
