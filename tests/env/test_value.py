@@ -310,3 +310,11 @@ def test_the_bytes_of_driven_worlds_hold_worlds():
     simulation = Simulation(worlds.config, worlds.simulation.seeds)
     simulation.restore(worlds.save())
     assert digests(simulation) == digests(worlds)
+
+
+def test_an_array_that_is_not_there_is_named():
+    world = make_simulation(*QUICK, seeds=(1,)).worlds[0]
+    with pytest.raises(
+        ArgumentError, match=r"view: the state has no array 'life\.energgy'; did you mean life\.energy\?"
+    ):
+        world.view("life.energgy")

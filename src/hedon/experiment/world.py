@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import choose_species, layouts, store_columns
+from hedon.config.problem import nearest
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.state import State
+from hedon.text import brief
 
 
 class World:
@@ -105,9 +107,14 @@ class World:
                 (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists them all.
 
         Raises:
-            KeyError: There is no such array.
+            ArgumentError: There is no such array.
         """
-        return self._engine.view(self.index, path)
+        try:
+            return self._engine.view(self.index, path)
+        except KeyError:
+            near = nearest(str(path), self._engine.view_names())
+            hint = f"; did you mean {near}?" if near else ""
+            raise ArgumentError(f"view: the state has no array {brief(repr(path))}{hint}") from None
 
     def agents(self) -> dict[str, NDArray[Any]]:
         """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes).
