@@ -76,11 +76,11 @@ def common_to(worlds: Iterable[WorldRecord]) -> Common:
     hundredth. In an extinct world no life is censored, so its curve can be read at any age.
     """
     worlds = list(worlds)
-    curves = [survival_curve(*durations(w.agents, w.last_step)) for w in worlds if w.extinct_step is None]
+    curves = [survival_curve(*durations(w.born, w.last_step)) for w in worlds if w.extinct_step is None]
     trusted = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
     until = max((age for age in trusted if all(_readable(c, a, age) for a, c in trusted.items())), default=0.0)
     if not trusted:  # every world died out, or nobody did
-        gone = [survival_curve(*durations(w.agents, w.last_step)).trusted_age() for w in worlds]
+        gone = [survival_curve(*durations(w.born, w.last_step)).trusted_age() for w in worlds]
         until = max(gone, default=0.0)
     return Common(max((world.last_step for world in worlds), default=0), until)
 
@@ -117,7 +117,7 @@ def _energy(world: WorldRecord, _common: Common) -> float | None:
 
 
 def _restricted(world: WorldRecord, common: Common) -> float | None:
-    curve = survival_curve(*durations(world.agents, world.last_step))
+    curve = survival_curve(*durations(world.born, world.last_step))
     return restricted_mean(curve, common.until).mean if common.until and len(curve.age) else None
 
 
@@ -145,7 +145,7 @@ def _size(name: str) -> Callable[[WorldRecord, Common], float | None]:
 
 RESPONSES = (
     Response("alive", "agents alive, last tenth", _alive),
-    Response("lifetime", "lifetime of the dead [step]", lambda w, _: mean_lifetime(w.agents), ratio=True),
+    Response("lifetime", "lifetime of the dead [step]", lambda w, _: mean_lifetime(w.born), ratio=True),
     Response("restricted_lifetime", "lifetime, the living counted [step]", _restricted, ratio=True),
     Response("food_agent", "food, mean over agents [1/step]", _food_agent, ratio=True),
     Response("food_step", "food per step lived [1/step]", _food_step, ratio=True),

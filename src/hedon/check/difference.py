@@ -1,7 +1,7 @@
 """Why two runs differ: their settings, what made them, and where their worlds part."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -30,6 +30,7 @@ class Parting:
             are equal.
         agent: id of that agent; None where a window differs.
         values: what differs there, by column: in the first and in the second run.
+        since: from which step on both have records: 0, or where a branch begins [step].
         until: up to which step both have records [step].
     """
 
@@ -38,6 +39,7 @@ class Parting:
     step: int | None
     agent: int | None
     values: dict[str, tuple[Any, Any]]
+    since: int
     until: int
 
 
@@ -102,20 +104,28 @@ def _by_seed(worlds: Sequence[WorldRecord]) -> dict[int, dict[str, WorldRecord]]
 def _parting(seed: int, first: dict[str, WorldRecord], second: dict[str, WorldRecord]) -> Parting:
     """Compares windows first, then the lives of agents; of several species the one that parts first counts."""
     shared = [name for name in first if name in second]
-    until = min([each.recorded_step() for pair in (first, second) for each in pair.values()], default=0)
+    every = [each for pair in (first, second) for each in pair.values()]
+    until = min([each.recorded_step() for each in every], default=0)
+    since = max([each.first_step for each in every], default=0)
     found: list[Parting] = []
     for name in shared:
-        pair = first[name].until(until), second[name].until(until)
+        pair = _since(first[name].until(until), since), _since(second[name].until(until), since)
         cut = max(first[name].last_step, second[name].last_step) > until
         species = name if len(first) > 1 else ""
         windows = _first_row(pair[0].population, pair[1].population, "step", "step", how="inner")
         if windows is not None:
-            found.append(Parting(seed, species, windows[0], None, windows[2], until))
+            found.append(Parting(seed, species, windows[0], None, windows[2], since, until))
             continue
         lives = _first_row(*_lives(*pair, cut=cut), "agent_id", "birth_step", how="full")
         if lives is not None:
-            found.append(Parting(seed, species, *lives, until))
-    return min(found, key=lambda each: each.step or 0, default=Parting(seed, "", None, None, {}, until))
+            found.append(Parting(seed, species, *lives, since, until))
+    return min(found, key=lambda each: each.step or 0, default=Parting(seed, "", None, None, {}, since, until))
+
+
+def _since(world: WorldRecord, step: int) -> WorldRecord:
+    """The world without the agents that had died when the records of a branch begin [step]."""
+    died = pl.col("death_step")
+    return replace(world, agents=world.agents.filter(died.is_null() | (died > step))) if step else world
 
 
 def _lives(one: WorldRecord, two: WorldRecord, *, cut: bool) -> tuple[pl.DataFrame, pl.DataFrame]:

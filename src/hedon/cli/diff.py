@@ -44,7 +44,9 @@ def diff(
 def _parting(each: "Parting", *, ends_differ: bool) -> str:
     if each.step is None:
         end = ", but their states at the end differ" if ends_differ else ""
-        return f"equal up to step {each.until:,}{end}"
+        if each.since and each.until <= each.since:
+            return f"no step in common: one has records up to {each.until:,}, the other from {each.since:,} on{end}"
+        return f"equal {f'from step {each.since:,} ' if each.since else ''}up to step {each.until:,}{end}"
     whose = f" of {each.species}" if each.species else ""
     where = f"in the window that ends at step {each.step:,}"
     if each.agent is not None:

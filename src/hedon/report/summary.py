@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
-from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
+from hedon.analysis.agent.lifetime import born_since, dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import LAST_AGENTS, world_weights
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
@@ -126,8 +126,8 @@ def _means(run: Run, part: _Species, fares: Sequence[Fare]) -> dict[str, Any]:
         "extinct_worlds": len(fares) - len(surviving),
         **_over_worlds(run, part, fares),
         "pooled": {
-            "agents": dead_agents(part.agents).height,
-            "mean_lifetime": mean_lifetime(part.agents),
+            "agents": dead_agents(_born(run, part.agents)).height,
+            "mean_lifetime": mean_lifetime(_born(run, part.agents)),
             "food_per_step": food_per_step(part.agents, part.kind.foods),
         },
         "surviving": _over_worlds(run, part, surviving),
@@ -177,6 +177,11 @@ def _fares(run: Run, part: _Species) -> list[Fare]:
     return [_fare(run, part, index, weights.get(index, {})) for index in range(len(run.manifest.seeds))]
 
 
+def _born(run: Run, agents: pl.DataFrame) -> pl.DataFrame:
+    """Those of a branch that were born in it; see `born_since`."""
+    return born_since(agents, run.manifest.parent.step if run.manifest.parent else 0)
+
+
 def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> Fare:
     # In one piece: sums must not depend on the parts in which rows were written.
     agents, population = (table.filter(pl.col("world") == index).rechunk() for table in (part.agents, part.population))
@@ -190,9 +195,9 @@ def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> F
         "extinct": extinct is not None,
         "extinct_step": extinct,
         **{name: population[name].sum() for name in (*_COUNTS, *_CAUSES) if name in population.columns},
-        "mean_lifetime": mean_lifetime(agents),
-        "mean_lifetime_born": mean_lifetime(agents, born_in_run=True),
-        "mean_lifetime_last": mean_lifetime(agents, last=LAST_AGENTS),
+        "mean_lifetime": mean_lifetime(_born(run, agents)),
+        "mean_lifetime_born": mean_lifetime(_born(run, agents), born_in_run=True),
+        "mean_lifetime_last": mean_lifetime(_born(run, agents), last=LAST_AGENTS),
         "food_per_step": food_per_step(agents, foods),
         "food_per_agent_step": food_per_agent_step(population, foods),
         **(hunts if run.columns.prey else {}),

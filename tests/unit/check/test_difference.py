@@ -9,6 +9,7 @@ import pytest
 from resumed_run import WINDOW, small_run
 from typer.testing import CliRunner
 
+from hedon import branch, open_run
 from hedon.check.difference import compare_runs
 from hedon.cli.main import app
 from hedon.record.manifest import load_manifest, save_manifest
@@ -36,6 +37,20 @@ def test_equal_runs_are_equal_also_where_one_is_longer(runs):
     code, text = said(runs / "a", runs / "longer")
     assert code == 0, text
     assert f"seed 2: equal up to step {4 * WINDOW}" in text
+
+
+@pytest.mark.parametrize("steps", [2 * WINDOW, 2 * WINDOW + 20])
+def test_an_unchanged_branch_is_equal_from_its_beginning_on(runs, tmp_path, steps):
+    small_run(tmp_path / "part", steps)
+    branch(tmp_path / "part", tmp_path / "branch", steps=4 * WINDOW, threads=1)
+    assert open_run(runs / "a").agents().filter(pl.col("death_step") <= steps).height, "some die before it begins"
+    for pair in ((runs / "a", tmp_path / "branch"), (tmp_path / "branch", runs / "a")):
+        code, text = said(*pair)
+        assert code == 0, text
+        assert f"seed 1: equal from step {steps} up to step {4 * WINDOW}" in text
+    code, text = said(tmp_path / "part", tmp_path / "branch")
+    assert code == 0, text
+    assert f"seed 1: no step in common: one has records up to {steps}, the other from {steps} on" in text
 
 
 def change(folder: Path, table: str, rows: pl.Expr, column: str, value: float) -> None:

@@ -15,7 +15,7 @@ _WINDOWS = 10  # of a run, at most
 
 def window_count(worlds: Sequence[WorldRecord]) -> int:
     """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records."""
-    smallest = min((world.agents.height for world in worlds), default=0)
+    smallest = min((world.born.height for world in worlds), default=0)
     return max(1, min(_WINDOWS, smallest // _PER_WINDOW))
 
 
@@ -35,7 +35,7 @@ def cohort_rows(
         windows = window_count(worlds)
         for world in worlds:
             bounds = window_bounds(world.last_step, windows)
-            cohorts = with_cohorts(world.agents, world.last_step, windows)
+            cohorts = with_cohorts(world.born, world.last_step, windows)
             rng = generator(world)
             for window in range(windows):
                 span = {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}

@@ -23,7 +23,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
     """Lifetimes, with those who still live counted as censored."""
     rows, curves = [], []
     for worlds in conditions.values():
-        lives = [durations(world.agents, world.last_step) for world in worlds]
+        lives = [durations(world.born, world.last_step) for world in worlds]
         fitted = [survival_curve(*life) for life in lives]
         until = _common_age(worlds, fitted)
         for world, life, curve in zip(worlds, lives, fitted, strict=True):
@@ -39,7 +39,8 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
     }
     note = (
         "The restricted mean is that of lifetimes cut off at an age that 20 agents of each living world reached; the "
-        "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter."
+        "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter. "
+        "Of a branch only those count that were born in it."
     )
     return [
         make_table(

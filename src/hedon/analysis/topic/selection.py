@@ -18,7 +18,7 @@ def genome(conditions: Conditions) -> list[ResultTable]:
     for worlds in conditions.values():
         windows = window_count(worlds)
         for world in worlds:
-            cohorts = with_cohorts(world.agents, world.last_step, windows)
+            cohorts = with_cohorts(world.born, world.last_step, windows)
             found = genome_distribution(cohorts, world.weight_names).with_columns(pl.col("weight").cast(pl.String))
             named = found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all())
             parts.append(named.with_columns(to_step=_ends(world.last_step, windows, named["window"])))
@@ -105,10 +105,13 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
         for world in worlds:
             tree = genealogy(world.agents)
             cohorts = with_cohorts(world.agents, world.last_step, windows)["window"].to_numpy()
+            told = world.agents["agent_id"].is_in(world.born["agent_id"].implode()).to_numpy()
             weights = {name: world.agents[name].to_numpy().astype(np.float64) for name in world.weight_names}
             for window in range(windows):
                 rows += [
-                    labels(world) | {"window": window, "weight": name} | price(z, tree.parent, cohorts == window)
+                    labels(world)
+                    | {"window": window, "weight": name}
+                    | price(z, tree.parent, told & (cohorts == window))
                     for name, z in weights.items()
                 ]
     worlds_table = make_table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from hedon.analysis.agent.lifetime import born_since
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config import Config, flatten, load_config
@@ -41,6 +42,7 @@ class WorldRecord:
         agents: its rows of the table `agents`, by agent_id.
         population: its rows of the table `population`, by step.
         last_step: up to which the records reach [step].
+        first_step: at which they begin: 0, or where the run branched off another [step].
         extinct_step: at which nobody was left [step]; None while somebody lives.
         apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
         prey: the species that it eats, its own among them if it does.
@@ -61,6 +63,12 @@ class WorldRecord:
     apart_step: int | None = None
     prey: tuple[str, ...] = ()
     species: str = ONLY
+    first_step: int = 0
+
+    @property
+    def born(self) -> pl.DataFrame:
+        """Its agents whose lives are told from birth on: all, but for those that lived when a branch began."""
+        return born_since(self.agents, self.first_step)
 
     @property
     def own(self) -> SpeciesConfig:
@@ -229,6 +237,7 @@ def _records(
                 gone_step(run, index, mine, rows),
                 prey=kind.prey,
                 species=species,
+                first_step=run.manifest.parent.step if run.manifest.parent else 0,
             )
         )
     return worlds

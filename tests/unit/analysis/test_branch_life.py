@@ -1,0 +1,56 @@
+"""Lives of a branch: those who lived when it began are survivors, and must not make lives look longer."""
+
+from pathlib import Path
+
+import polars as pl
+import pytest
+from worlds import QUICK
+
+from hedon import RunPlan, branch, load_config, open_run, run
+from hedon.analysis import read_worlds
+from hedon.analysis.topic.life import lifetime, reproductive_success
+from hedon.analysis.topic.selection import price_topic
+from hedon.report.summary import summarize
+
+STEPS, MIDDLE = 1024, 512
+LIVELY = (
+    *QUICK,
+    "birth.kappa=0.02",
+    "hazard.alpha_age=0.005",
+    "population.capacity=120",
+    "population.initial_count=60",
+)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A run, and the same world from its middle on as a branch in which nothing is changed."""
+    folder = tmp_path_factory.mktemp("branch")
+    config = load_config("baseline", overrides=LIVELY)
+    run(RunPlan(config, (1,), MIDDLE, folder / "half", 1))
+    branch(folder / "half", folder / "branch", steps=STEPS, threads=1)
+    run(RunPlan(config, (1,), STEPS, folder / "whole", 1))
+    return folder / "whole", folder / "branch"
+
+
+def test_lives_of_a_branch_are_those_of_the_run_that_were_born_after_it_began(runs):
+    (whole,), (later,) = (read_worlds([open_run(folder)]) for folder in runs)
+    assert (whole.first_step, later.first_step) == (0, MIDDLE)
+    assert whole.born.equals(whole.agents)
+    expected = whole.agents.filter(pl.col("birth_step") > MIDDLE)
+    assert later.born["agent_id"].to_list() == expected["agent_id"].to_list()
+    assert 20 < later.born.height < later.agents.height
+    dead = expected.filter(pl.col("death_step").is_not_null())
+    mean = float((dead["death_step"] - dead["birth_step"]).to_numpy().mean())
+    row = lifetime({"a": [later]})[1].rows.row(0, named=True)
+    assert (row["agents"], row["died"]) == (expected.height, dead.height)
+    assert row["mean_of_dead"] == pytest.approx(mean)
+    (world,) = summarize(open_run(runs[1]))["worlds"]
+    assert world["mean_lifetime"] == pytest.approx(mean)
+
+
+def test_cohorts_of_a_branch_have_nobody_who_was_born_before_it(runs):
+    (later,) = read_worlds([open_run(runs[1])])
+    rows = reproductive_success({later.condition: [later]})[1].rows
+    assert rows["agents"].sum() == later.born.height
+    assert all(table.rows.height for table in price_topic({later.condition: [later]}))
