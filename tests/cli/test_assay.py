@@ -221,6 +221,11 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
         (("knockout", "whole/run@99999999", "action"), "has only 3,072 steps"),
         (("stability", "baseline", "--at", "food=50"), "must be one number from -10 to 10"),
         (("stability", "baseline", "--at", "neutral_1=1"), "a neutral marker is the control"),
+        (
+            ("stability", "predator", "--at", "action=1"),
+            "needs a world of one species, and predator has prey",
+        ),
+        (("stability", "baseline", "--at", "food=1", "--set", "birth.mating=pairs"), "needs children of one parent"),
     ],
 )
 def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...], message: str) -> None:

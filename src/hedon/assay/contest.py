@@ -13,10 +13,10 @@ import numpy as np
 import polars as pl
 from scipy.integrate import trapezoid
 
-from hedon.analysis.descent.genealogy import Genealogy, depth, founder, genealogy, living_at
+from hedon.analysis.descent.genealogy import depth, founder, genealogy, living_at, shares_of_descent
 from hedon.analysis.world.record import WorldRecord
 from hedon.assay.landscape import AssayError
-from hedon.assay.resample import PERMUTATIONS, Estimate, Floats, Ints, bounded, chance, world_draws, world_interval
+from hedon.assay.resample import PERMUTATIONS, Estimate, Floats, bounded, chance, world_draws, world_interval
 from hedon.assay.sample import Sample
 from hedon.record.founder import Founders
 
@@ -126,13 +126,15 @@ def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> 
         counts.append((mine, len(living) - mine))
         generations.append(generation[living].mean())
         moments.append(step)
+    last = np.zeros(tree.size)
+    last[living] = 1.0
     return Lines(
         seed=seed,
         step=np.array(moments),
         count=np.array(counts, np.float64),
         generation=np.array(generations),
         first=member[founders],
-        descendants=_contributions(tree, agents, living)[founders],
+        descendants=shares_of_descent(tree, agents, last)[founders],
         ended=len(moments) < TIMES,
     )
 
@@ -249,28 +251,6 @@ def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], step
         before += species.population.initial_count
     first = [name == groups[0] for name in founders.groups(world.seed, world.own.population.initial_count)]
     return world_lines(world.agents, world.seed, by_descent(world.agents, first, before), steps)
-
-
-def _contributions(tree: Genealogy, agents: pl.DataFrame, living: Ints) -> Floats:
-    """How many of the living descend from each agent, itself included; with two parents each has half of a child."""
-    share = [0.0] * tree.size
-    for i in living.tolist():
-        share[i] = 1.0
-    pairs = list(zip(tree.parent.tolist(), _mates(agents).tolist(), strict=True))
-    for i in range(tree.size - 1, -1, -1):  # children come after their parents
-        known = [each for each in pairs[i] if each >= 0]
-        for each in known:
-            share[each] += share[i] / len(known)
-    return np.array(share)
-
-
-def _mates(agents: pl.DataFrame) -> Ints:
-    """Position of the second parent of each agent, −1 where there is none, (n,)."""
-    if "mate_id" not in agents.columns:
-        return np.full(agents.height, -1, np.int64)
-    ids, wanted = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()
-    at = np.minimum(np.searchsorted(ids, wanted), len(ids) - 1)
-    return np.where((wanted >= 0) & (ids[at] == wanted), at, -1).astype(np.int64)
 
 
 def _exchange(lines: Sequence[Lines], rng: np.random.Generator) -> float:

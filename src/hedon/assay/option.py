@@ -210,8 +210,16 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
         point: means of the founders' genes, by column; other genes keep theirs.
 
     Raises:
-        AssayError: The point has a neutral marker.
+        AssayError: The point has a neutral marker, or drift cannot be told: with several species, whose genes `--at`
+            does not name, or with two parents, since it is computed along pedigrees of one.
     """
+    if len(config.species) > 1:
+        there = ", ".join(config.species)
+        raise AssayError(f"stability: needs a world of one species, and {config.name} has {there}")
+    if next(iter(config.species.values())).birth.mating == "pairs":
+        raise AssayError(
+            'stability: needs children of one parent, since drift is computed along their pedigree: birth.mating="none"'
+        )
     changed = config.with_("genome.neutral_count", NEUTRAL).with_("world.founders", "")
     for column, value in point.items():
         kind = column.removeprefix("w_")

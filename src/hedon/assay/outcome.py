@@ -6,10 +6,10 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.agent.lifetime import durations
-from hedon.analysis.descent.genealogy import founder, genealogy
+from hedon.analysis.descent.genealogy import genealogy, shares_of_descent
 
 MEASURES = {
-    "descendants": "living descendants at the end, the founder included",
+    "descendants": "living descendants at the end, the founder included; with two parents, half of each child",
     "offspring": "children of the founder",
     "food": "energy eaten per step lived, by the founder and its descendants",
     "lifespan": "steps that the founder lived, or has lived by the end",
@@ -26,17 +26,16 @@ def founder_outcomes(agents: pl.DataFrame, names: Sequence[str], last_step: int)
 
     Returns:
         agent_id, the genes, and a column for each of `MEASURES`. Without mutation the descendants of a founder have its
-        genes.
+        genes, where children have one parent.
     """
     rows = agents.sort("agent_id")
     tree = genealogy(rows)
-    line = founder(tree)
     lived, _ = durations(rows, last_step)
     gained = rows["energy_gained"].to_numpy().astype(np.float64)
     first = np.flatnonzero(tree.parent < 0)
     of_line = {
-        "descendants": np.bincount(line, tree.alive, tree.size),
-        "food": np.bincount(line, gained, tree.size) / np.maximum(np.bincount(line, lived, tree.size), 1.0),
+        "descendants": shares_of_descent(tree, rows, tree.alive.astype(np.float64)),
+        "food": shares_of_descent(tree, rows, gained) / np.maximum(shares_of_descent(tree, rows, lived), 1.0),
         "offspring": rows["children"].to_numpy().astype(np.float64),
         "lifespan": lived,
     }

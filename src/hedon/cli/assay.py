@@ -45,9 +45,10 @@ def landscape(
 ) -> None:
     """Fitness as a surface over two genes.
 
-    Founders are spread over all genes, and there is no mutation: descendants have the genes of their founder. Their
-    numbers, children, food and lifespans, relative to the mean of their world, give a surface over two genes, with
-    its optimum, its slope at 0 and its curvature. Sixteen neutral genes show what chance alone gives.
+    Founders are spread over all genes, and there is no mutation: descendants have the genes of their founder, with
+    two parents half of them. Their numbers, children, food and lifespans, relative to the mean of their world, give a
+    surface over two genes, with its optimum, its slope at 0 and its curvature. Sixteen neutral genes show what chance
+    alone gives.
 
     Ctrl-C ends it, and the same command goes on. A finished assay is only read.
 

@@ -306,7 +306,7 @@ def _beyond(config: Config, species: str) -> Iterator[str]:
         )
     for name, store in own.store.items():
         weight = store.hazard_weight if own.hazard.form == "age_energy" else 0.0
-        empty = weight * float(energy_hazard(own.hazard, 0.0))
+        empty = weight * float(energy_hazard(own.hazard, 0.0)) * mean_factor(own.hazard.schedule, "scale")
         if empty:
             yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
         if store.at_zero == "death":

@@ -1,6 +1,7 @@
 """The landscape assay finds a fitness that is known, and nothing where there is none."""
 
 import numpy as np
+import polars as pl
 import pytest
 from assay_world import birth_death_world
 from scipy import stats
@@ -37,6 +38,23 @@ def test_outcomes_count_lines_and_lives() -> None:
     np.testing.assert_array_equal(found["w_normal"], agents["w_normal"][:30])
     ends = agents["death_step"].fill_null(2000) - agents["birth_step"]
     assert found["lifespan"].to_list() == ends[:30].to_list()
+
+
+def test_with_two_parents_each_has_half_of_a_child() -> None:
+    lives = {
+        "agent_id": [0, 1, 2, 3],
+        "parent_id": [None, None, 0, 2],
+        "mate_id": [None, None, 1, 0],
+        "birth_step": [0, 0, 100, 200],
+        "death_step": [150, 150, None, None],
+        "children": [2, 1, 1, 0],
+        "energy_gained": [15.0, 15.0, 90.0, 40.0],
+        "w_normal": [1.0, 2.0, 1.5, 1.25],
+    }
+    found = founder_outcomes(pl.DataFrame(lives), ["w_normal"], 300)
+    # Agent 2 has half of each founder; its child with founder 0 has half of that and half of founder 0.
+    assert found["descendants"].to_list() == [0.5 + 0.75, 0.5 + 0.25]
+    np.testing.assert_allclose(found["food"], [(15 + 45 + 30) / (150 + 100 + 75), (15 + 45 + 10) / (150 + 100 + 25)])
 
 
 def test_a_quadratic_fitness_is_found_with_intervals_that_cover() -> None:

@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib.path import Path as Polygon
+from two_stores import FED
 
 from hedon.config import Config, load_config
 from hedon.config.arena import outline
@@ -120,6 +121,15 @@ def test_a_hazard_that_follows_time_is_taken_at_its_mean_and_its_range() -> None
     for factor in (0.5, 2.0):
         hazard = scaled_hazard(plain.species["agent"].hazard, factor)
         assert f"{float(expected_lifetime(hazard, 400.0)):,.0f} steps" in text
+
+
+def test_what_a_store_adds_to_the_hazard_follows_its_schedule() -> None:
+    def higher(*overrides: str) -> float:
+        config = load_config("baseline", overrides=[*FED, *overrides])
+        (said,) = [each for each in forecast(config).warnings if each.startswith("Without nutrient the chance")]
+        return float(said.split(" is ")[1].split(" per step")[0])
+
+    assert higher("hazard.schedule.scale.points=[[0, 10.0]]") == pytest.approx(10.0 * higher(), rel=0.01)
 
 
 def test_scaled_chances_are_those_of_the_hazard_times_the_factor() -> None:

@@ -144,3 +144,32 @@ def families(tree: Genealogy, steps: Ints) -> Ints:
     ends = np.sort(last[last >= 0])
     begun = np.sort(tree.birth[tree.parent < 0])
     return np.searchsorted(begun, steps, side="right") - np.searchsorted(ends, steps, side="right")
+
+
+def shares_of_descent(tree: Genealogy, agents: pl.DataFrame, amount: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What each agent has of an amount that it and its descendants have; with two parents each has half of a child's.
+
+    Args:
+        tree: of one world.
+        agents: its rows of the table `agents`, by agent_id; the column mate_id where some have two parents.
+        amount: of each agent, (n,).
+
+    Returns:
+        Sums over the agent itself and all that descend from it, (n,).
+    """
+    share = amount.astype(np.float64).tolist()
+    pairs = list(zip(tree.parent.tolist(), _mates(agents).tolist(), strict=True))
+    for i in range(tree.size - 1, -1, -1):  # children come after their parents
+        known = [each for each in pairs[i] if each >= 0]
+        for each in known:
+            share[each] += share[i] / len(known)
+    return np.array(share)
+
+
+def _mates(agents: pl.DataFrame) -> Ints:
+    """Position of the second parent of each agent, −1 where there is none, (n,)."""
+    if "mate_id" not in agents.columns:
+        return np.full(agents.height, -1, np.int64)
+    ids, wanted = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()
+    at = np.minimum(np.searchsorted(ids, wanted), len(ids) - 1)
+    return np.where((wanted >= 0) & (ids[at] == wanted), at, -1).astype(np.int64)
