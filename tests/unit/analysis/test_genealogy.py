@@ -87,6 +87,14 @@ def test_generation_time_by_both_measures() -> None:
     assert (nobody["parent_age"], nobody["reached"], nobody["line_time"]) == (None, 0, None)
 
 
+def test_the_age_of_parents_is_that_of_both() -> None:
+    mates = pl.Series("mate_id", [None, None, 11, 11, 11, 14, None], pl.Int64)
+    found = generation_time(AGENTS.with_columns(mates), 100)
+    ages = [5, 5, 15, 15, 30, 5, 10, 20, 5]
+    assert (found["births"], found["parent_age"]) == (5, np.mean(ages))
+    assert found["parent_age_sd"] == pytest.approx(np.std(ages, ddof=1))
+
+
 def test_price_on_the_small_pedigree() -> None:
     parent, weight = genealogy(AGENTS).parent, AGENTS["w_normal"].to_numpy()
     cohort = np.array([True, True, True, False, False, False, False])

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from hedon.analysis.descent.genealogy import genealogy
 
@@ -16,22 +17,29 @@ def generation_time(agents: pl.DataFrame, last_step: int) -> dict[str, Any]:
         last_step: up to which the records reach [step].
 
     Returns:
-        births, with a recorded parent; parent_age, the mean age of parents at the birth of a child [step]: the
-        generation time as demography has it, with its standard deviation parent_age_sd; reached, the mean generation of
-        the living at the end, or of those born last where nobody lives; line_time, steps of the run per generation
-        reached [step]: the generation time along the lines that last, shorter than parent_age where they are those that
-        breed early. None for what has no value.
+        births, with a recorded parent; parent_age, the mean age of parents at the birth of a child [step], of both
+        where it has two: the generation time as demography has it, with its standard deviation parent_age_sd; reached,
+        the mean generation of the living at the end, or of those born last where nobody lives; line_time, steps of the
+        run per generation reached [step]: the generation time along the lines that last, shorter than parent_age where
+        they are those that breed early. None for what has no value.
     """
-    tree = genealogy(agents)
-    children = np.flatnonzero(tree.parent >= 0)
-    ages = (tree.birth[children] - tree.birth[tree.parent[children]]).astype(np.float64)
+    ages = _parent_ages(agents)
     living = agents.filter(pl.col("death_step").is_null())
     newest = living if living.height else agents.filter(pl.col("birth_step") == pl.col("birth_step").max())
     reached = float(newest["generation"].to_numpy().mean()) if newest.height else None
     return {
-        "births": len(ages),
+        "births": int((genealogy(agents).parent >= 0).sum()),
         "parent_age": float(ages.mean()) if len(ages) else None,
         "parent_age_sd": float(ages.std(ddof=1)) if len(ages) > 1 else None,
         "reached": reached,
         "line_time": last_step / reached if reached else None,
     }
+
+
+def _parent_ages(agents: pl.DataFrame) -> NDArray[np.float64]:
+    """The age of each recorded parent at each birth, first parents before second ones [step]."""
+    trees = [genealogy(agents)]
+    if "mate_id" in agents.columns:
+        trees.append(genealogy(agents.with_columns(parent_id="mate_id")))
+    ages = [(tree.birth - tree.birth[tree.parent])[tree.parent >= 0] for tree in trees]
+    return np.concatenate(ages).astype(np.float64)
