@@ -19,6 +19,8 @@ class ResultTable:
         rows: missing values are null.
         note: what a reader must know to read it; may be empty.
         shown: whether it is printed; else it is only written, since it is long.
+        several: whether several conditions were asked about; then readers see of which its rows are, also where only
+            one has rows.
     """
 
     name: str
@@ -26,6 +28,7 @@ class ResultTable:
     rows: pl.DataFrame
     note: str = ""
     shown: bool = True
+    several: bool = False
 
 
 def make_table(

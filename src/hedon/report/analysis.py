@@ -3,7 +3,7 @@
 import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +57,8 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
         raise ArgumentError(f"runs: must be a list of runs, as open_run gives them, not {brief(repr(runs))}")
     tell(0, len(topics), "reading the records")
     conditions = by_condition(read_worlds(runs))
-    tables = {table.name: table for table in run_topics(conditions, topics, tell)}
+    several = len(conditions) > 1
+    tables = {table.name: replace(table, several=several) for table in run_topics(conditions, topics, tell)}
     told = answers(conditions, tables, runs) if "drift" in topics else {}
     return Analysis(tuple(runs), conditions, tables, told)
 

@@ -21,14 +21,15 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     """What a reader sees of a table: headers and rows.
 
     Neutral genes, which show what chance does, become one row. The bounds of an interval become one column, empty below
-    three worlds; a column `condition` with a single value is left out, and so is every column without any.
+    three worlds; a column `condition` with a single value is left out where there is only one condition, and so is
+    every column without any value.
 
     Args:
         table: the results.
         hidden: columns that are left out too.
     """
     rows = _with_neutral_folded(table.rows)
-    single = "condition" in rows.columns and rows["condition"].n_unique() == 1
+    single = "condition" in rows.columns and rows["condition"].n_unique() == 1 and not table.several
     merged = all(bound in rows.columns for bound in _INTERVAL) and "answer" not in rows.columns
     names = [
         c

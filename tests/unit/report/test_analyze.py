@@ -60,6 +60,15 @@ def test_one_of_two_species_may_have_no_neutral_markers(tmp_path: Path) -> None:
     assert names == {"plain": {"w_normal", "w_action"}, "marked": {"w_normal", "w_action", "neutral_1", "neutral_2"}}
 
 
+def test_a_table_of_one_of_two_species_names_it(tmp_path: Path) -> None:
+    two = ("species.single.population.capacity=24", 'species.paired.birth.mating="pairs"')
+    small_run(tmp_path / "run", 96, seeds=(1,), overrides=two)
+    found = analyze([open_run(tmp_path / "run")], ["genealogy"]).tables["genealogy"]
+    headers, rows = cells(found)
+    assert headers[0] == "condition"
+    assert {row[0].rpartition(": ")[2] for row in rows} == {"single"}, "trees are of species with one parent"
+
+
 def test_the_same_records_give_the_same_answers(analysis: Analysis) -> None:
     again = analyze(analysis.runs, ["selection", "drift"])
     assert {"selection", "drift"} <= set(again.tables)
