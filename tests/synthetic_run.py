@@ -164,9 +164,14 @@ def write_run(
     name: str | None = "baseline",
     modified: bool | None = False,
     snapshot: bool = True,
+    status: str = "finished",
+    unsaved: int = 0,
     **options: Any,
 ) -> Path:
-    """Writes a whole run. World `extinct` gets no births and short lives; `options` go to every world."""
+    """Writes a whole run. World `extinct` gets no births and short lives; `options` go to every world.
+
+    Agents of the last `unsaved` intervals are missing, as in a run that was killed.
+    """
     manifest = Manifest(
         food_kinds=food_kinds,
         neutral_count=neutral_count,
@@ -178,7 +183,7 @@ def write_run(
         modified=modified,
         hedon_version="0.1.0",
         backend="portable",
-        status="finished",
+        status=status,
         run_seconds=10.0,
     )
     done, extinct_steps = [], []
@@ -188,14 +193,16 @@ def write_run(
         for index, seed in enumerate(manifest.seeds):
             dying: dict[str, Any] = {"birth_factor": 0.0, "lifetime": 3000.0} if index == extinct else {}
             world = SyntheticWorld(index, seed, food_kinds, neutral_count, **(options | dying))
-            rows = []
+            rows, living = [], world.living_rows()
             while len(rows) < intervals and len(world.living["agent_id"]):
                 dead, row = world.step()
-                writer.append("agents", dead)
                 rows.append(row)
+                if len(rows) <= intervals - unsaved:
+                    writer.append("agents", dead)
+                    living = world.living_rows()
             if rows:
                 writer.append("population", population_rows(rows))
-            last.append(world.living_rows())
+            last.append(living)
             done.append(world.now)
             extinct_steps.append(None if len(world.living["agent_id"]) else world.now)
         writer.replace_living(*last)

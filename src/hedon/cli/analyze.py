@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hedon.cli.console import make_console
+from hedon.text import printable
 
 
 def analyze(
@@ -55,5 +56,7 @@ def analyze(
     folder = out or (runs[0] / ANALYSIS if len(runs) == 1 else Path(ANALYSIS))
     console = make_console()
     console.print(analysis_group(analysis.tables))
+    for sentence in analysis.unfinished:
+        console.print(printable(sentence), soft_wrap=True)
     files = write_analysis(analysis, folder)
     console.print(f"wrote {files[0]} and {len(files) - 1} tables next to it", soft_wrap=True)

@@ -56,6 +56,9 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
     for file in files[: len(runs)]:
         console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
     made = next(file for file in files if file.name == "analysis.json")
-    console.print(*(answer_lines(json.loads(made.read_text(encoding="utf-8"))["answers"])), sep="\n")
+    found = json.loads(made.read_text(encoding="utf-8"))
+    console.print(*answer_lines(found["answers"]), sep="\n")
+    for sentence in found["unfinished"]:
+        console.print(printable(sentence), soft_wrap=True)
     for file in files:
         console.print(f"wrote {printable(str(file))}", soft_wrap=True)

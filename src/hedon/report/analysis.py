@@ -13,6 +13,7 @@ from hedon.error import ArgumentError
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
+from hedon.report.moment import unfinished
 from hedon.report.summary import plain
 from hedon.report.topic import TOPICS, Tell, require_topics, run_topics, tell_nobody
 from hedon.report.words import answers
@@ -31,12 +32,14 @@ class Analysis:
         conditions: their worlds, by condition.
         tables: by name, in the order of the topics.
         answers: by condition, in words; empty without the topic drift.
+        unfinished: a sentence for each run that has not finished: of which steps its numbers are.
     """
 
     runs: tuple[Run, ...]
     conditions: Mapping[str, Sequence[WorldRecord]]
     tables: Mapping[str, ResultTable]
     answers: Mapping[str, Sequence[str]]
+    unfinished: Sequence[str] = ()
 
 
 def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody) -> Analysis:
@@ -60,7 +63,7 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
     several = len(conditions) > 1
     tables = {table.name: replace(table, several=several) for table in run_topics(conditions, topics, tell)}
     told = answers(conditions, tables, runs) if "drift" in topics else {}
-    return Analysis(tuple(runs), conditions, tables, told)
+    return Analysis(tuple(runs), conditions, tables, told, unfinished(runs, conditions))
 
 
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
@@ -105,6 +108,7 @@ def _analysis_json(analysis: Analysis) -> dict[str, Any]:
     return plain(
         {
             "runs": [{"path": str(run.path), "manifest": asdict(run.manifest)} for run in analysis.runs],
+            "unfinished": analysis.unfinished,
             "worlds": worlds,
             "answers": analysis.answers,
             "tables": {

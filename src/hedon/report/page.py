@@ -101,6 +101,7 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
         )
     return {
         "title": " · ".join(condition["name"] for condition in conditions),
+        "unfinished": analysis.unfinished,
         "verdict": shown.pop("verdict", None),
         "conditions": conditions,
         "tables": list(shown.values()),
