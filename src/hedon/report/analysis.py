@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -21,6 +22,7 @@ from hedon.text import brief
 
 ANALYSIS = "analysis"
 """Folder of the answers within the folder of a single run."""
+_JSON = "analysis.json"
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,8 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
     """Writes `analysis.json` and one CSV file per table into a folder, over those that are there.
 
+    Tables of an earlier analysis in this folder that this one lacks are removed: they may be of other records.
+
     Args:
         analysis: What to write.
         folder: Is made if it is missing.
@@ -80,15 +84,27 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
         RecordError: the folder cannot be written.
     """
     text = json.dumps(_analysis_json(analysis), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    contents = {"analysis.json": text.encode()}
+    contents = {_JSON: text.encode()}
     for name, table in analysis.tables.items():
         buffer = io.BytesIO()
         table.rows.write_csv(buffer)
         contents[f"{name}.csv"] = buffer.getvalue()
     with one_writer(folder, "the analysis"):
+        for name in _earlier_tables(folder) - analysis.tables.keys():
+            (folder / f"{name}.csv").unlink(missing_ok=True)
         for name, content in contents.items():
             write_atomically(folder / name, lambda file, content=content: file.write(content))
     return [folder / name for name in contents]
+
+
+def _earlier_tables(folder: Path) -> set[str]:
+    """Names of the tables that the analysis in a folder has; none where it is not hedon's."""
+    try:
+        content = json.loads((folder / _JSON).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return set()
+    named = content.get("tables") if isinstance(content, dict) else None
+    return {name for name in named if re.fullmatch(r"[a-z0-9_]+", name)} if isinstance(named, dict) else set()
 
 
 def _analysis_json(analysis: Analysis) -> dict[str, Any]:

@@ -87,6 +87,19 @@ def test_files_hold_every_number(analysis: Analysis, tmp_path: Path) -> None:
             assert len(list(csv.DictReader(file))) == result.rows.height == len(content["tables"][name]["rows"])
 
 
+def test_tables_of_an_earlier_analysis_are_removed_and_no_other_file(analysis: Analysis, tmp_path: Path) -> None:
+    write_analysis(analysis, tmp_path)
+    (tmp_path / "mine.csv").write_text("a\n")
+    (tmp_path.parent / "beside.csv").write_text("b\n")
+    written = {file.name for file in write_analysis(analyze(analysis.runs, ["lifetime"]), tmp_path)}
+    assert {file.name for file in tmp_path.iterdir() if not file.name.startswith(".")} == {*written, "mine.csv"}
+    for content in ('{"tables": {"../beside": 1, "lifetime": 1}}', '{"tables": 5}', "[]", "torn"):
+        (tmp_path / "analysis.json").write_text(content)
+        write_analysis(analyze(analysis.runs, ["lifetime"]), tmp_path)
+        assert {file.name for file in tmp_path.iterdir() if not file.name.startswith(".")} == {*written, "mine.csv"}
+    assert (tmp_path.parent / "beside.csv").exists()
+
+
 def test_what_is_printed(analysis: Analysis) -> None:
     console = Console(width=110, record=True, file=io.StringIO())
     console.print(analysis_group(analysis.tables))
