@@ -3,15 +3,15 @@
 import re
 import shutil
 import subprocess
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import duckdb
 import pandas as pd
-import polars as pl
 import pytest
 from project_files import ROOT
-from synthetic_run import write_run
+from resumed_run import WINDOW, small_run
 
 import hedon
 from hedon.export.table import table_of, write_table
@@ -21,10 +21,16 @@ GUIDE = (ROOT / "docs" / "guide" / "export.md").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def most(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, int]]:
-    """A folder in which `runs/mine` is a run, and the most agents that lived at a time, by seed."""
+    """A folder in which `runs/mine` is a run of two species, and the most agents that lived at a time, by seed."""
     place = tmp_path_factory.mktemp("tools")
-    run = hedon.open_run(write_run(place / "runs" / "mine", intervals=12, worlds=2))
-    return place, dict(run.population().group_by("seed").agg(pl.col("alive").max()).iter_rows())
+    few = ("species.many.population.initial_count=16", "species.few.population.initial_count=8")
+    small_run(place / "runs" / "mine", 8 * WINDOW, overrides=few)
+    rows = hedon.open_run(place / "runs" / "mine").population()
+    assert rows["species"].n_unique() == 2
+    living: Counter[tuple[int, int]] = Counter()
+    for row in rows.iter_rows(named=True):
+        living[row["seed"], row["step"]] += row["alive"]
+    return place, {seed: max(alive for (each, _), alive in living.items() if each == seed) for seed, _ in living}
 
 
 def lines(language: str) -> list[str]:
