@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import polars as pl
 import pytest
 from mechanism_world import CROWDED, WORLDS, mechanism_config, mechanism_run
+from project_files import ROOT
 from rich.console import Console
 
 from hedon.analysis.agent.lifetime import mean_lifetime
@@ -73,6 +75,15 @@ def test_each_species_has_its_own_numbers(run: Run) -> None:
         if run.columns.several:
             for key in ("alive", "births", "deaths"):
                 assert world["total"][key] == sum(fare[key] for fare in mine.values())
+
+
+def test_the_guide_counts_the_living_of_each_species_as_the_summary_does(different: Run) -> None:
+    (block,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/guide/species.md").read_text(), re.DOTALL)
+    scope: dict[str, Any] = {}
+    exec(block, scope)
+    for world in summarize(different)["worlds"]:
+        told = scope["alive"](str(different.path), world["seed"])
+        assert told == {name: fare["alive_mean"] for name, fare in world["species"].items()}
 
 
 def test_every_ledger_closes_and_its_sums_say_so(run: Run) -> None:
