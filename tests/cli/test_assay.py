@@ -205,6 +205,14 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
     [
         (("landscape", "basline"), "there is no such preset"),
         (("landscape", "baseline", "--genes", "food,acton"), "did you mean action?"),
+        (
+            ("landscape", "predator", "--species", "predator", "--genes", "normal,action"),
+            "no gene 'normal' (predator has prey, action, see_prey, see_predator, neutral_1 to neutral_16)",
+        ),
+        (
+            ("knockout", "action=1", "normal", "--in", "predator", "--species", "predator"),
+            "no gene 'normal' (predator has prey, action, see_prey, see_predator, neutral_1 to neutral_16)",
+        ),
         (("landscape", "baseline", "--genes", "food"), "must be two different genes"),
         (("landscape", "baseline", "--range", "-20:3"), "must be LOW:HIGH around 0, within -10:10"),
         (("landscape", "baseline", "--sd", "-1"), "Invalid value for '--sd'"),

@@ -33,7 +33,7 @@ def choose_genes(text: str | None, config: Config, species: str | None = None) -
     columns = [column_of(config, name, own) for name in names]
     for name, column in zip(names, columns, strict=True):
         if column is None:
-            raise AssayError(f"--genes {brief(str(text))}: {unknown_gene(config, name)}")
+            raise AssayError(f"--genes {brief(str(text))}: {unknown_gene(config, name, own)}")
     first, second = columns if len(columns) == 2 else (None, None)
     if first is None or second is None or first == second:
         raise AssayError(f"--genes {brief(str(text))}: must be two different genes, as in food,action")
@@ -183,7 +183,7 @@ def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[F
     column = column_of(config, gene if len(config.species) == 1 else f"{species}.{gene}")
     wild = _source(source, config, species)
     if column is None or column not in wild.genes:
-        raise AssayError(f"knockout {brief(source)}: {unknown_gene(config, gene)}")
+        raise AssayError(f"knockout {brief(source)}: {unknown_gene(config, gene, species)}")
     names = (f"{column.rpartition('.')[2].removeprefix('w_')} = 0", source_label(source))
     return _joined([wild.changed(column, 0.0), wild], names, (1.0, 1.0), config, species), names
 

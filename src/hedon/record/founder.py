@@ -218,20 +218,25 @@ def _column_among(columns: Sequence[str], name: str) -> str | None:
     return next((column for column in (name, f"w_{name}") if column in columns), columns[0] if name == "food" else None)
 
 
-def unknown_gene(config: Config, name: str) -> str:
+def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
     """Says that there is no such gene, which there are, and which is near.
 
     Args:
         config: that lacks the gene.
-        name: as a user gave it.
+        name: as a user gave it; of one species where it begins with the name of one.
+        own: only genes of this species count; None for those of all.
     """
-    columns = gene_columns(config)
+    species, dot, gene = name.rpartition(".")
+    begin = f"{species}." if dot and species in config.species else ""
+    own = species if begin else own
+    columns = gene_columns(config) if own is None else layouts(config)[own].gene_names
     shown = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
     count = sum(column.startswith("neutral_") for column in columns)
     neutral = f", neutral_1 to neutral_{count}" if count else ""
-    near = nearest(name, [*columns, *shown, "food"])
-    hint = f"; did you mean {near}?" if near else ""
-    return f"there is no gene {brief(repr(name))} (there are {', '.join(shown)}{neutral}){hint}"
+    near = nearest(gene if begin else name, [*columns, *shown, "food"])
+    hint = f"; did you mean {begin}{near}?" if near else ""
+    whose = "there are" if own is None or len(config.species) == 1 else f"{own} has"
+    return f"there is no gene {brief(repr(name))} ({whose} {', '.join(shown)}{neutral}){hint}"
 
 
 def _shuffled(items: Sequence[int], what: str) -> list[int]:

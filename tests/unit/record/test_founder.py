@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hedon.config import load_config
-from hedon.record.founder import FounderError, Founders, join, make_founders
+from hedon.record.founder import FounderError, Founders, join, make_founders, unknown_gene
 from hedon.record.founder_source import parse_point, read_founders
 from hedon.record.founder_table import load_founders, read_table
 
@@ -122,6 +122,16 @@ def test_a_bad_source_is_refused(text: str, message: str) -> None:
     with pytest.raises(FounderError) as caught:
         read_founders(text, CONFIG)
     assert message in str(caught.value)
+
+
+def test_a_gene_that_another_species_has_is_not_offered() -> None:
+    two = load_config("predator")
+    for given, own in (("normal", "predator"), ("predator.normal", None)):
+        said = unknown_gene(two, given, own)
+        assert "(predator has prey, action, see_prey, see_predator, neutral_1 to" in said
+        assert "did you mean" not in said
+    assert unknown_gene(two, "prey.acton").endswith("; did you mean prey.action?")
+    assert "(there are normal, action, see_prey, see_predator, prey, neutral_1" in unknown_gene(two, "sight")
 
 
 def test_a_changed_table_is_refused(tmp_path: Path) -> None:
