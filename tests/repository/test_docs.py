@@ -66,6 +66,12 @@ def test_python_of_a_page_runs_from_top_to_bottom(page, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+def test_the_readme_names_every_optional_package():
+    (line,) = re.findall(r"`uv sync --extra (.*?);", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert set(re.findall(r"(?:^|`)([a-z]+)`", line)) == set(project["optional-dependencies"])
+
+
 def said(table: dict, path: str = "") -> Iterator[tuple[str, Any]]:
     """What a block says, by the path of each setting."""
     for name, value in table.items():
