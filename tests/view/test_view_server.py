@@ -6,13 +6,16 @@ import struct
 import time
 
 import pytest
+from command import hedon
 from typer.testing import CliRunner
 from view_page import record, run_server, serving
 
 from hedon.cli.main import app
+from hedon.config.load import load_config
 from hedon.record.error import RecordError
 from hedon.view.export import export
 from hedon.view.index import RunIndex
+from hedon.view.live import live_world
 from hedon.view.page import ViewError
 
 
@@ -128,6 +131,20 @@ def test_the_command_exports_a_live_page(tmp_path):
     assert done.exit_code == 0
     assert (tmp_path / "site" / "hedon.wasm").is_file()
     assert (tmp_path / "site" / "data" / "page.json").is_file()
+
+
+def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
+    """A browser cannot compute it, and the page would tell where the file of the rule is."""
+    (tmp_path / "ruled.toml").write_text('preset = "small"\n[reward]\nrule = "kin.py:kind"\n')
+    (tmp_path / "kin.py").write_text("def kind(agent):\n    return agent.linear\n")
+    done = hedon("view", "--live", "ruled.toml", "--export", "site", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(
+        "hedon: ruled.toml: has the rule kin.py:kind in Python, which a browser cannot compute"
+    )
+    assert not (tmp_path / "site").exists()
+    with pytest.raises(ViewError, match="in Python"):
+        live_world(load_config(tmp_path / "ruled.toml"), "ruled.toml")
 
 
 def test_the_command_wants_a_run_or_a_live_world():

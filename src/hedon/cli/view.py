@@ -50,6 +50,7 @@ def view(
 
     from hedon.config.load import DEFAULT_PRESET, load_config
     from hedon.view.export import export as write_site
+    from hedon.view.live import require_live
     from hedon.view.server import Server
     from hedon.view.story import PAGE, story
 
@@ -57,7 +58,7 @@ def view(
         raise ViewArgumentError("give the folder of a run, --live for a world in the browser, or --story to read")
     source = (run or DEFAULT_PRESET) if live else ""
     if source:
-        load_config(source)  # whatever is wrong with it is said here
+        require_live(load_config(source), source)  # whatever is wrong with it is said here
     index = None if live or run is None else _index(run)
     front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:

@@ -10,9 +10,11 @@ from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
 from hedon.config.fixed import fixed_path
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
+from hedon.config.rule_path import rule_places
 from hedon.config.settings import PROVENANCE
 from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
+from hedon.view.page import ViewError
 
 BEGINNING = (".initial", ".initial_count", ".initial_mean", ".initial_sd", ".at_zero", ".count")
 """Ends of the paths of settings that matter when a world begins, or that decide what is recorded."""
@@ -27,6 +29,7 @@ def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, 
 
     Raises:
         ConfigError: There is no such preset or file, or something in it is wrong.
+        ViewError: The world has a rule in Python.
     """
     sources = [*([first] if first else []), *(name for name in PRESETS if name != first)]
     return [live_world(load_config(source, fidelity), source) for source in sources]
@@ -43,7 +46,11 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
         `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if no preset is
         it, else ""; `layout`, as `describe` gives it; `text` for the engine, for seed 1; `settings`, each as `_setting`
         gives it.
+
+    Raises:
+        ViewError: The world has a rule in Python.
     """
+    require_live(config, source)
     preset = source in PRESETS
     shown = source if preset else Path(source).name
     description = describe_preset(source) if preset else _origin(config)
@@ -57,6 +64,24 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
         "text": engine_text(config, 1),
         "settings": list(_settings(config)),
     }
+
+
+def require_live(config: Config, source: str) -> None:
+    """Refuses a world that the page cannot simulate.
+
+    Args:
+        config: of the world.
+        source: the preset or the file that it comes from.
+
+    Raises:
+        ViewError: The world has a rule in Python.
+    """
+    if places := rule_places(config):
+        name = Path(places[0]).name
+        raise ViewError(
+            f"{source}: has the rule {name} in Python, which a browser cannot compute: run it with "
+            "`hedon run --frames 64`, and view the run"
+        )
 
 
 def _origin(config: Config) -> str:
