@@ -33,6 +33,20 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
     assert f"{untold.folder}:finished" in lines
 
 
+def test_a_world_has_died_out_where_no_species_is_left(tmp_path):
+    plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
+    job = make_task(store.location, plan, next(plan.batches()), tmp_path / "batch", 1.0)
+    rows = tuple({"alive": alive} for alive in (0, 5, 0, 0))  # two worlds of two species
+    stream = io.StringIO()
+    with JobDisplay(Console(file=stream, width=200), [job]) as display:
+        display.update(job, Moment(500, 1000, 1000, 1.0, rows, (700, None, None, 900), 64))
+        display.end(job, Outcome("finished"))
+    assert job.seeds == (1, 2)
+    assert "step 1,000, seed 2 died out\n" in stream.getvalue()
+    assert "seed 1 died out" not in stream.getvalue()
+    assert "died out / 5 / died out / died out alive" in stream.getvalue()
+
+
 def test_the_start_of_the_workers_does_not_count_into_the_time_that_is_left(tmp_path, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("hedon.cli.display.job.time.monotonic", lambda: now[0])

@@ -41,3 +41,25 @@ def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
     assert {name: display.last.rows[0][name] for name in ("alive", "births", "deaths")} == {
         name: row[name] for name in ("alive", "births", "deaths")
     }
+
+
+def test_of_several_species_each_is_shown_with_the_step_at_which_it_died_out(tmp_path):
+    """The predators first, and the world goes on."""
+
+    class Shown:
+        def update(self, moment):
+            self.last = moment
+
+    settings = (
+        *("world.rollout_steps=256", "learning.update_epochs=0", "birth.kappa=0", "hazard.form=constant"),
+        *("species.prey.population.initial_count=12", "species.predator.population.initial_count=4"),
+        *("species.prey.hazard.kappa=0.01", "species.predator.hazard.kappa=0.2"),
+    )
+    display = Shown()
+    run(RunPlan(load_config("predator", overrides=settings), (1,), 500, tmp_path / "run", threads=1), display)
+    dead = (
+        pl.read_parquet(tmp_path / "run" / "agents" / "*.parquet").group_by("species").agg(pl.col("death_step").max())
+    )
+    last = dict(dead.iter_rows())
+    assert last["predator"] < last["prey"]
+    assert display.last.extinct == (last["prey"], last["predator"])

@@ -109,7 +109,8 @@ class Moment:
         steps: Total steps of each world.
         seconds: Time since the first step after `first` [s].
         rows: The last row of the table `population` of each world and species, world by world.
-        extinct: For each of these rows the step at which the world died out, or None.
+        extinct: For each of these rows the step at which the species died out there; None while it lives, and where it
+            was gone before `first`, which its row shows.
         window: Steps of a window; agents learn at its end.
     """
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.dump import dump_toml
@@ -56,6 +57,7 @@ class Recorder:
         since = start.sampled or (None,) * len(sampled)
         self.samplers = [PopulationSampler(*which, at) for which, at in zip(sampled, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
+        self.last_deaths: dict[tuple[int, int], int] = {}  # by world and species
         self.first = start.step
         self.begun = time.perf_counter()
         self.flush_due = 0.0
@@ -71,6 +73,9 @@ class Recorder:
             lives = world._take_deaths(partial=partial)
             if len(lives["agent_id"]):
                 self.writer.append("agents", agent_rows(world, lives))
+            for species in np.unique(lives["species"]).tolist():
+                last = int(lives["death_step"][lives["species"] == species].max())
+                self.last_deaths[world.index, species] = last
         if time.perf_counter() >= self.flush_due:
             self.living()
 
@@ -148,6 +153,13 @@ class Recorder:
             steps: Of the whole run [step].
             seconds: Spent since `first` [s].
         """
-        extinct = tuple(sampler.world.extinct_step for sampler in self.samplers)
+        extinct = tuple(map(self._extinct_step, self.samplers))
         window = self.simulation.config.world.rollout_steps
         return Moment(self.first, step, steps, seconds, tuple(self.rows), extinct, window)
+
+    def _extinct_step(self, sampler: PopulationSampler) -> int | None:
+        world, species = sampler.world, sampler.species
+        if not sampler.columns.several:
+            return world.extinct_step
+        lives = bool((world.view("species")[world.living] == species).any())
+        return None if lives else self.last_deaths.get((world.index, species))

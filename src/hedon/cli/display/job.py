@@ -50,7 +50,7 @@ class JobDisplay(Screen):
         if not self._moments and not self._ended:  # until then workers started
             self._seen = deque([(time.monotonic() - moment.seconds, 0)])
         self._moments[job.folder] = moment
-        living = sum(step is None for step in _ends(job, moment).values())
+        living = len(job.seeds) - len(_ended(job, moment))
         # Only worlds with living agents have steps still to run.
         self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
         self._before.setdefault(job.folder, max(0, job.world_steps - living * (job.steps - moment.first)))
@@ -76,7 +76,7 @@ class JobDisplay(Screen):
         words = [f"{job.folder}: {outcome.status}"]
         if moment is not None:
             words.append(f"step {moment.step:,}")
-            words += [f"seed {seed} died out" for seed, step in _ends(job, moment).items() if step is not None]
+            words += [f"seed {seed} died out" for seed in _ended(job, moment)]
         if outcome.fault:
             words.append(outcome.fault)
         self._console.print(printable(", ".join(words)), soft_wrap=True, highlight=False)
@@ -117,12 +117,19 @@ class JobDisplay(Screen):
         return Group(Text(self._head()), bar, table, hint)
 
 
-def _ends(job: Job, moment: Moment) -> dict[int, int | None]:
-    """The step at which the world of each seed died out, or None."""
-    species = len(moment.extinct) // len(job.seeds)
-    return dict(zip(job.seeds, moment.extinct[::species], strict=True))
+def _ended(job: Job, moment: Moment) -> list[int]:
+    """The seeds of the worlds in which nobody is left, of no species."""
+    gone = _gone(moment)
+    species = len(gone) // len(job.seeds)
+    return [seed for i, seed in enumerate(job.seeds) if all(gone[i * species : (i + 1) * species])]
+
+
+def _gone(moment: Moment) -> list[bool]:
+    """For each world and species whether nobody is left."""
+    pairs = zip(moment.rows, moment.extinct, strict=True)
+    return [extinct is not None or row["alive"] == 0 for row, extinct in pairs]
 
 
 def _alive(moment: Moment) -> str:
-    pairs = zip(moment.rows, moment.extinct, strict=True)
-    return " / ".join("died out" if extinct is not None else str(row["alive"]) for row, extinct in pairs)
+    pairs = zip(moment.rows, _gone(moment), strict=True)
+    return " / ".join("died out" if gone else str(row["alive"]) for row, gone in pairs)
