@@ -19,6 +19,20 @@ BRIEF = (
 )
 
 
+class Shown:
+    """A display that keeps all moments."""
+
+    def __init__(self):
+        self.moments = []
+
+    def update(self, moment):
+        self.moments.append(moment)
+
+    @property
+    def last(self):
+        return self.moments[-1]
+
+
 def test_deaths_are_kept_however_many_a_window_has(tmp_path):
     config = load_config("baseline", overrides=BRIEF)
     run(RunPlan(config, (1,), 1500, tmp_path / "run", threads=1))
@@ -30,14 +44,11 @@ def test_deaths_are_kept_however_many_a_window_has(tmp_path):
 
 
 def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
-    class Shown:
-        def update(self, moment):
-            self.last = moment
-
     display = Shown()
     run(RunPlan(load_config("baseline", overrides=BRIEF), (1,), 500, tmp_path / "run", threads=1), display)
     row = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet").sort("step").row(-1, named=True)
     assert (display.last.step, row["step"]) == (500, 500)
+    assert [moment.step for moment in display.moments].count(500) == 1
     assert {name: display.last.rows[0][name] for name in ("alive", "births", "deaths")} == {
         name: row[name] for name in ("alive", "births", "deaths")
     }
@@ -45,10 +56,6 @@ def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
 
 def test_of_several_species_each_is_shown_with_the_step_at_which_it_died_out(tmp_path):
     """The predators first, and the world goes on."""
-
-    class Shown:
-        def update(self, moment):
-            self.last = moment
 
     settings = (
         *("world.rollout_steps=256", "learning.update_epochs=0", "birth.kappa=0", "hazard.form=constant"),

@@ -154,7 +154,7 @@ def advance(
                 recorder.frame()
             if not writer.saving and due.now(interrupted):
                 recorder.checkpoint(step, seconds)
-            if display is not None:
+            if display is not None and step < plan.steps:  # the last moment is shown below, with its own rows
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
         recorder.checkpoint(step, seconds)

@@ -9,7 +9,8 @@ from hedon.experiment.plan import Moment
 from hedon.record.schema import Columns
 
 WINDOW = 1000
-ROW = {"alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0, "w_normal_mean": 0.0, "w_action_mean": 0.0}
+ROW = {"step": WINDOW, "alive": 3, "births": 0, "deaths": 0, "energy_mean": 1.0}
+ROW |= {"w_normal_mean": 0.0, "w_action_mean": 0.0}
 
 
 def shown(moments: list[tuple[float, int]]) -> list[str]:
@@ -17,7 +18,8 @@ def shown(moments: list[tuple[float, int]]) -> list[str]:
     stream = io.StringIO()
     display = RunDisplay(Console(file=stream), Columns(("normal",), 0), (1,))
     for seconds, step in moments:
-        display.update(Moment(0, step, 100 * WINDOW, seconds, (ROW,), (None,), WINDOW))
+        row = ROW | {"step": step // WINDOW * WINDOW}
+        display.update(Moment(0, step, 100 * WINDOW, seconds, (row,), (None,), WINDOW))
     return stream.getvalue().splitlines()
 
 
@@ -41,6 +43,14 @@ def test_the_speed_follows_the_last_seconds_where_windows_are_short():
     moments = [(float(i), i * WINDOW) for i in range(1, 30)] + [(29 + i / 10, (29 + i) * WINDOW) for i in range(1, 72)]
     speed = float(shown(moments)[-1].split(" steps/s")[0].split()[-1].replace(",", ""))
     assert speed > 3000
+
+
+def test_a_line_within_a_window_says_of_which_step_its_numbers_are():
+    within, end = shown([(2.0, 1792), (14.0, 2000)])
+    assert "step 1,792 of 100,000" in within
+    assert "seed 1 at step 1,000: 3 alive" in within
+    assert "step 2,000 of 100,000" in end
+    assert "seed 1: 3 alive" in end
 
 
 def test_a_species_that_is_gone_has_no_energy():

@@ -61,6 +61,11 @@ def _labels(columns: Columns, seeds: tuple[int, ...]) -> list[str]:
     return [f"{seed}{name}" for seed in seeds for name in species]
 
 
+def _when(row: dict[str, Any], extinct: int | None, moment: Moment) -> str:
+    """The step of the row's numbers, where that is not the run's: at the end of the last window."""
+    return "" if extinct is not None or row["step"] == moment.step else f" at step {row['step']:,}"
+
+
 def _describe(row: dict[str, Any], extinct: int | None, weights: tuple[str, ...]) -> str:
     if extinct is not None:
         return f"extinct at step {extinct:,}"
@@ -98,8 +103,10 @@ class RunDisplay(Screen):
         """A line for each world."""
         head = _head(moment, speed, "  ")
         worlds = zip(self._labels, moment.rows, moment.extinct, strict=True)
-        lines = (f"{head}  seed {label}: {_describe(row, end, self._weights)}" for label, row, end in worlds)
-        return "\n".join(lines)
+        return "\n".join(
+            f"{head}  seed {label}{_when(row, end, moment)}: {_describe(row, end, self._weights)}"
+            for label, row, end in worlds
+        )
 
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
