@@ -4,17 +4,19 @@ Colors: Okabe & Ito (2008), "Color universal design", and grays. `config.color` 
 """
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from hedon.config.color import food_colors as food_colors
@@ -171,6 +173,25 @@ def legend_above(axes: Axes, columns: int = 2) -> None:
     rows = -(-len(legend.get_texts()) // columns)
     low, high = axes.get_ylim()
     axes.set_ylim(top=high + (high - low) * (0.06 + 0.11 * rows))
+
+
+def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **options: Any) -> Legend:
+    """Adds a legend to a figure, in as few rows as fit its width.
+
+    Args:
+        figure: that has its width.
+        handles: of the legend, with labels.
+        columns: at most so many.
+        options: as those of `Figure.legend`.
+    """
+    rows = -(-len(handles) // columns)
+    while True:
+        columns = -(-len(handles) // rows)
+        legend = figure.legend(handles=handles, ncols=columns, **options)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return legend
+        legend.remove()
+        rows += 1
 
 
 def number_log_axis(axis: Axis) -> None:

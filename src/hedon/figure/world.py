@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon, Wedge
 
 from hedon.config.color import OBSTACLE_COLOR, species_color
 from hedon.figure.outline import wall_outline
-from hedon.figure.style import INK, MUTED, PALE, new_figure, styled
+from hedon.figure.style import INK, MUTED, PALE, new_figure, styled, wrapped_legend
 from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"
@@ -20,7 +20,8 @@ AGENT_COLOR = "#bed3e6"
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
 _NEAR = 0.85  # reading of a ray above which what it sees hides the view
-_LEGEND_COLUMNS = 5  # as many as fit beside each other
+_LEGEND_COLUMNS = 5  # at most so many lie in one row
+_LEGEND_HEIGHT = 0.4  # of two rows, for which a figure has room [inch]
 _WIDTH = 7.2  # of the figure [inch]
 _ENERGY_COLORS = LinearSegmentedColormap.from_list("energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"])
 
@@ -266,4 +267,7 @@ def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_
         rays |= {"sees nothing": PALE}
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
     columns = len(handles) if len(handles) <= _LEGEND_COLUMNS else -(-len(handles) // 2)
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.4)
+    legend = wrapped_legend(figure, handles, columns, loc="outside lower center", columnspacing=1.4)
+    more = legend.get_window_extent().height / figure.dpi - _LEGEND_HEIGHT
+    if more > 0:
+        figure.set_figheight(figure.get_figheight() + more)

@@ -15,7 +15,7 @@ from hedon.config.title import weight_title
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
-from hedon.figure.style import save_figure, step_unit
+from hedon.figure.style import png_bytes, save_figure, step_unit
 from hedon.figure.trace import over_worlds
 from hedon.figure.weight import draw_weights
 from hedon.figure.world import draw_world, ray_segments, telling_agent
@@ -107,6 +107,32 @@ def test_the_legend_tells_what_rays_see() -> None:
     foods = ["normal food", "poison food"]
     seen = ["sees normal food", "sees poison food", "sees a wall", "sees nothing"]
     assert labels == [*foods, "ray that sees an agent", *seen]
+
+
+def test_a_legend_with_many_names_lies_within_the_picture() -> None:
+    kinds = ("normal", "toadstool", "fruit")
+    each = ("radius", "ray_count", "ray_length", "ray_spread", "mouth_spread", "mouth_center")
+    two = {name: np.full(2, getattr(synthetic_snapshot(), name)) for name in each}
+    many = replace(
+        synthetic_snapshot(kinds),
+        species_names=("grazer", "hunter"),
+        obstacles=np.array([[(200, 200), (220, 200), (210, 220)]], np.float32),
+        rays=np.full((40, 24, 7), -1.0, np.float32),
+        **two,
+    )
+    figure = draw_world(many, food_colors(kinds), [0])
+    png_bytes(figure)
+    legend, (axes, *_) = figure.legends[0], figure.axes
+    assert len(legend.get_texts()) == 13
+    boxes = [legend.get_window_extent(), *(text.get_window_extent() for text in legend.get_texts())]
+    for box in boxes:
+        assert figure.bbox.x0 <= box.x0
+        assert box.x1 <= figure.bbox.x1
+        assert box.y0 >= figure.bbox.y0
+        assert box.y1 <= axes.get_window_extent().y0
+    plain = draw_world(synthetic_snapshot(kinds), food_colors(kinds), [0])
+    png_bytes(plain)
+    assert axes.get_window_extent().width == pytest.approx(plain.axes[0].get_window_extent().width, rel=0.02)
 
 
 def test_rays_end_on_the_walls() -> None:
