@@ -10,7 +10,7 @@ import typer
 from hedon.cli.console import make_console
 from hedon.cli.report import show_report
 from hedon.error import HedonError
-from hedon.experiment.argument import MAX_STEPS, parse_seeds
+from hedon.experiment.argument import DEVICES, INSTRUCTION_SETS, MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
 from hedon.text import brief, count, printable
 
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 DEFAULT_STEPS = 204_800
 """200 windows of the baseline: about two minutes on two cores."""
+
+_BACKENDS = (*INSTRUCTION_SETS, *DEVICES)
+"""All values of `--backend`."""
 
 Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th part of the work, from the I-th on.")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")]
@@ -62,7 +65,7 @@ def run(
     ] = None,
     backend: Annotated[
         str | None,
-        typer.Option(help="What computes: avx512, avx2, neon, portable, cuda; by default the fastest instruction set."),
+        typer.Option(help=f"What computes: {', '.join(_BACKENDS)}; by default the fastest instruction set."),
     ] = None,
     report: Report = True,
 ) -> None:
@@ -153,14 +156,16 @@ def require_backend(backend: str | None) -> None:
     """
     from hedon import _engine
     from hedon.config.problem import nearest
-    from hedon.experiment.device import DEVICES, EMULATED, device_problem, is_device
+    from hedon.experiment.device import EMULATED, device_problem, is_device
 
     if backend is None:
         return
-    known = (*_engine.kernel.kernel_names(), *DEVICES)
-    if backend not in (*known, EMULATED):
-        near = nearest(backend, known)
+    if backend not in (*_BACKENDS, EMULATED):
+        near = nearest(backend, _BACKENDS)
         hint = f"; did you mean {near}?" if near else ""
-        raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(known)}{hint}")
+        raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(_BACKENDS)}{hint}")
+    here = _engine.kernel.kernel_names()
+    if backend in INSTRUCTION_SETS and backend not in here:
+        raise RunError(f"--backend {backend}: this processor does not have it; it has {', '.join(here)}")
     if is_device(backend) and (problem := device_problem(backend)):
         raise RunError(problem)

@@ -18,6 +18,10 @@ MAX_DIGITS = 40
 """Most digits of a seed, leading zeros included."""
 MAX_THREADS = 1024
 MAX_SECONDS = 1e9
+INSTRUCTION_SETS = ("avx512", "avx2", "neon", "portable")
+"""What the engine can compute with, the fastest first; a processor has some of them."""
+DEVICES = ("cuda",)
+"""Backends that are devices, not instruction sets of the processor."""
 
 
 def integer(name: str, value: Any, low: int, high: int) -> int:

@@ -5,9 +5,8 @@ from pathlib import Path
 
 from hedon import _engine
 from hedon.error import EngineError
+from hedon.experiment.argument import DEVICES
 
-DEVICES = ("cuda",)
-"""Backends that are devices; the others are instruction sets of the processor."""
 EMULATED = "cuda-emulated"
 """The same kernels on the processor, thread by thread: only for tests, which build its library."""
 EMULATION_VARIABLE = "HEDON_CUDA_EMULATION"
