@@ -5,15 +5,20 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
 from hedon.config.color import species_color
-from hedon.figure.style import DOTS_PER_INCH, MUTED, styled
+from hedon.figure.style import DOTS_PER_INCH, MUTED, styled, wrapped_legend
 from hedon.figure.world import draw_agents, draw_foods, draw_obstacles, draw_ring, draw_walls
 from hedon.record.snapshot import Snapshot
 
 CAPTION = 34
-"""Height of the line of text above the world [pixel]."""
+"""Height of the line of text above the world [pixel]; a legend that does not fit into it has lines of its own."""
+MARGIN = 0.012
+"""Of the text from the left side, in widths of the picture."""
+GROWTH = 1.2
+"""How much longer the text may get while a world goes on."""
 CLOSE = 2.0
 """Width of the part of the arena that is seen beside a followed agent, in lengths of its rays."""
 
@@ -41,17 +46,25 @@ class Film:
         if follow is not None:
             self._span = self._span * min(1.0, CLOSE * float(snapshot.ray_length.max()) / self._span[0])
         self.width = width // 2 * 2
-        self.height = int(self.width * self._span[1] / self._span[0]) // 2 * 2 + CAPTION
+        world_height = int(self.width * self._span[1] / self._span[0]) // 2 * 2
         with styled():
-            self._figure = Figure(figsize=(self.width / DOTS_PER_INCH, self.height / DOTS_PER_INCH), dpi=DOTS_PER_INCH)
+            self._figure = Figure(figsize=(self.width / DOTS_PER_INCH, 1), dpi=DOTS_PER_INCH)
+            self._figure.set_facecolor("white")
             self._canvas = FigureCanvasAgg(self._figure)
-            self._axes = self._figure.add_axes((0, 0, 1, 1 - CAPTION / self.height))
+            words = self._words(snapshot)
+            self._caption = self._figure.text(MARGIN, 1, words, va="center", fontsize=8, color=MUTED)
+            legend, head = self._legend(snapshot)
+            self.height = world_height + head
+            self._figure.set_size_inches(self.width / DOTS_PER_INCH, self.height / DOTS_PER_INCH)
+            self._caption.set_y(1 - CAPTION / 2 / self.height)
+            beside = head == CAPTION
+            legend.set_loc("center right" if beside else "center left")
+            below = CAPTION / 2 if beside else (CAPTION + head) / 2
+            legend.set_bbox_to_anchor((int(beside), 1 - below / self.height))
+            self._axes = self._figure.add_axes((0, 0, 1, 1 - head / self.height))
             self._axes.axis("off")
             draw_walls(self._axes, snapshot.walls)
             draw_obstacles(self._axes, snapshot.obstacles)
-            middle = 1 - CAPTION / 2 / self.height
-            self._caption = self._figure.text(0.012, middle, "", va="center", fontsize=8)
-            self._legend(snapshot, middle)
         self._fixed = len(self._axes.collections)
 
     def draw(self, snapshot: Snapshot) -> memoryview:
@@ -84,7 +97,8 @@ class Film:
         agent = "" if self._follow is None else f", agent {self._follow}"
         return f"seed {snapshot.seed}{agent}, step {snapshot.step:,}: {len(snapshot.x)} agents"
 
-    def _legend(self, snapshot: Snapshot, middle: float) -> None:
+    def _legend(self, snapshot: Snapshot) -> tuple[Legend, int]:
+        """The legend, not yet in its place, and the height of all that is above the world [pixel]."""
         dot = {"marker": "o", "linestyle": "", "markersize": 5}
         marks = [Line2D([], [], color=self._colors[kind], label=kind, **dot) for kind in snapshot.food_kinds]
         if len(snapshot.species_names) > 1:
@@ -93,13 +107,11 @@ class Film:
                 Line2D([], [], markeredgecolor=species_color(i), label=name, **ring)
                 for i, name in enumerate(snapshot.species_names)
             ]
-        self._figure.legend(
-            handles=marks,
-            loc="center right",
-            bbox_to_anchor=(1, middle),
-            ncols=len(marks),
-            fontsize=8,
-            borderaxespad=0.4,
-        ).set_in_layout(False)
-        self._figure.set_facecolor("white")
-        self._caption.set_color(MUTED)
+        legend = wrapped_legend(self._figure, marks, len(marks), fontsize=8, borderaxespad=0.4)
+        legend.set_in_layout(False)
+        size, words = legend.get_window_extent(), GROWTH * self._caption.get_window_extent().width
+        room = (1 - MARGIN) * self.width
+        if size.height <= CAPTION and words + size.width <= room:
+            return legend, CAPTION
+        self._caption.set_fontsize(8 * min(room / words, 1))
+        return legend, CAPTION + int(size.height) // 2 * 2

@@ -12,6 +12,7 @@ from synthetic_run import synthetic_snapshot, write_run
 from hedon.analysis.world.population import history
 from hedon.config.color import food_colors
 from hedon.config.title import weight_title
+from hedon.figure.film import Film
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
@@ -109,17 +110,22 @@ def test_the_legend_tells_what_rays_see() -> None:
     assert labels == [*foods, "ray that sees an agent", *seen]
 
 
-def test_a_legend_with_many_names_lies_within_the_picture() -> None:
-    kinds = ("normal", "toadstool", "fruit")
+def crowded_snapshot() -> Snapshot:
+    """A world with three foods, two species and an obstacle."""
+    plain = synthetic_snapshot(("normal", "toadstool", "fruit"))
     each = ("radius", "ray_count", "ray_length", "ray_spread", "mouth_spread", "mouth_center")
-    two = {name: np.full(2, getattr(synthetic_snapshot(), name)) for name in each}
-    many = replace(
-        synthetic_snapshot(kinds),
+    return replace(
+        plain,
         species_names=("grazer", "hunter"),
         obstacles=np.array([[(200, 200), (220, 200), (210, 220)]], np.float32),
         rays=np.full((40, 24, 7), -1.0, np.float32),
-        **two,
+        **{name: np.full(2, getattr(plain, name)) for name in each},
     )
+
+
+def test_a_legend_with_many_names_lies_within_the_picture() -> None:
+    many = crowded_snapshot()
+    kinds = many.food_kinds
     figure = draw_world(many, food_colors(kinds), [0])
     png_bytes(figure)
     legend, (axes, *_) = figure.legends[0], figure.axes
@@ -133,6 +139,24 @@ def test_a_legend_with_many_names_lies_within_the_picture() -> None:
     plain = draw_world(synthetic_snapshot(kinds), food_colors(kinds), [0])
     png_bytes(plain)
     assert axes.get_window_extent().width == pytest.approx(plain.axes[0].get_window_extent().width, rel=0.02)
+
+
+@pytest.mark.parametrize(("width", "beside"), [(160, False), (320, False), (1280, True)])
+def test_the_title_of_a_film_leaves_room_for_its_legend(width: int, beside: bool) -> None:
+    many = crowded_snapshot()
+    film = Film(many, food_colors(many.food_kinds), width, 100.0)
+    film.draw(many)
+    figure, title, legend = film._figure, film._caption.get_window_extent(), film._figure.legends[0]
+    names = [text.get_window_extent() for text in legend.get_texts()]
+    assert len(names) == 5
+    assert film.height % 2 == 0
+    for box in (title, *names):
+        assert figure.bbox.x0 <= box.x0
+        assert box.x1 <= figure.bbox.x1
+        assert film._axes.get_window_extent().y1 <= box.y0
+        assert box.y1 <= figure.bbox.y1
+    for box in names:
+        assert title.x1 < box.x0 if beside else box.y1 <= title.y0
 
 
 def test_rays_end_on_the_walls() -> None:
