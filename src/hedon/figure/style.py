@@ -181,7 +181,7 @@ def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **op
     Args:
         figure: that has its width.
         handles: of the legend, with labels.
-        columns: at most so many.
+        columns: the most that lie side by side.
         options: as those of `Figure.legend`.
     """
     rows = -(-len(handles) // columns)
