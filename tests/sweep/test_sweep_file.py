@@ -98,6 +98,7 @@ WRONG = {
     "steps = 64\nseeds = [1, 1]": "seeds = [1, 1]: must be how many",
     'steps = 64\nkeep = ["agent"]': 'keep = "agent": must be a list of agents, population, run; did you mean agents?',
     'steps = 64\n[factor]\n"energy.initail" = [1.0]': "did you mean initial?",
+    'steps = 64\nbase = "predator"\n[factor]\n"prey.energy.initial" = [1.0]': "did you mean species.prey?",
     'steps = 64\n[factor]\n"energy.initial" = [1.0, -3.0]': 'with energy.initial = -3.0: energy.initial = -3.0:',
     'steps = 64\n[factor]\npreset = ["basline"]': "did you mean baseline?",
     'steps = 64\nfidelity = "realeased"': "did you mean released?",

@@ -97,7 +97,8 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
             values |= {} if wrong else {name: _converted(own[name].type, plain)}
             problems.extend(wrong)
         elif name not in inner:
-            problems.append(Problem(place, "unknown name", nearest=_nearest_name(kind, name)))
+            near = _named_below(kind, table, name) or _nearest_name(kind, name)
+            problems.append(Problem(place, "unknown name", nearest=near))
         elif not isinstance(value, Mapping):
             problems.append(Problem(place, "must be a table", format_value(value)))
         elif not inner[name].repeated:
@@ -189,6 +190,13 @@ def _converted(kind: Any, value: Any) -> Any:
     if not isinstance(value, list | tuple):
         return float(value) if kind is float else value
     return tuple(_converted(items[0 if items[1] is Ellipsis else i], part) for i, part in enumerate(value))
+
+
+def _named_below(section: type, table: Mapping[str, Any], name: str) -> str | None:
+    """Where this is the name of a species, a kind of food, or the like: its path in the section."""
+    repeated = (part for part, inner in sections(section).items() if inner.repeated)
+    below = {part: table[part] for part in repeated if isinstance(table.get(part), Mapping)}
+    return " or ".join(f"{part}.{name}" for part, each in below.items() if name in each) or None
 
 
 def _nearest_name(section: type, name: str) -> str | None:

@@ -60,6 +60,11 @@ def lines(tables: dict[str, Any]) -> list[str]:
         ({"energy": {"learing_rate": 3}}, "energy.learing_rate: unknown name; did you mean learning.learning_rate?"),
         ({"kapa": 3}, "kapa: unknown name; did you mean hazard.kappa or birth.kappa?"),
         ({"zzz": 3}, "zzz: unknown name"),
+        (
+            {"species": {"hunter": {}}, "hunter": {"energy": {}}},
+            "hunter: unknown name; did you mean species.hunter?",
+        ),
+        ({"food": {"plum": {}}, "plum": {}}, "plum: unknown name; did you mean food.plum?"),
         ({"genom": {}}, "genom: unknown name; did you mean genome?"),
         ({"food": {"a": {"placment": {}}}}, "food.a.placment: unknown name; did you mean placement?"),
         (
