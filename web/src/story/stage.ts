@@ -12,6 +12,7 @@ import { addressOf, copyAddress, type Place, SHORT } from "./link";
 const PICTURE_MS = 12; // of work for a world that plays, between two pictures
 const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
 const WORDS_MS = 150; // between two looks at the words
+const MOVING = new Set(["creature", "family", "sandbox"]); // scenes that move as soon as they are seen
 export const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 export interface Camera {
@@ -29,7 +30,7 @@ export class Stage {
   changes = new Map<string, string>();
   seed = 1;
   playing = false;
-  seen = false; // whether it is on the screen
+  seen = false; // whether its arena is on the screen
   frame: Frame | undefined;
   chosen: number;
   actions: Actions | undefined; // of the chosen agent, if a person drives it
@@ -52,6 +53,7 @@ export class Stage {
   private goal: { step: number; done: () => void } | undefined;
   private wanted = "";
   private wordsDue = 0;
+  private near = false; // whether any part of its section is on the screen
 
   constructor(
     readonly host: HTMLElement,
@@ -75,7 +77,16 @@ export class Stage {
     });
     this.bar.append(this.play, this.again, this.clock, this.same, this.mark);
     this.how.hidden = true;
+    const near = new IntersectionObserver((entries) => (this.near = entries[entries.length - 1]!.isIntersecting));
+    near.observe(host.closest("section")!);
     (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
+  }
+
+  /** Begins the world if there is none yet: a reader may use a scene of which the arena has never been on the screen. */
+  private ensure(): void {
+    if (this.live) return;
+    this.begin();
+    if (MOVING.has(this.camera.scene) && !CALM.matches) this.setPlaying(true);
   }
 
   /** Begins the world, with what differs from its config. */
@@ -91,6 +102,7 @@ export class Stage {
     this.live.onMoment = (moment) => this.onMoment(moment);
     this.arena.forgetTrail();
     this.arena.fit(this.live);
+    this.wordsDue = 0;
     this.onBegin();
   }
 
@@ -128,9 +140,11 @@ export class Stage {
 
   /** Runs to a step as fast as it can; resolves when it is there and its digest is known, or when it cannot go on. */
   runTo(step: number, wanted = ""): Promise<void> {
+    this.ensure();
     this.setPlaying(false);
     this.finish();
     this.wanted = wanted;
+    this.wordsDue = 0;
     return new Promise((done) => (this.goal = { step, done }));
   }
 
@@ -154,22 +168,26 @@ export class Stage {
 
   /** Once for each picture of the page. */
   picture(): void {
+    if (this.near) this.ensure();
     if (!this.live) return;
     this.move();
-    if (!this.seen) return;
-    const { before } = this.live.around(Infinity);
-    this.frame = before;
+    if (!this.near) return;
+    this.frame = this.live.around(Infinity).before;
+    if (this.seen) this.draw();
+    if (performance.now() < this.wordsDue) return;
+    this.wordsDue = performance.now() + WORDS_MS;
+    this.words(); // also where the arena is out of sight: a chart, a button or an answer may be in it
+  }
+
+  private draw(): void {
     const { ink, arena } = this;
-    arena.draw(this.live, before, this.camera.coloring, this.chosen);
+    arena.draw(this.live, this.frame, this.camera.coloring, this.chosen);
     const { clientWidth, clientHeight } = ink.canvas;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     [ink.canvas.width, ink.canvas.height] = [clientWidth * ratio, clientHeight * ratio];
     ink.scale(ratio, ratio);
     this.onPicture();
     this.pictures++;
-    if (performance.now() < this.wordsDue) return;
-    this.wordsDue = performance.now() + WORDS_MS;
-    this.words();
   }
 
   /** Pixels of the canvas of a place in the world. */
