@@ -69,3 +69,49 @@ def test_a_scene_that_moves_by_itself_does_so_also_if_its_words_came_first(artic
     watched = unseen(article, "sandbox", "#sandbox h2")
     scroll_to(watched, "#sandbox .view", "center")
     watched.until(f"{stage('sandbox')}.live.last > 3")
+
+
+def rests(watched, scene):
+    """Whether the world of a scene stays where it is while the page goes on."""
+    at = f"[{stage(scene)}.running, {stage(scene)}.playing, {stage(scene)}.live.last]"
+    before = watched.get(at)
+    drawn = watched.get("hedon.pictures")
+    watched.until(f"hedon.pictures > {drawn} + 15")
+    return before[:2] == [False, False] and watched.get(at) == before
+
+
+def test_what_begins_another_world_ends_the_learning_of_the_one_before(article):
+    watched = article("learning")
+    learning = stage("learning")
+    section = watched.page.locator("#learning")
+
+    def learn():
+        section.locator("#learning-run").click()
+        watched.until(f"{learning}.running && {learning}.live.last > 0")
+
+    learn()
+    watched.get("(location.hash = '#scene=learning&seed=2&step=300')")
+    watched.until(f"{learning}.seed === 2 && {learning}.live.last === 300 && !{learning}.running")
+    assert rests(watched, "learning")
+    for begin in (section.locator("#learning-sit"), section.get_by_role("button", name="Reset")):
+        learn()
+        begin.click()
+        watched.until(f"{learning}.live.ready && {learning}.live.last === 0")
+        assert rests(watched, "learning")
+    learn()
+    set_knob(watched, "learning", "food.normal.gene.initial_mean", "2")
+    assert rests(watched, "learning")
+
+
+def test_a_link_that_is_refused_changes_nothing(article):
+    watched = article("contest")
+    [meal, moving] = (f"species.blue.{name}" for name in ("reward.meal_coef", "genome.action.initial_mean"))
+    set_knob(watched, "contest", meal, "7")
+    live = f"{stage('contest')}.live"
+    watched.get(f"void (window.before = {live})")
+    watched.get(f"(location.hash = '#scene=contest&seed=1&step=5&{meal}=2&{moving}=x')")
+    watched.until("!document.querySelector('#notice').hidden")
+    knobs = watched.get("[...document.querySelectorAll('#contest input[data-path]')].map((knob) => knob.value)")
+    assert knobs == ["7", "5"]
+    assert watched.get(f"[...{stage('contest')}.changes].join()") == f"{meal},7"
+    assert watched.get(f"before === {live}")

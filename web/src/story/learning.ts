@@ -20,6 +20,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const run = section.querySelector<HTMLButtonElement>("#learning-run")!;
   let meals: number[] = [0]; // at the end of each round: what it ate until then
   let path: number[] = []; // x, y of every step of the first and the last ones
+  let turn = 0; // how many worlds began
   let lastPace = NaN; // units per step on the path that ends with the last round
 
   /** Meals per 1,000 steps between two rounds. */
@@ -50,6 +51,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
 
   stage.onBegin = () => {
     [meals, path, lastPace] = [[0], [], NaN];
+    turn++;
     guess.answer("");
   };
   stage.onMoment = ({ frame, ends, trace }) => {
@@ -80,8 +82,9 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   };
   const learn = async () => {
     if (stage.live.last >= steps) stage.begin(stage.seed + 1);
+    const own = turn;
     await stage.runTo(steps);
-    stage.setPlaying(true);
+    if (own === turn && stage.live.last >= steps) stage.setPlaying(true);
   };
   run.addEventListener("click", () => void learn());
   const read = bindKnobs(section, stage, () => stage.begin());
@@ -94,9 +97,6 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
-    open: async (place) => {
-      await openStage(stage, place);
-      read();
-    },
+    open: (place) => openStage(stage, place, read),
   };
 }

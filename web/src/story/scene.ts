@@ -13,13 +13,17 @@ export interface Scene {
   open?: (place: Place) => Promise<void>;
 }
 
-/** Begins the world of a link and runs it to its step; `begun` is called between the two, to show what the link changes. */
+/**
+ * Begins the world of a link and runs it to its step; `begun` is called between the two, to show what the link changes.
+ * A link with a value that is refused changes nothing.
+ */
 export async function openStage(stage: Stage, place: Place, begun: () => void = () => {}): Promise<void> {
-  stage.changes.clear();
   for (const [path, value] of place.changes) {
-    const wrong = stage.set([path], value);
+    const wrong = stage.refuses(path, value);
     if (wrong) throw new Error(wrong);
   }
+  stage.changes.clear();
+  for (const [path, value] of place.changes) stage.set([path], value);
   stage.begin(place.seed);
   begun();
   await stage.runTo(place.step, place.digest);

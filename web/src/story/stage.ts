@@ -114,13 +114,18 @@ export class Stage {
     this.host.closest("section")!.dispatchEvent(new CustomEvent("reset"));
   }
 
-  /** Another value of a setting: the world begins again. Returns why it is refused, or "". */
+  /** Why a value of a setting is refused, or "". */
+  refuses(path: string, value: string): string {
+    const setting = this.setting(path);
+    return setting ? refusal(setting, value) : `${path}: is no setting that this scene can change`;
+  }
+
+  /** Another value of a setting, for the next world. Returns why it is refused, or "". */
   set(paths: string[], value: string): string {
     for (const path of paths) {
-      const setting = this.world.settings.find((each) => each.path === path);
-      if (!setting) return `${path}: is no setting that this scene can change`;
-      const wrong = refusal(setting, value);
+      const wrong = this.refuses(path, value);
       if (wrong) return wrong;
+      const setting = this.setting(path)!;
       if (setting.choices.length > 0 ? value === setting.value : Number(value) === Number(setting.value)) this.changes.delete(path);
       else this.changes.set(path, value);
     }
@@ -129,7 +134,11 @@ export class Stage {
 
   /** The value of a setting in this world. */
   value(path: string): number {
-    return Number(this.changes.get(path) ?? this.world.settings.find((each) => each.path === path)?.value);
+    return Number(this.changes.get(path) ?? this.setting(path)?.value);
+  }
+
+  private setting(path: string) {
+    return this.world.settings.find((each) => each.path === path);
   }
 
   setPlaying(on: boolean): void {
