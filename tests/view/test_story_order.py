@@ -1,7 +1,9 @@
 """A reader of the article does things in any order: before an arena is seen, in the middle of a run, with another link."""
 
+import re
+
 import pytest
-from story_page import set_knob, stage
+from story_page import run_to, set_knob, stage
 
 pytest_plugins = ("view_fixture", "story_fixture")
 
@@ -115,3 +117,100 @@ def test_a_link_that_is_refused_changes_nothing(article):
     assert knobs == ["7", "5"]
     assert watched.get(f"[...{stage('contest')}.changes].join()") == f"{meal},7"
     assert watched.get(f"before === {live}")
+
+
+HINT = "document.querySelector('#creature .hint')"
+STEER = "f3l2" * 1000
+
+
+def replayed(article):
+    """A reader in the middle of what a link with many commands does again."""
+    watched = article("creature")
+    watched.get(f"(location.hash = '#scene=creature&seed=1&step=5000&steer={STEER}')")
+    watched.until(f"{stage('creature')}.live.last > 20 && {HINT}.innerText.startsWith('It does again')")
+    assert watched.get(f"{stage('creature')}.running")
+    return watched
+
+
+def test_a_steered_link_is_done_again_at_once_and_with_the_same_commands(article):
+    watched = article("creature")
+    drawn = watched.get("hedon.pictures")
+    steer = STEER[: 4 * 240]
+    watched.get(f"(location.hash = '#scene=creature&seed=1&step=1200&steer={steer}')")
+    watched.until(f"{stage('creature')}.live.last === 1200 && !{stage('creature')}.running")
+    assert watched.get("hedon.pictures") - drawn < 480, "no picture for each command"
+    assert watched.get(f"{stage('creature')}.track()") == steer
+
+
+def test_reset_ends_what_a_link_does_again(article):
+    watched = replayed(article)
+    watched.page.locator("#creature").get_by_role("button", name="Reset").click()
+    watched.until(f"{stage('creature')}.live.ready && {stage('creature')}.live.last === 0")
+    assert rests(watched, "creature")
+    assert watched.get(f"{stage('creature')}.track()") == ""
+
+
+def test_who_presses_the_arena_goes_on_from_where_a_link_is(article):
+    watched = replayed(article)
+    watched.page.keyboard.down("ArrowDown")
+    watched.until(f"{stage('creature')}.track().includes('b')")
+    watched.page.keyboard.up("ArrowDown")
+    assert not watched.get(f"{stage('creature')}.running")
+    done = re.findall(r"[a-z.]\d+", watched.get(f"{stage('creature')}.track()").split("b")[0])
+    assert len(done) > 8
+    assert STEER.startswith("".join(done[:-1])), "the last one may be cut short"
+    watched.until(f"{HINT}.hidden")
+
+
+def test_the_button_ends_a_run_of_any_length(article):
+    watched = article("creature")
+    watched.get("(location.hash = '#scene=creature&seed=1&step=999999999999999')")
+    watched.until(f"{stage('creature')}.running && {stage('creature')}.live.last > 20")
+    watched.page.locator("#creature").get_by_role("button", name="Pause").click()
+    watched.until("document.querySelector('#creature .bar .main').textContent === 'Play'")
+    watched.until(f"{stage('creature')}.live.digest()")
+    assert rests(watched, "creature")
+
+
+@pytest.mark.parametrize("used", ["Play", "Reset", "link"])
+def test_arrow_keys_steer_after_a_click_on_a_button(used, article):
+    watched = article("creature")
+    creature = stage("creature")
+    watched.get(f"{creature}.setPlaying(false)")
+    watched.page.locator("#creature .bar").get_by_text(used, exact=True).click()
+    watched.until("document.activeElement === document.body")
+    watched.page.keyboard.down("ArrowLeft")
+    watched.until(f"{creature}.playing && {creature}.track().includes('l')")
+    watched.page.keyboard.up("ArrowLeft")
+
+
+def test_after_its_stroll_it_waits_and_says_so(article):
+    watched = article("creature")
+    creature = stage("creature")
+    run_to(watched, "creature", 1501)
+    watched.page.locator("#creature").get_by_role("button", name="Play").click()
+    watched.until(f"!{creature}.playing && {HINT}.innerText.startsWith('It waits for you')")
+    watched.page.locator("#creature").get_by_role("button", name="Play").click()
+    watched.until(f"{creature}.playing && {creature}.live.last > 1504")
+
+
+def test_after_a_slider_it_waits_for_the_reader(article):
+    watched = article("creature")
+    creature = stage("creature")
+    watched.until(f"{creature}.playing && {creature}.live.last > 3")
+    set_knob(watched, "creature", "genome.action.initial_mean", "5")
+    watched.until(f"{HINT}.innerText.startsWith('It waits for you')")
+    assert rests(watched, "creature")
+    watched.page.keyboard.down("ArrowLeft")
+    watched.until(f"{creature}.playing && {creature}.live.last > 3 && {HINT}.hidden")
+    watched.page.keyboard.up("ArrowLeft")
+
+
+def test_only_the_main_button_of_a_mouse_steers(article):
+    watched = article("creature")
+    watched.until(f"{stage('creature')}.playing && {stage('creature')}.live.last > 3")
+    watched.get(f"void (window.before = {stage('creature')}.live)")
+    watched.page.locator("#creature canvas.world").click(button="right")
+    watched.until(f"{stage('creature')}.live.last > 8")
+    assert watched.get(f"before === {stage('creature')}.live")
+    assert watched.get(f"{HINT}.innerText.startsWith('It strolls by itself')")

@@ -17,9 +17,11 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   const [least, most] = ["min_force", "max_force"].map((name) => stage.value(`motor.${name}`)) as [number, number];
   const commands = commandsOf(least, most);
   const keys = new Set<string>();
+  let replay: { command: string; until: number }[] = []; // what a link does, until which step
   let track = new Track();
   let goal: [number, number] | undefined;
   let strolling = !CALM.matches;
+  let steered = false; // whether a reader, or a link, has steered this world
   let command = ".";
   const guess = bindGuess(section);
   const hint = section.querySelector<HTMLElement>(".hint")!;
@@ -27,7 +29,8 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
 
   const takeOver = () => {
     if (strolling) stage.begin();
-    strolling = false;
+    stage.stop();
+    [strolling, steered, replay] = [false, true, []];
     stage.setPlaying(true);
   };
   const here = (): [number, number, number] | undefined => {
@@ -49,26 +52,38 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   };
 
   stage.advance = (steps) => {
-    if (strolling && stage.live.last > STROLL) stage.setPlaying(false);
+    if (strolling && stage.live.last > STROLL) {
+      strolling = false;
+      stage.setPlaying(false);
+      return false;
+    }
     const next = decide();
     stage.actions = commands[next];
     const sent = Stage.prototype.advance.call(stage, steps);
     if (sent) command = next;
     return sent;
   };
+  stage.ahead = (left) => {
+    const next = replay.find(({ until }) => until > stage.live.last);
+    if (!next) return left;
+    [command, stage.actions] = [next.command, commands[next.command]];
+    return Math.min(left, next.until - stage.live.last);
+  };
   stage.onBegin = () => {
-    track = new Track();
-    command = ".";
+    [track, command, replay, steered] = [new Track(), ".", [], false];
   };
   stage.onMoment = ({ done }) => {
     track.add(command, done);
     stage.edited = track.runs.some(([each]) => each !== ".");
     if (track.fits) stage.notes.set("steer", String(track));
     else stage.notes.delete("steer");
+    if (stage.running && replay.length > 0) stage.move(); // at once: it may be hundreds of short commands
   };
   stage.onPicture = () => drawMotors(stage, commands[command]!, [least, most]);
   stage.onWords = () => {
-    hint.hidden = !strolling;
+    const said = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : steered ? "" : "waits";
+    hint.hidden = said === "";
+    for (const each of hint.querySelectorAll<HTMLElement>("[data-when]")) each.hidden = each.dataset.when !== said;
     const life = stage.life();
     if (!life) return;
     const meals = life.eaten[0]!;
@@ -84,6 +99,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   section.addEventListener("reset", () => (strolling = false));
   const read = bindKnobs(section, stage, () => {
     strolling = false;
+    stage.setPlaying(false); // until somebody steers
     stage.begin();
   });
   Object.assign(stage, { commands, track: () => String(track) }); // for tests and curious persons
@@ -91,18 +107,13 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
     section,
     stage,
     autoplay: true,
-    open: async (place) => {
-      strolling = false;
-      const runs = Track.of(place.notes.get("steer") ?? "").runs;
-      await openStage(stage, { ...place, step: 0, digest: "" });
-      read();
-      let at = 0;
-      for (const [each, steps] of runs) {
-        [command, stage.actions] = [each, commands[each]];
-        await stage.runTo(Math.min((at += steps), place.step));
-      }
-      await stage.runTo(place.step, place.digest);
-    },
+    open: (place) =>
+      openStage(stage, place, () => {
+        read();
+        let until = 0;
+        replay = Track.of(place.notes.get("steer") ?? "").runs.map(([each, steps]) => ({ command: each, until: (until += steps) }));
+        [strolling, steered] = [false, replay.length > 0];
+      }),
   };
 }
 
@@ -121,19 +132,20 @@ function bindSteering(stage: Stage, keys: Set<string>, takeOver: () => void, go:
   window.addEventListener("blur", () => keys.clear());
   const point = (event: PointerEvent) => go(stage.arena.scene.toWorld(event.clientX, event.clientY));
   canvas.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
     takeOver();
     point(event);
   });
-  canvas.addEventListener("pointermove", (event) => event.buttons > 0 && point(event));
+  canvas.addEventListener("pointermove", (event) => (event.buttons & 1) > 0 && point(event));
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => go());
 }
 
-/** Sliders and choices that a pointer used let go of the arrow keys, which steer; who came there by keys keeps them. */
+/** What a pointer used lets go of the arrow keys, which steer; who came there by keys keeps the focus. */
 function releaseFocus(section: HTMLElement): void {
   const release = () => {
     const { activeElement } = document;
-    if (activeElement instanceof HTMLInputElement && section.contains(activeElement)) activeElement.blur();
+    if (activeElement instanceof HTMLElement && section.contains(activeElement) && activeElement.matches("input, button, a")) activeElement.blur();
   };
   section.addEventListener("click", (event) => event.detail > 0 && setTimeout(release)); // a label gives the focus after it
   section.addEventListener("pointerdown", () => document.addEventListener("pointerup", () => setTimeout(release), { once: true }));

@@ -69,7 +69,7 @@ export class Stage {
     this.arena.showTrail = false;
     this.ink = above.getContext("2d")!;
     this.chosen = camera.chosen ?? -1;
-    this.play.addEventListener("click", () => this.setPlaying(!this.playing));
+    this.play.addEventListener("click", () => (this.running ? this.stop() : this.setPlaying(!this.playing)));
     this.again.addEventListener("click", () => this.reset());
     this.same.addEventListener("click", (event) => {
       event.preventDefault();
@@ -143,8 +143,13 @@ export class Stage {
 
   setPlaying(on: boolean): void {
     this.playing = on;
-    this.play.textContent = on ? "Pause" : "Play";
-    this.play.setAttribute("aria-pressed", String(on));
+    this.label();
+  }
+
+  private label(): void {
+    const moves = this.playing || this.running;
+    this.play.textContent = moves ? "Pause" : "Play";
+    this.play.setAttribute("aria-pressed", String(moves));
   }
 
   /** Runs to a step as fast as it can; resolves when it is there and its digest is known, or when it cannot go on. */
@@ -154,7 +159,16 @@ export class Stage {
     this.finish();
     this.wanted = wanted;
     this.wordsDue = 0;
-    return new Promise((done) => (this.goal = { step, done }));
+    return new Promise((done) => {
+      this.goal = { step, done };
+      this.label();
+    });
+  }
+
+  /** Ends a run to a step where it is. */
+  stop(): void {
+    this.wanted = "";
+    this.finish();
   }
 
   get running(): boolean {
@@ -206,13 +220,17 @@ export class Stage {
     return [px - box.left, py - box.top];
   }
 
-  private move(): void {
+  /** Goes on to its goal, or, if it plays, by the steps of a picture. */
+  move(): void {
     const { live, goal } = this;
     if (goal) {
       if (live.error || live.over || live.last >= goal.step) {
         if (live.error || live.digest()) this.finish();
         else live.look();
-      } else live.advance(goal.step - live.last, RUN_MS, { trace: this.camera.trace, actions: this.actions });
+      } else {
+        const steps = this.ahead(goal.step - live.last);
+        live.advance(steps, RUN_MS, { trace: this.camera.trace, actions: this.actions });
+      }
     } else if (this.playing && this.seen) this.advance(this.camera.speed);
     else live.look();
   }
@@ -222,9 +240,15 @@ export class Stage {
     return this.live.advance(steps, PICTURE_MS, { trace: this.camera.trace, actions: this.actions });
   }
 
+  /** How many of the steps that are left to a goal it runs at once; a scene that steers on the way takes fewer. */
+  ahead(left: number): number {
+    return left;
+  }
+
   private finish(): void {
     const { goal } = this;
     this.goal = undefined;
+    this.label();
     goal?.done();
   }
 
