@@ -22,6 +22,7 @@ LONGEST = (
     "test_sweep_run.py",
     "test_module.py",
     "test_story_reader.py",
+    "test_story_order.py",
     "test_picture.py",
     "test_docs.py",
     "test_cuda_run.py",

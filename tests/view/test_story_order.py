@@ -1,4 +1,4 @@
-"""A reader of the article does things in any order: before an arena is seen, in the middle of a run, with another link."""
+"""A reader of the article does things in any order: before an arena is seen, in mid-run, with another link."""
 
 import re
 
@@ -214,3 +214,39 @@ def test_only_the_main_button_of_a_mouse_steers(article):
     watched.until(f"{stage('creature')}.live.last > 8")
     assert watched.get(f"before === {stage('creature')}.live")
     assert watched.get(f"{HINT}.innerText.startsWith('It strolls by itself')")
+
+
+@pytest.mark.parametrize("how", ["click", "key"])
+def test_a_guess_may_be_the_number_where_the_slider_is(how, article):
+    watched = article("learning")
+    slider = watched.page.locator("#learning .guess input")
+    if how == "click":
+        box = slider.bounding_box()
+        slider.click(position={"x": 8 + (box["width"] - 16) * 4 / 39, "y": box["height"] / 2})
+    else:
+        slider.press("Enter")
+    assert slider.input_value() == "5"
+    rounds = "Array.from({ length: 80 }, (_, i) => ({ step: 1024 * (i + 1), meals: [i] }))"
+    watched.get(f"{stage('learning')}.onMoment({{ frame: {{ step: 0 }}, ends: {rounds}, trace: [] }})")
+    watched.until("document.querySelector('#learning .answer').textContent.includes('You guessed 5 times')")
+
+
+def test_a_button_that_was_pressed_by_a_key_keeps_the_focus(article):
+    watched = article("learning")
+    button = watched.page.locator("#learning-run")
+    button.press("Enter")
+    watched.until("document.querySelector('#learning-run').textContent.startsWith('Learning: round ')")
+    assert button.get_attribute("aria-disabled") == "true"
+    assert watched.get("document.activeElement.id") == "learning-run"
+    watched.page.keyboard.press("Enter")
+    assert watched.get(f"[{stage('learning')}.seed, {stage('learning')}.aim]") == [1, 80 * 1024]
+
+
+def test_a_link_that_another_world_overtakes_chooses_nobody(article):
+    watched = article("family")
+    family = stage("family")
+    watched.get("(location.hash = '#scene=family&seed=1&step=900000&agent=5')")
+    watched.until(f"{family}.running && {family}.live.last > 0")
+    watched.page.locator("#family").get_by_role("button", name="Reset").click()
+    assert rests(watched, "family")
+    assert watched.get(f"{family}.chosen") == 39

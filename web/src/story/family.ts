@@ -110,8 +110,7 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     stage,
     autoplay: true,
     open: async (place) => {
-      await openStage(stage, place);
-      if (place.notes.has("agent")) choose(Number(place.notes.get("agent")));
+      if ((await openStage(stage, place)) && place.notes.has("agent")) choose(Number(place.notes.get("agent")));
     },
   };
 }

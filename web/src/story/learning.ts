@@ -77,10 +77,11 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     draw();
     const round = Math.min(Math.floor(stage.live.last / window), ROUNDS);
     run.textContent = stage.running ? `Learning: round ${round} of ${ROUNDS}` : stage.live.last >= steps ? "Again, with other luck" : "Let it learn";
-    run.disabled = stage.running;
+    run.setAttribute("aria-disabled", String(stage.running)); // which, unlike `disabled`, leaves it the focus
     if (meals.length > ROUNDS) answer();
   };
   const learn = async () => {
+    if (stage.running) return;
     if (stage.live.last >= steps) stage.begin(stage.seed + 1);
     const own = turn;
     await stage.runTo(steps);

@@ -10,14 +10,14 @@ export interface Scene {
   stage?: Stage;
   autoplay?: boolean; // whether it moves as soon as it is seen
   /** Shows the place of a link; without it the page begins the world and runs it to the step. */
-  open?: (place: Place) => Promise<void>;
+  open?: (place: Place) => Promise<unknown>;
 }
 
 /**
  * Begins the world of a link and runs it to its step; `begun` is called between the two, to show what the link changes.
- * A link with a value that is refused changes nothing.
+ * A link with a value that is refused changes nothing. Returns whether no other world began meanwhile.
  */
-export async function openStage(stage: Stage, place: Place, begun: () => void = () => {}): Promise<void> {
+export async function openStage(stage: Stage, place: Place, begun: () => void = () => {}): Promise<boolean> {
   for (const [path, value] of place.changes) {
     const wrong = stage.refuses(path, value);
     if (wrong) throw new Error(wrong);
@@ -26,5 +26,7 @@ export async function openStage(stage: Stage, place: Place, begun: () => void = 
   for (const [path, value] of place.changes) stage.set([path], value);
   stage.begin(place.seed);
   begun();
+  const { live } = stage;
   await stage.runTo(place.step, place.digest);
+  return live === stage.live;
 }
