@@ -1,5 +1,7 @@
 """What a reader of the article does, by script: goals are reached, and the engine in Python has the same bits."""
 
+import re
+
 import numpy as np
 import pytest
 from story_page import address_of, backend, native, opened, run_to, set_knob, stage
@@ -129,6 +131,41 @@ def test_lives_end_by_chance_as_in_python_and_the_curves_are_those_of_the_model(
     assert drawn == pytest.approx(hazard(species.hazard, np.full(4, 1000.0), energy), rel=1e-12)
     drawn = watched.get(f"{energy.tolist()}.map((e) => {stage('life')}.curve.birth({stage('life')}, e))")
     assert drawn == pytest.approx(birth_rate(species.birth, energy), rel=1e-12)
+
+
+def test_a_life_keeps_its_children_and_a_link_begins_without_lives(article):
+    fertile = "birth.kappa=0.02"
+    watched = article("life", f"#scene=life&seed=5&step=400&{fertile}")
+    life, answer = stage("life"), "document.querySelector('#life .answer')"
+    watched.until("hedon.opened !== ''")
+    [lived] = watched.get(f"{life}.lives()")
+    before = native(watched, "life", "life", lived - 1, fertile, seed=5).agents()
+    after = native(watched, "life", "life", lived, fertile, seed=5).agents()
+    born = len(set(after["agent_id"]) - set(before["agent_id"]))
+    [children] = before["children"][before["agent_id"] == 0] + born
+    assert children > 1
+    told = f"It lived {lived} steps, with {children} children."
+    watched.until(f"{answer}.textContent === '{told}'")
+    watched.get(f"{life}.begin(6)")
+    watched.until(f"{life}.live.last === 0 && {life}.life()?.children === 0")
+    drawn = watched.get(f"{life}.pictures")
+    watched.until(f"{life}.pictures > {drawn} + 15")
+    assert watched.get(f"{answer}.textContent") == told, "not those of the one that lives now"
+    watched.get("(location.hash = '#scene=life&seed=7&step=50')")
+    watched.until(f"hedon.opened.includes('seed=7') && {life}.live.digest()")
+    assert watched.get(f"[{life}.lives(), {answer}.hidden]") == [[], True], "lives of another setting"
+
+
+def test_lives_are_told_by_how_many_were_shorter(article):
+    watched = article("life")
+    life, answer = stage("life"), "document.querySelector('#life .answer').textContent"
+    watched.page.locator("#life input[data-path='hazard.kappa']").fill("0.05")
+    watched.page.locator("#life-many").click()
+    watched.until(f"{life}.lives().length === 3", 100)
+    watched.page.locator("#life-many").click()
+    watched.until(f"{answer}.includes('of 3 lives')")
+    told = re.search(r" 1 of 3 lives were shorter than ([\d,]+) steps", watched.get(answer))
+    assert int(told[1].replace(",", "")) == sorted(watched.get(f"{life}.lives()"))[1]
 
 
 def test_a_dot_on_a_curve_can_be_dragged(article):

@@ -17,6 +17,12 @@ const POINTS = 80; // of a curve
 
 type Grip = "death" | "child"; // a dot at the end of a curve
 
+/** A life that has ended: its steps, and how many children it had. */
+interface Ended {
+  steps: number;
+  children: number;
+}
+
 /** Chances per step: see `hedon.config.life`. */
 export function hazard(stage: Stage, energy: number, age: number, kappa = stage.value("hazard.kappa")): number {
   const of = (name: string) => stage.value(`hazard.${name}`);
@@ -29,6 +35,19 @@ export function birth(stage: Stage, energy: number, kappa = stage.value("birth.k
   return kappa / (1 + Math.exp(of("logit_offset") - of("beta") * energy));
 }
 
+/** The energy at which hunger is half as dangerous as without any. */
+function halved(stage: Stage, beta: number): number {
+  return Math.log(2 + stage.value("hazard.alpha_energy")) / beta;
+}
+
+/** How many of the lives were shorter than the one in their middle. */
+function middle(lives: Ended[]): string {
+  if (lives.length < 3) return "";
+  const sorted = lives.map(({ steps }) => steps).sort((a, b) => a - b);
+  const half = sorted[Math.floor(sorted.length / 2)]!;
+  return ` ${sorted.filter((each) => each < half).length} of ${sorted.length} lives were shorter than ${show(half)} steps.`;
+}
+
 export function life(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.life!, { scene: "life", speed: 8, coloring: ONE_COLOR, chosen: 0, threads: 1 });
   const per = { low: 0, high: 1, label: "expected per 1,000 steps" };
@@ -36,7 +55,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   const dots = new Chart(section.querySelector("#life-dots")!, { low: 0, high: 10_000, label: "length of a life [steps]" }, { low: 0, high: 1, label: "" });
   const guess = bindGuess(section);
   const buttons = ["one", "many"].map((name) => section.querySelector<HTMLButtonElement>(`#life-${name}`)!);
-  let lives: number[] = [];
+  let lives: Ended[] = [];
   let ended = false;
   const grips: Record<Grip, [number, number]> = { death: [0, 0], child: [MOST_ENERGY, 0] };
   let busy = ""; // which life runs, of how many
@@ -47,7 +66,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     const founder = dead.find((each) => each.id === 0);
     if (!founder || ended) return;
     ended = true;
-    lives.push(founder.death - founder.birth);
+    lives.push({ steps: founder.death - founder.birth, children: founder.children });
     stage.setPlaying(false);
   };
   const draw = () => {
@@ -70,9 +89,9 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
       curves.line([[energy, 0], [energy, per.high]], styleColor("--quiet"), 1, [3, 3]);
       curves.text(`now, energy ${show(founder.energy, 1)}`, energy + 0.4, per.high * 0.95, styleColor("--quiet"));
     }
-    dots.x.high = Math.max(10_000, ...lives);
+    dots.x.high = Math.max(10_000, ...lives.map(({ steps }) => steps));
     dots.begin();
-    lives.forEach((each, i) => dots.dot(each, 0.2 + (0.6 * ((i * 7) % 10)) / 10, styleColor("--mark")));
+    lives.forEach(({ steps }, i) => dots.dot(steps, 0.2 + (0.6 * ((i * 7) % 10)) / 10, styleColor("--mark")));
     const guessed = Number(guess.value());
     if (guessed) dots.line([[guessed, 0], [guessed, 1]], styleColor("--ink"), 2, [5, 3]);
   };
@@ -80,13 +99,11 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     draw();
     buttons[0]!.disabled = stage.play.disabled = busy !== "";
     buttons[1]!.textContent = busy ? `${busy}: stop` : `${MANY} lives`;
-    if (lives.length === 0) return;
-    const sorted = [...lives].sort((a, b) => a - b);
-    const middle = sorted.length > 2 ? ` Half of ${sorted.length} lives ended before ${show(sorted[Math.floor(sorted.length / 2)])}.` : "";
+    const last = lives[lives.length - 1];
+    if (!last) return;
     const guessed = guess.value() ? ` You guessed ${show(Number(guess.value()))}.` : "";
-    const founder = stage.life();
-    const children = founder ? `, with ${founder.children || "no"} ${founder.children === 1 ? "child" : "children"}` : "";
-    guess.answer(`It lived ${show(lives[lives.length - 1])} steps${children}.${guessed}${middle}`);
+    const children = `${last.children || "no"} ${last.children === 1 ? "child" : "children"}`;
+    guess.answer(`It lived ${show(last.steps)} steps, with ${children}.${guessed}${middle(lives)}`);
   };
   const stop = () => {
     [busy, turn] = ["", turn + 1];
@@ -94,6 +111,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   /** Runs until the founder is dead, a piece at a time, as often as it is asked; nothing else stops it but `stop`. */
   const some = async (count: number, piece: number) => {
     const own = ++turn;
+    if (!stage.live) stage.begin();
     for (let i = 1; i <= count && own === turn; i++) {
       busy = `Life ${i} of ${count}`;
       if (stage.live.last > 0 || ended) stage.begin(stage.seed + 1);
@@ -112,23 +130,25 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   const read = bindKnobs(section, stage, anew, {
     "energy.basic_cost": (value) => `${show(value)} energy`,
     "hazard.kappa": (value) => rate(hazard(stage, 0, 0, value)),
-    "hazard.beta_energy": (value) => `${show(value)} per energy`,
+    "hazard.beta_energy": (value) => `at ${show(halved(stage, value), 1)} energy`,
     "birth.kappa": (value) => rate(birth(stage, MOST_ENERGY, value)),
   });
-  section.addEventListener("reset", () => {
+  const forget = () => {
     stop();
     lives = [];
     guess.answer("");
-  });
+  };
+  section.addEventListener("reset", forget);
   bindDrag(curves, stage, grips, read, anew);
-  Object.assign(stage, { lives: () => lives, curve: { hazard, birth } });
+  Object.assign(stage, { lives: () => lives.map(({ steps }) => steps), curve: { hazard, birth } });
   return {
     section,
     stage,
     open: async (place) => {
-      stop();
-      await openStage(stage, place);
-      read();
+      await openStage(stage, place, () => {
+        forget();
+        read();
+      });
     },
   };
 }
