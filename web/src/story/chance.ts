@@ -51,7 +51,8 @@ export function chance(section: HTMLElement): Scene {
     if (shown === 1) return first;
     return `${first} Of 100 genes that do nothing, some ${show(100 * gene().p, 0)} go so far, up or down (p = ${gene().p.toFixed(2)}).`;
   };
-  const put = (step: number, value: number) => {
+  const put = (step: number, level: number) => {
+    const value = Math.min(Math.max(level, chart.y.low), chart.y.high);
     const to = Math.round((step / course.step[LAST]!) * LAST);
     const from = Math.min(guess.length, to);
     const begin = guess[from - 1] ?? measured()[0]!;
@@ -102,8 +103,8 @@ export function chance(section: HTMLElement): Scene {
     open: (place) => {
       food.checked = place.notes.get("gene") === "meal";
       forget();
-      const kept = (place.notes.get("guess") ?? "").split("_").map(Number);
-      if (kept.length === KEPT && kept.every(Number.isFinite)) kept.forEach((value, i) => put((i * course.step[LAST]!) / (KEPT - 1), value));
+      const kept = place.notes.get("guess")?.split("_") ?? [];
+      kept.forEach((value, i) => put((i * course.step[LAST]!) / (KEPT - 1), Number(value)));
       return Promise.resolve();
     },
   };

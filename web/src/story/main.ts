@@ -8,10 +8,10 @@ import evidence from "./evidence.json";
 import { family } from "./family";
 import { learning } from "./learning";
 import { life } from "./life";
-import { placeOf } from "./link";
+import { type Place, placeOf } from "./link";
 import { sandbox } from "./sandbox";
 import type { Scene, Worlds } from "./scene";
-import { CALM } from "./stage";
+import { CALM, type Stage } from "./stage";
 
 const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, life, family, contest, chance, sandbox };
 const scenes: Record<string, Scene> = {};
@@ -47,12 +47,32 @@ async function openAddress(): Promise<void> {
   by("notice").hidden = true;
   const place = placeOf(location.hash);
   if (!place) return;
-  const scene = scenes[place.scene];
-  if (!scene) throw new Error(`the link names the scene '${place.scene}': there are ${Object.keys(scenes).join(", ")}`);
-  scene.section.scrollIntoView();
+  const { hash } = location;
+  const scene = Object.hasOwn(scenes, place.scene) ? scenes[place.scene] : undefined;
+  scene?.section.scrollIntoView();
   story.opened = "";
-  await scene.open?.(place);
-  story.opened = location.hash;
+  try {
+    if (!scene) throw new Error(`it names the scene '${place.scene}': there are ${Object.keys(scenes).join(", ")}`);
+    if (place.damage) throw new Error(place.damage);
+    await scene.open?.(place);
+  } catch (error) {
+    throw new Error(`The link is damaged: ${told(error)}.`);
+  }
+  if (location.hash !== hash) return; // another link was opened since
+  story.opened = hash;
+  const other = scene.stage && otherWorld(scene.stage, place);
+  if (other) throw new Error(other);
+}
+
+/** What a world does not have that its link has, or "". */
+function otherWorld({ live, chosen }: Stage, place: Place): string {
+  const digest = live.digest();
+  const there = digest !== "" && (live.last === place.step || live.over); // not so if a reader began another meanwhile
+  if (there && place.digest && !digest.startsWith(place.digest)) {
+    return `This is not the world of the link, whose letters are ${place.digest}: it is damaged, or made by another version, or by a browser that rounds otherwise.`;
+  }
+  const lost = place.notes.has("agent") && !live.lives.get(chosen);
+  return there && lost ? `The link is damaged: this world has no creature ${place.notes.get("agent")}.` : "";
 }
 
 function picture(): void {
@@ -61,9 +81,11 @@ function picture(): void {
   requestAnimationFrame(picture);
 }
 
+const told = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
 function complain(error: unknown): void {
   by("notice").hidden = false;
-  by("notice").querySelector("span")!.textContent = error instanceof Error ? error.message : String(error);
+  by("notice").querySelector("span")!.textContent = told(error);
 }
 
 by("notice").querySelector("button")!.addEventListener("click", () => (by("notice").hidden = true));

@@ -27,7 +27,7 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   let name = "predators";
 
   const choose = (next: string) => {
-    name = next in ABOUT ? next : "predators";
+    name = next;
     stage.world = worlds[name]!;
     for (const each of section.querySelectorAll<HTMLElement>("button[data-world]")) each.setAttribute("aria-pressed", String(each.dataset.world === name));
     for (const each of section.querySelectorAll<HTMLElement>(".knobs")) each.hidden = each.dataset.world !== name;
@@ -84,7 +84,9 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
     stage,
     autoplay: true,
     open: async (place) => {
-      choose(place.notes.get("world") ?? "predators");
+      const next = place.notes.get("world") ?? "predators";
+      if (!Object.hasOwn(ABOUT, next)) throw new Error(`it names the world '${next}': there are ${Object.keys(ABOUT).join(", ")}`);
+      choose(next);
       await openStage(stage, place, read);
     },
   };

@@ -1,0 +1,77 @@
+"""Links of the article that are damaged, or lead to another world than they did: the page says so."""
+
+import re
+
+import pytest
+from story_page import stage
+
+pytest_plugins = ("view_fixture", "story_fixture")
+
+NOTICE = "document.querySelector('#notice')"
+DAMAGED = {
+    "scene=family&seed=abc&step=5": "it has seed=abc",
+    "scene=family&seed=1&step=3OO": "it has step=3OO",
+    "scene=family&seed=1&step=-5": "it has step=-5",
+    "scene=family&seed=1": "it has no step",
+    "scene=family&step=5": "it has no seed",
+    "scene=family&seed=1&seed=2&step=5": "it has seed twice",
+    "scene=family&seed=1&step=5&agnet=3": "nothing in it is called agnet",
+    "scene=family&seed=1&step=5&agent=99999": "this world has no creature 99999",
+    "scene=family&seed=1&step=5&digest=c": "it has digest=c",
+    "scene=creature&seed=1&step=5&steer=f3x2": "it has steer=f3x2",
+    "scene=creature&seed=1&step=5&genome.action.initial_me": "genome.action.initial_me: is no setting",
+    "scene=sandbox&seed=1&step=5&world=atlantis": "the world 'atlantis': there are predators, poison",
+    "scene=sandbox&seed=1&step=5&world=toString": "the world 'toString': there are predators",
+    "scene=chance&seed=1&step=0&guess=1_2": "it has guess=1_2",
+    "scene=constructor&seed=1&step=0": "the scene 'constructor': there are creature",
+}
+
+
+def told(watched, address):
+    """What the notice says when the address is opened."""
+    watched.get(f"({NOTICE}.hidden = true, location.hash = '#{address}')")
+    watched.until(f"!{NOTICE}.hidden")
+    return watched.get(f"{NOTICE}.querySelector('span').textContent")
+
+
+def test_a_damaged_link_is_told_as_that(article):
+    watched = article("creature")
+    for address, words in DAMAGED.items():
+        text = told(watched, address)
+        assert text.startswith("The link is damaged: "), address
+        assert words in text, address
+
+
+def test_a_link_to_another_world_is_told_as_that(article):
+    watched = article("family", "#scene=family&seed=1&step=5")
+    watched.until("hedon.opened !== ''")
+    digest = watched.get(f"{stage('family')}.live.digest()")[:8]
+    for seed, letters in ((2, digest), (1, digest.translate(str.maketrans("0123456789abcdef", "123456789abcdef0")))):
+        text = told(watched, f"scene=family&seed={seed}&step=5&digest={letters}")
+        assert text.startswith(f"This is not the world of the link, whose letters are {letters}")
+    watched.get(f"(location.hash = '#scene=family&seed=1&step=5&agent=7&digest={digest}')")
+    watched.until("hedon.opened.includes('agent=7')")
+    watched.until("document.querySelector('#family .digest').textContent.includes('as in the link')")
+    assert watched.get(f"{NOTICE}.hidden")
+
+
+def test_a_guess_of_a_link_stays_on_its_plot(article):
+    watched = article("chance", "#scene=chance&seed=1&step=0&gene=moving&guess=1000000000_-99_3_3_3_3_3_3_3_3_3")
+    watched.until("hedon.opened !== ''")
+    assert watched.get(f"{NOTICE}.hidden")
+    href = watched.get("document.querySelector('#chance-link').href")
+    assert re.search(r"guess=10_-2_3_3", href)
+
+
+@pytest.mark.parametrize("width", [1400, 1024])
+def test_a_notice_hides_neither_the_heading_nor_the_arena(width, article):
+    watched = article(
+        "contest", "#scene=contest&seed=1&step=5&digest=00000000", viewport={"width": width, "height": 768}
+    )
+    watched.until(f"!{NOTICE}.hidden")
+    notice = watched.page.locator("#notice").bounding_box()
+    for part in ("h2", ".view"):
+        hidden = watched.page.locator(f"#contest {part}").bounding_box()
+        beside = notice["x"] >= hidden["x"] + hidden["width"] or hidden["x"] >= notice["x"] + notice["width"]
+        assert beside or notice["y"] >= hidden["y"] + hidden["height"], part
+    assert notice["x"] >= watched.page.locator("#contest .words").bounding_box()["x"] - 8
