@@ -1,5 +1,7 @@
 """What a reader does in the article's last scenes, by script: the contest, the guess that is drawn, and the sandbox."""
 
+import re
+
 import numpy as np
 import pytest
 from story_page import address_of, native, opened, run_to, set_knob, stage
@@ -77,6 +79,42 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
     assert watched.get(KNOBS) == ["5", "5"]
     begin.click()
     watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.endsWith('of 20,480. ')")
+
+
+def test_a_contest_has_no_world_but_those_that_count(article):
+    watched = article("contest", "#scene=contest&seed=1&step=20800")
+    play = watched.page.locator("#contest").get_by_role("button", name=re.compile("Play|Pause"))
+    assert play.count() == 0, "it would go on past the end, or play one that is never counted"
+    assert watched.get(f"{stage('contest')}.play.hidden")
+    assert watched.page.locator("#contest-more").is_disabled()
+    watched.page.locator("#contest-one").click()
+    assert watched.page.locator("#contest-one").is_disabled(), "at once"
+    text = " ".join(watched.page.locator("#contest .words").inner_text().split())
+    assert "luck alone may win it" in text, "not half of them: there are draws"
+
+
+def test_the_lines_of_a_contest_stay_on_their_plot(article):
+    watched = article("contest")
+    watched.until(f"{stage('contest')}.live.last === 0 && {stage('contest')}.frame")
+    ends = watched.get(
+        """(() => {
+          const { stage } = hedon.scenes.contest;
+          const canvas = document.querySelector("#contest-lines");
+          const drawn = [];
+          const { prototype } = CanvasRenderingContext2D;
+          const { lineTo } = prototype;
+          prototype.lineTo = function (x, y) {
+            if (this.canvas === canvas) drawn.push(x);
+            lineTo.call(this, x, y);
+          };
+          stage.onMoment({ frame: { step: 40960, species: [], id: [] } });
+          stage.live.last = 40960;
+          stage.onWords();
+          prototype.lineTo = lineTo;
+          return [Math.max(...drawn), canvas.clientWidth];
+        })()"""
+    )
+    assert 0.9 * ends[1] < ends[0] < ends[1]
 
 
 def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):

@@ -36,6 +36,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const most = stage.value("species.blue.population.capacity");
   const lines = new Chart(section.querySelector("#contest-lines")!, { low: 0, high: STEPS, label: "steps" }, { low: 0, high: most, label: "alive" });
   stage.arena.rings = false; // the sides differ by color alone
+  stage.play.hidden = true; // a world here is one that counts: Begin runs it to its end, or Reset stops it
   const range = { low: -SPAN, high: SPAN };
   const map = new Chart(section.querySelector("#contest-map")!, { ...range, label: "a meal feels like" }, { ...range, label: "moving feels like" });
   const score = section.querySelector<HTMLElement>("#contest-score")!;
@@ -51,13 +52,17 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     const blue = frame.species.reduce((sum, each) => sum + (each === 0 ? 1 : 0), 0);
     if (frame.step > (course[course.length - 1]?.[0] ?? -1)) course.push([frame.step, blue, frame.id.length - blue]);
   };
+  const able = () => {
+    for (const each of buttons) each.disabled = busy;
+    buttons[1]!.disabled ||= results.length === 0;
+  };
   stage.onWords = () => {
     const [blue, orange] = [styleColor("--blue"), styleColor("--orange")];
+    lines.x.high = Math.max(STEPS, stage.live.last); // a link may have gone further
     lines.begin();
     lines.line(course.map(([step, count]) => [step, count]), blue);
     lines.line(course.map(([step, , count]) => [step, count]), orange);
-    for (const each of buttons) each.disabled = busy;
-    buttons[1]!.disabled ||= results.length === 0;
+    able();
     if (results.length > 0) drawMap();
     const running = stage.running ? `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(stage.aim)}. ` : "";
     score.textContent = running + verdict(results) || "No world yet.";
@@ -83,6 +88,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const some = async (count: number) => {
     const own = ++turn;
     busy = true;
+    able();
     for (let i = 0; i < count; i++) {
       if (stage.live.last > 0) stage.begin(stage.seed + 1);
       await stage.runTo(STEPS);
