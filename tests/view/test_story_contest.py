@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from story_page import address_of, native, opened, run_to, set_knob, stage
+from view_page import sized
 
 from hedon import load_config
 from hedon.view.story import SCENES
@@ -203,6 +204,45 @@ def test_a_guess_is_drawn_before_the_answer_by_pointer_and_by_keys(article):
     for _ in range(51):
         other.page.keyboard.press("ArrowRight")
     other.until("!document.querySelector('#chance-real').disabled")
+
+
+def test_a_finger_draws_scrolls_over_the_result_and_finds_the_buttons_below(article):
+    watched = article("chance", **sized(390))
+    plot, show = watched.page.locator("#chance-plot"), watched.page.locator("#chance-real")
+    watched.get("document.querySelector('#chance-plot').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    box = plot.bounding_box()
+    assert box["y"] + box["height"] < show.bounding_box()["y"] < box["y"] + box["height"] + 60
+    fingers = watched.page.context.new_cdp_session(watched.page)
+    level = box["y"] + 100
+
+    def touch(kind, *places):
+        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)]
+        fingers.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+
+    touch("Start", (box["x"] + 50, level))
+    touch("Move", (box["x"] + 150, level))
+    touch("Start", (box["x"] + 150, level), (box["x"] + 250, level + 120))
+    touch("Move", (box["x"] + 150, level), (box["x"] + 260, level + 120))
+    touch("Move", (box["x"] + box["width"] - 10, level), (box["x"] + 260, level + 120))
+    touch("End")
+    watched.until("!document.querySelector('#chance-real').disabled")
+    link = "document.querySelector('#chance-link').href"
+    guess = watched.get(link)
+    values = re.search(r"guess=([^&]+)", guess)[1].split("_")
+    assert len(set(values[1:])) == 1, "the second finger draws nothing"
+    show.click()
+    watched.until(f"{ANSWER}.includes('ended at 0.5')")
+    watched.get("document.querySelector('#chance-plot').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    before, box = watched.get("scrollY"), plot.bounding_box()
+    touch("Start", (box["x"] + 200, box["y"] + 200))
+    for moved in range(10, 101, 10):
+        touch("Move", (box["x"] + 200, box["y"] + 200 - moved))
+    touch("End")
+    watched.until(f"scrollY > {before} + 40")
+    assert watched.get(link) == guess, "it stays as it was drawn"
+    assert "ended at 0.5" in watched.get(ANSWER)
+    watched.page.locator("#chance-reset").click()
+    watched.until(f"{ANSWER} === 'Draw first.'")
 
 
 @pytest.mark.parametrize("world", ["predators", "poison", "seasons", "pitfalls"])

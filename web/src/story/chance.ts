@@ -26,6 +26,7 @@ export function chance(section: HTMLElement): Scene {
   const measured = () => gene().mean;
   const points = (values: number[]) => values.map((value, i): [number, number] => [course.step[i]!, value]);
 
+  const { canvas } = chart;
   const draw = () => {
     chart.begin();
     if (shown >= 2) chart.area(points(course.chance.low), points(course.chance.high), styleColor("--before"));
@@ -35,6 +36,7 @@ export function chance(section: HTMLElement): Scene {
       chart.dot(course.step[guess.length - 1]!, guess[guess.length - 1]!, styleColor("--ink"));
     } else chart.dot(0, measured()[0]!, styleColor("--mark"), 6);
     const whole = guess.length > LAST;
+    canvas.classList.toggle("shown", shown > 0);
     real.disabled = !whole;
     drift.disabled = shown < 1;
     answer.textContent = words(whole);
@@ -57,18 +59,20 @@ export function chance(section: HTMLElement): Scene {
     const from = Math.min(guess.length, to);
     const begin = guess[from - 1] ?? measured()[0]!;
     for (let i = from; i <= to; i++) guess[i] = begin + ((value - begin) * (i - from + 1)) / (to - from + 1);
-    shown = 0;
     draw();
   };
-  const { canvas } = chart;
+  /** What is shown stays until Reset: a finger scrolls over it. Of several fingers the first draws. */
+  const draws = (event: PointerEvent) => shown === 0 && event.isPrimary && event.buttons === 1;
   canvas.addEventListener("pointerdown", (event) => {
+    if (!draws(event)) return;
     canvas.setPointerCapture(event.pointerId);
     const [step] = chart.place(event);
     guess.length = Math.min(guess.length, Math.round((step / course.step[LAST]!) * LAST));
     put(...chart.place(event));
   });
-  canvas.addEventListener("pointermove", (event) => event.buttons > 0 && put(...chart.place(event)));
+  canvas.addEventListener("pointermove", (event) => draws(event) && put(...chart.place(event)));
   canvas.addEventListener("keydown", (event) => {
+    if (shown > 0) return;
     const at = guess.length - 1;
     const value = guess[at] ?? measured()[0]!;
     if (event.key === "ArrowRight" && at < LAST) put(course.step[at + 1]!, value);
@@ -79,7 +83,6 @@ export function chance(section: HTMLElement): Scene {
       else guess[at] = Math.min(Math.max(next, chart.y.low), chart.y.high);
     } else return;
     event.preventDefault();
-    shown = 0;
     draw();
   });
   const forget = () => {
