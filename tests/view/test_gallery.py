@@ -81,7 +81,7 @@ PLACES = {
         "predators",
         300,
         "Predators and prey",
-        "Six predators, with orange rings, have begun to eat. Amber is full of energy, blue has little.",
+        "Six predators, with dark rings, have begun to eat. Amber is full of energy, blue has little.",
         notes={"world": "predators"},
     ),
     "pitfalls": Place(

@@ -4,6 +4,7 @@ import re
 
 import pytest
 from story_page import stage
+from view_page import sized
 
 pytest_plugins = ("view_fixture", "story_fixture")
 
@@ -65,9 +66,8 @@ def test_a_guess_of_a_link_stays_on_its_plot(article):
 
 @pytest.mark.parametrize("width", [1400, 1024])
 def test_a_notice_hides_neither_the_heading_nor_the_arena(width, article):
-    watched = article(
-        "contest", "#scene=contest&seed=1&step=5&digest=00000000", viewport={"width": width, "height": 768}
-    )
+    still = {"viewport": {"width": width, "height": 768}, "reduced_motion": "reduce"}
+    watched = article("contest", "#scene=contest&seed=1&step=5&digest=00000000", **still)
     watched.until(f"!{NOTICE}.hidden")
     notice = watched.page.locator("#notice").bounding_box()
     for part in ("h2", ".view"):
@@ -75,3 +75,43 @@ def test_a_notice_hides_neither_the_heading_nor_the_arena(width, article):
         beside = notice["x"] >= hidden["x"] + hidden["width"] or hidden["x"] >= notice["x"] + notice["width"]
         assert beside or notice["y"] >= hidden["y"] + hidden["height"], part
     assert notice["x"] >= watched.page.locator("#contest .words").bounding_box()["x"] - 8
+
+
+@pytest.mark.parametrize("width", [1400, 390])
+def test_a_link_and_its_letters_stand_together(width, article):
+    watched = article("family", "#scene=family&seed=1&step=5&digest=00000000", **sized(width))
+    watched.until("document.querySelector('#family .digest').textContent.includes('in the link')")
+    names = ["#family .permalink", "#family .digest", "#chance-reset", "#chance-link"]
+    link, letters, reset, other = watched.get(
+        f"""{names}.map((each) => {{
+          const {{ left, right, top, bottom }} = document.querySelector(each).getBoundingClientRect();
+          return {{ left, right, middle: (top + bottom) / 2 }};
+        }})"""
+    )
+    for one, beside in ((link, letters), (reset, other)):
+        assert beside["left"] > one["right"]
+        assert abs(beside["middle"] - one["middle"]) < 6
+
+
+def test_no_scene_is_wider_than_a_small_phone(article):
+    watched = article("life", viewport={"width": 320, "height": 640})
+    assert watched.get("document.documentElement.scrollWidth") == 320
+
+
+@pytest.mark.parametrize("ground", ["light", "dark"])
+def test_a_ring_of_a_predator_differs_from_its_disc_however_full_it_is(ground, article):
+    watched = article("sandbox", **sized(1400, ground))
+    watched.until(f"{stage('sandbox')}.frame")
+    ring, full = watched.get(
+        f"""(() => {{
+          const {{ arena, live, frame, camera }} = {stage("sandbox")};
+          const {{ scene }} = arena;
+          const {{ disc }} = scene;
+          const [rings, discs] = [[], []];
+          scene.disc = (...given) => ((given[6] ?? 0) > 0 ? rings : discs).push(given[3]);
+          arena.draw(live, frame, {{ ...camera.coloring, value: () => 1e9 }}, -1);
+          scene.disc = disc;
+          return [rings[0], discs[discs.length - 1]].map((color) => [0, 8, 16].map((bits) => (color >> bits) & 255));
+        }})()"""
+    )
+    assert sum(abs(a - b) for a, b in zip(ring, full, strict=True)) > 200

@@ -25,6 +25,7 @@ export class Arena {
   showRays = true;
   showTrail = true;
   rings = true; // around all species but the first
+  ringColor = ""; // of the rings, by its name in the page's style; without one a species has its own
   follow = false;
   marked = new Set<number>(); // agents of the branch that is chosen in the tree
   drawMilliseconds = 0; // of the last frame, on the page's side
@@ -120,6 +121,7 @@ export class Arena {
       const kind = frame.foodKind[f]!;
       this.scene.disc(frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius, foods[kind]!);
     }
+    const ring = this.ringColor ? pack(parse(styleColor(this.ringColor))) : undefined;
     for (let i = 0; i < frame.id.length; i++) {
       const species = frame.species[i]!;
       const body = bodyOf(source, frame, i);
@@ -127,7 +129,7 @@ export class Arena {
       const { radius } = body;
       const known = colors[i] !== UNKNOWN;
       this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouth, known ? 0 : 0.3, middle);
-      if (species > 0 && this.rings) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, speciesColor(layout, species), 0, 2, 0.16);
+      if (species > 0 && this.rings) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, ring ?? speciesColor(layout, species), 0, 2, 0.16);
     }
     if (this.marked.size > 0) this.markBranch(source, frame);
     if (at >= 0) this.markKin(source, frame, at);

@@ -21,6 +21,7 @@ const ABOUT: Record<string, string> = {
 export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   const coloring: Coloring = { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! };
   const stage = new Stage(section, worlds.predators!, { scene: "sandbox", speed: 2, coloring });
+  stage.arena.ringColor = "--ink"; // that of a predator is much like amber
   const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive (gray: food)" });
   const reads: (() => void)[] = [];
   let course: [step: number, food: number, ...alive: number[]][] = [];
