@@ -299,3 +299,13 @@ def test_the_link_of_a_world_that_plays_has_letters_too(article):
     assert f"&step={step}&" in watched.get("location.hash")
     assert watched.get("location.hash").endswith(digest[:8])
     assert watched.get("document.querySelector('#sandbox .how').textContent").startswith("The same world on a command")
+
+
+@pytest.mark.parametrize(("scene", "button"), [("life", "life-one"), ("sandbox", "sandbox-video")])
+def test_a_button_works_before_its_arena_was_on_the_screen(scene, button, article):
+    watched = article("chance", reduced_motion="reduce")
+    assert watched.get(f"{stage(scene)}.live === undefined || {stage(scene)}.live === null")
+    watched.get(f"document.getElementById('{button}').click()")
+    watched.until(f"{stage(scene)}.live?.ready")
+    if scene == "life":
+        watched.until(f"{stage(scene)}.live.last > 0")
