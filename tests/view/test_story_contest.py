@@ -309,3 +309,15 @@ def test_a_button_works_before_its_arena_was_on_the_screen(scene, button, articl
     watched.until(f"{stage(scene)}.live?.ready")
     if scene == "life":
         watched.until(f"{stage(scene)}.live.last > 0")
+
+
+@pytest.mark.parametrize(("scene", "button"), [("life", "life-one"), ("contest", "contest-one")])
+def test_a_button_that_waits_keeps_the_focus(scene, button, article):
+    watched = article(scene)
+    watched.page.locator(f"#{button}").focus()
+    watched.page.keyboard.press("Enter")
+    watched.until(f"document.getElementById('{button}').matches(':disabled, [aria-disabled=true]')")
+    seed = watched.get(f"{stage(scene)}.seed")
+    watched.page.keyboard.press("Enter")
+    assert watched.get(f"[document.activeElement.id, {stage(scene)}.seed]") == [button, seed]
+    watched.until(f"{stage(scene)}.live.last > 0")

@@ -53,8 +53,8 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     if (frame.step > (course[course.length - 1]?.[0] ?? -1)) course.push([frame.step, blue, frame.id.length - blue]);
   };
   const able = () => {
-    for (const each of buttons) each.disabled = busy;
-    buttons[1]!.disabled ||= results.length === 0;
+    buttons[0]!.setAttribute("aria-disabled", String(busy)); // so that it keeps the focus
+    buttons[1]!.setAttribute("aria-disabled", String(busy || results.length === 0));
   };
   stage.onWords = () => {
     const [blue, orange] = [styleColor("--blue"), styleColor("--orange")];
@@ -109,11 +109,12 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     map.canvas.hidden = true;
   };
   buttons[0]!.addEventListener("click", () => {
+    if (busy) return;
     clear();
     stage.begin(1);
     void some(1);
   });
-  buttons[1]!.addEventListener("click", () => void some(MORE));
+  buttons[1]!.addEventListener("click", () => busy || results.length === 0 || void some(MORE));
   const read = bindKnobs(section, stage, () => {
     clear();
     stage.begin(1);

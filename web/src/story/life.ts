@@ -97,7 +97,8 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   };
   stage.onWords = () => {
     draw();
-    buttons[0]!.disabled = stage.play.disabled = busy !== "";
+    stage.play.disabled = busy !== "";
+    buttons[0]!.setAttribute("aria-disabled", String(busy !== "")); // so that it keeps the focus
     buttons[1]!.textContent = busy ? `${busy}: stop` : `${MANY} lives`;
     const last = lives[lives.length - 1];
     if (!last) return;
@@ -119,7 +120,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
     }
     if (own === turn) stop();
   };
-  buttons[0]!.addEventListener("click", () => void some(1, WATCHED));
+  buttons[0]!.addEventListener("click", () => busy || void some(1, WATCHED));
   buttons[1]!.addEventListener("click", () => (busy ? stop() : void some(MANY, PIECE)));
   const anew = () => {
     stop();
