@@ -29,7 +29,7 @@ def unseen(article, scene, shown):
     ("scene", "button", "told"),
     [
         ("learning", "#learning-run", "Learning: round "),
-        ("life", "#life-many", "Life 1 of 20: stop"),
+        ("life", "#life-many", "Life "),
         ("contest", "#contest-one", "Begin"),
     ],
 )
