@@ -13,11 +13,11 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
-from hedon.analysis.agent.lifetime import born_since, dead_agents, mean_lifetime
+from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import LAST_AGENTS, world_weights
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.world.record import gone_step
+from hedon.analysis.world.record import born_since, gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config.load import parse_config
 from hedon.record.reader import Run

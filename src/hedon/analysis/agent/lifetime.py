@@ -37,18 +37,6 @@ def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run:
     return float(values.mean()) if len(values) else None
 
 
-def born_since(agents: pl.DataFrame, first_step: int) -> pl.DataFrame:
-    """The agents whose lives the records tell from birth on: all of a run, of a branch those that were born in it.
-
-    Of those who lived when a branch began nobody is there who had died by then: they would make lives too long.
-
-    Args:
-        agents: table `agents`.
-        first_step: at which the records begin [step].
-    """
-    return agents.filter(pl.col("birth_step") > first_step) if first_step else agents
-
-
 def durations(agents: pl.DataFrame, last_step: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """How long each agent is known to have lived, and whether it died.
 

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from hedon.analysis.agent.lifetime import born_since
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config import Config, flatten, load_config
@@ -117,6 +116,18 @@ class WorldRecord:
             extinct_step=_by(step, self.extinct_step),
             apart_step=_by(step, self.apart_step),
         )
+
+
+def born_since(agents: pl.DataFrame, first_step: int) -> pl.DataFrame:
+    """The agents whose lives the records tell from birth on: all of a run, of a branch those that were born in it.
+
+    Of those who lived when a branch began nobody is there who had died by then: they would make lives too long.
+
+    Args:
+        agents: table `agents`.
+        first_step: at which the records begin [step].
+    """
+    return agents.filter(pl.col("birth_step") > first_step) if first_step else agents
 
 
 def all_eaten(kind: str) -> str:
