@@ -168,7 +168,7 @@ def test_the_exercises_name_what_the_article_has():
 def test_the_second_exercise_shows_what_a_child_inherits():
     """Of the children that it asks for: feelings are those of the parents, and what was learned is not."""
     world = Simulation(load_config(SCENES / "family.toml"), seeds=[1])
-    lives = {}  # as last seen, also of the dead
+    lives, seen = {}, {}  # as last seen, also of the dead; and of the living
     for step in range(1, 2001):  # each, so that all of a life is counted
         world.run(1)
         agents = world.worlds[0].agents()
