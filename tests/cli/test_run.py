@@ -210,12 +210,3 @@ def test_seeds_are_read(text, seeds):
 def test_seeds_that_are_none_are_refused(text):
     with pytest.raises(hedon.ArgumentError, match="seeds: "):
         parse_seeds(text)
-
-
-def test_a_rule_that_cannot_be_compiled_is_refused_before_anything_is_said(tmp_path):
-    pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
-    (tmp_path / "mine.py").write_text("def paid(agent):\n    return agent.hungr\n")
-    answer = answer_of("run", "small", "--set", 'reward.rule="mine.py:paid"', "--out", "run", cwd=tmp_path)
-    assert (answer.returncode, answer.stdout) == (2, "")
-    assert "an agent has no hungr" in answer.stderr
-    assert not (tmp_path / "run").exists()

@@ -114,16 +114,10 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         go: Runs it, with a display.
         begun: Where the run continues, as text to follow the number of steps.
         report: Whether the run ends with a report.
-
-    Raises:
-        RuleError: A rule cannot be compiled; nothing has been printed.
-        HedonError: As `go`.
     """
     from hedon.cli.display.run import RunDisplay, duration
-    from hedon.experiment.rule import require_compiled
     from hedon.record.schema import columns_of
 
-    require_compiled(plan.config, plan.rules)
     config, console = plan.config, make_console()
     worlds, out = count(len(plan.seeds), "world"), printable(str(plan.out))
     console.print(

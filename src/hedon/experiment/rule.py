@@ -197,20 +197,6 @@ def _rule(config: Config, name: str, use: str, source: RuleSource) -> Rule:
     return Rule(name, use, source, rule_columns(config, name, use), genes, neutral)
 
 
-def require_compiled(config: Config, kept: Sequence[RuleSource] = ()) -> None:
-    """Compiles the rules of a config, to see whether that can be done; who uses them compiles them again.
-
-    Args:
-        config: As that of `rules`.
-        kept: Likewise.
-
-    Raises:
-        RuleError: As `rules`; or one cannot be compiled.
-    """
-    for rule in rules(config, kept):
-        _ = rule.compiled
-
-
 def pinned(config: Config, found: Sequence[Rule]) -> Config:
     """The config with the names and digests of its rules' files, without the folders that they are in.
 
