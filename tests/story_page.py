@@ -62,3 +62,15 @@ def opened(article: Callable[..., Watched], name: str, address: str) -> Watched:
     other.until("hedon.opened !== ''", 200)
     other.until(f"document.querySelector('#{name} .digest').textContent.includes('as in the link')")
     return other
+
+
+def click_agent(watched: Watched, some: int) -> None:
+    """Clicks an agent of the scene with families, where it is now."""
+    x, y = watched.get(
+        f"""(() => {{
+          const {{ frame, arena }} = {stage("family")};
+          const i = [...frame.id].indexOf({some});
+          return arena.scene.toPage(frame.x[i], frame.y[i]);
+        }})()"""
+    )
+    watched.page.mouse.click(x, y)

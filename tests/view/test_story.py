@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from story_page import address_of, backend, native, opened, run_to, set_knob, stage
+from story_page import address_of, backend, click_agent, native, opened, run_to, set_knob, stage
 
 import hedon.env
 from hedon import load_config
@@ -190,14 +190,7 @@ def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(
     child, parent = np.array(pairs).T
     assert np.median(np.abs(child - parent)) < 0.1 * np.std(parent)
     some = watched.get(f"{stage('family')}.pairs()[0][0].id")
-    x, y = watched.get(
-        f"""(() => {{
-          const {{ frame, arena }} = {stage("family")};
-          const i = [...frame.id].indexOf({some});
-          return arena.scene.toPage(frame.x[i], frame.y[i]);
-        }})()"""
-    )
-    watched.page.mouse.click(x, y)
+    click_agent(watched, some)
     watched.until(f"document.querySelector('#family-card').textContent.includes('Creature {some}')")
     watched.until("document.querySelector('#family-card').textContent.includes('nothing that the parent had learned')")
     colored = watched.get(

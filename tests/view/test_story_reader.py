@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from story_page import backend, native, run_to, set_knob, stage
+from story_page import backend, click_agent, native, run_to, set_knob, stage
 from view_page import sized
 
 from hedon import Simulation, load_config
@@ -206,17 +206,6 @@ def test_a_finger_scrolls_over_the_curves_and_moves_only_their_dots(article):
     swipe(box["x"] + 47, box["y"] + 78)
     watched.until(f"{life}.changes.has('hazard.kappa')")
     assert watched.get("scrollY") == before
-
-
-def click_agent(watched, some):
-    x, y = watched.get(
-        f"""(() => {{
-          const {{ frame, arena }} = {stage("family")};
-          const i = [...frame.id].indexOf({some});
-          return arena.scene.toPage(frame.x[i], frame.y[i]);
-        }})()"""
-    )
-    watched.page.mouse.click(x, y)
 
 
 def test_n_goes_through_the_living_that_have_a_parent_wherever_the_focus_is(article):
