@@ -6,10 +6,11 @@ import polars as pl
 import pytest
 from worlds import QUICK
 
-from hedon import RunPlan, branch, load_config, open_run, run
+from hedon import RunPlan, branch, load_config, open_run, resume, run
 from hedon.analysis import read_worlds
 from hedon.analysis.topic.life import lifetime, reproductive_success
 from hedon.analysis.topic.selection import price_topic
+from hedon.check.difference import compare_runs
 from hedon.report.summary import summarize
 
 STEPS, MIDDLE = 1024, 512
@@ -54,3 +55,19 @@ def test_cohorts_of_a_branch_have_nobody_who_was_born_before_it(runs):
     rows = reproductive_success({later.condition: [later]})[1].rows
     assert rows["agents"].sum() == later.born.height
     assert all(table.rows.height for table in price_topic({later.condition: [later]}))
+
+
+def test_a_branch_of_two_species_that_was_resumed_is_still_one(tmp_path: Path) -> None:
+    lively = ("species.prey.birth.kappa=0.02", "species.prey.hazard.alpha_age=0.004")
+    config = load_config("predator", overrides=[*QUICK, *lively])
+    run(RunPlan(config, (1,), 128, tmp_path / "half", 1))
+    branch(tmp_path / "half", tmp_path / "branch", steps=192, threads=1)
+    resume(tmp_path / "branch", steps=256, threads=1)
+    run(RunPlan(config, (1,), 256, tmp_path / "whole", 1))
+    whole, later = ({w.species: w for w in read_worlds([open_run(tmp_path / name)])} for name in ("whole", "branch"))
+    assert {world.first_step for world in later.values()} == {128}
+    for name, world in later.items():
+        expected = whole[name].agents.filter(pl.col("birth_step") > 128)["agent_id"].to_list()
+        assert world.born["agent_id"].to_list() == expected
+    assert later["prey"].born.height > 0
+    assert compare_runs(tmp_path / "whole", tmp_path / "branch").same
