@@ -2,6 +2,7 @@
 import { AgentPanel } from "./agent";
 import { Arena } from "./arena";
 import { blend } from "./blend";
+import { Chapters } from "./chapters";
 import { type Coloring, colorings } from "./color";
 import { by, counted, element, option, show } from "./element";
 import { showHelp } from "./help";
@@ -23,6 +24,7 @@ import type { Source } from "./source";
 import type { Event, Frame, LiveWorld, Setting } from "./types";
 
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
+const PICTURES = 16; // at least, between two moments of records, until somebody chooses another speed
 const PICTURE_MS = 13; // of work for a live world between two pictures
 const HURRY_MS = 120; // of it on the way to a step that a link asks for, and at the highest speeds
 const PANEL_MS = 200; // between two looks at the panels
@@ -54,6 +56,7 @@ export class App {
   private readonly notice = new Notice();
   private readonly panel = new AgentPanel((id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
+  private readonly chapters = new Chapters((step) => this.seek(step));
   private readonly tabs = new Tabs(["agent", "plots", "tree", "settings", "world-panel"], (name) => this.opened(name));
   private worlds: LiveWorld[] = [];
 
@@ -243,7 +246,7 @@ export class App {
     const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
     this.tools = new Tools(source, beside, () => this.twin.close());
     this.panel.forget();
-    this.setSpeed(4);
+    this.setSpeed(SPEEDS.findLast((speed) => speed <= Math.max(4, source.spacing / PICTURES))!);
     this.arena.follow = false;
     const same = former && JSON.stringify(former.layout.arena) === JSON.stringify(source.layout.arena);
     if (view && same) this.arena.look(source, view);
@@ -326,6 +329,7 @@ export class App {
     const { source } = this;
     this.marks = events(source);
     this.timeline.draw(source, this.now, this.marks);
+    this.chapters.update(source, this.marks, this.now);
     this.plots?.update(this.frame, this.now);
     this.tree?.update(this.frame);
     this.panel.update(source, this.frame, this.chosen);

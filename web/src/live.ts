@@ -29,6 +29,7 @@ export class Live implements Source {
   readonly windows = new Windows();
   readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
   readonly first = 0;
+  readonly spacing = 1;
   last = 0;
   chosen = -1;
   fused = false;

@@ -82,6 +82,10 @@ export class Replay implements Source {
     return Math.max(this.film.last ?? -1, this.series.step[this.series.step.length - 1] ?? 0);
   }
 
+  get spacing(): number {
+    return this.index.frames;
+  }
+
   get obstacles(): Place[][] {
     return this.index.obstacles?.[this.world] ?? [];
   }

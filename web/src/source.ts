@@ -11,6 +11,7 @@ export interface Source {
   readonly obstacles: Place[][]; // their corners
   readonly first: number;
   readonly last: number;
+  readonly spacing: number; // steps between two moments
   readonly ended: boolean; // whether no moment comes after the last one
   readonly lives: Lives;
   readonly series: Series;
