@@ -120,15 +120,16 @@ def test_a_link_that_is_refused_changes_nothing(article):
 
 
 HINT = "document.querySelector('#creature .hint')"
-STEER = "f3l2" * 1000
+STEER = "f3l2" * 4000
+"""Commands for 20,000 steps, so that a reader can act before they are done."""
 
 
 def replayed(article):
     """A reader in the middle of what a link with many commands does again."""
     watched = article("creature")
-    watched.get(f"(location.hash = '#scene=creature&seed=1&step=5000&steer={STEER}')")
-    watched.until(f"{stage('creature')}.live.last > 20 && {HINT}.innerText.startsWith('It does again')")
-    assert watched.get(f"{stage('creature')}.running")
+    watched.get(f"(location.hash = '#scene=creature&seed=1&step=20000&steer={STEER}')")
+    creature = stage("creature")
+    watched.until(f"{creature}.running && {creature}.live.last > 20 && {HINT}.innerText.startsWith('It does again')")
     return watched
 
 
@@ -250,3 +251,22 @@ def test_a_link_that_another_world_overtakes_chooses_nobody(article):
     watched.page.locator("#family").get_by_role("button", name="Reset").click()
     assert rests(watched, "family")
     assert watched.get(f"{family}.chosen") == 39
+
+
+def test_what_runs_to_its_end_goes_on_in_a_hidden_tab_and_what_plays_rests(article):
+    watched = article("family")
+    watched.until(f"{stage('family')}.playing && {stage('family')}.live.last > 0")
+    watched.get(f"void {stage('learning')}.runTo(3000)")
+    watched.get(
+        """(() => {
+          window.requestAnimationFrame = () => 0; // a hidden tab has no pictures
+          Object.defineProperty(document, "hidden", { get: () => true });
+          document.dispatchEvent(new Event("visibilitychange"));
+        })()"""
+    )
+    pictures, plays = watched.get(f"[hedon.pictures, {stage('family')}.live.last]")
+    watched.until(f"!{stage('learning')}.running")
+    assert watched.get(f"{stage('learning')}.live.last") == 3000
+    after, played = watched.get(f"[hedon.pictures, {stage('family')}.live.last]")
+    assert after <= pictures + 1
+    assert played <= plays + 4, "one order to the engine may have been under way"

@@ -13,7 +13,7 @@ const ENOUGH = 5; // meals
 const FLAME = 0.09; // units of a motor's flame per unit of force
 
 export function creature(section: HTMLElement, worlds: Worlds): Scene {
-  const stage = new Stage(section, worlds.creature!, { scene: "creature", speed: 1, coloring: ONE_COLOR, chosen: 0, rays: true, threads: 1 });
+  const stage = new Stage(section, worlds.creature!, { scene: "creature", autoplay: true, speed: 1, coloring: ONE_COLOR, chosen: 0, rays: true, threads: 1 });
   const [least, most] = ["min_force", "max_force"].map((name) => stage.value(`motor.${name}`)) as [number, number];
   const commands = commandsOf(least, most);
   const keys = new Set<string>();
@@ -106,7 +106,6 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
-    autoplay: true,
     open: (place) =>
       openStage(stage, place, () => {
         read();

@@ -19,7 +19,7 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     scale: "distinct",
     value: (life) => (life && root >= 0 && stage.live.lives.founder(life.id) === root ? ORANGE : NaN),
   };
-  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", speed: 4, coloring });
+  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", autoplay: true, speed: 4, coloring });
   const gene = (name: string) => stage.world.layout.genes.findIndex((each) => each.name === name);
   const [meal, moving] = [gene("w_normal"), gene("w_action")];
   const chart = new Chart(
@@ -108,7 +108,6 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
-    autoplay: true,
     open: async (place) => {
       if ((await openStage(stage, place)) && place.notes.has("agent")) choose(Number(place.notes.get("agent")));
     },

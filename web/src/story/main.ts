@@ -11,7 +11,7 @@ import { life } from "./life";
 import { type Place, placeOf } from "./link";
 import { sandbox } from "./sandbox";
 import type { Scene, Worlds } from "./scene";
-import { CALM, type Stage } from "./stage";
+import type { Stage } from "./stage";
 
 const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, life, family, contest, chance, sandbox };
 const scenes: Record<string, Scene> = {};
@@ -34,13 +34,10 @@ async function begin(): Promise<void> {
 
 /** A scene that comes into sight has its world, and one that leaves it rests. */
 function see({ target, isIntersecting }: IntersectionObserverEntry): void {
-  const scene = Object.values(scenes).find((each) => each.section.contains(target));
-  const stage = scene?.stage;
-  if (!scene || !stage) return;
+  const stage = Object.values(scenes).find((each) => each.section.contains(target))?.stage;
+  if (!stage) return;
   stage.seen = isIntersecting;
-  if (!isIntersecting || stage.live) return;
-  stage.begin();
-  if (scene.autoplay && !CALM.matches) stage.setPlaying(true);
+  if (isIntersecting) stage.ensure();
 }
 
 async function openAddress(): Promise<void> {
@@ -97,5 +94,7 @@ by("theme").addEventListener("click", () => {
 });
 
 for (const { source, command } of Object.values(evidence)) by("source-list").append(element("li", {}, element("code", { text: source }), ` from ${command}`));
+
+document.addEventListener("visibilitychange", () => Object.values(scenes).forEach(({ stage }) => stage?.unseen()));
 
 begin().catch(complain);

@@ -20,7 +20,7 @@ const ABOUT: Record<string, string> = {
 
 export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   const coloring: Coloring = { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! };
-  const stage = new Stage(section, worlds.predators!, { scene: "sandbox", speed: 2, coloring });
+  const stage = new Stage(section, worlds.predators!, { scene: "sandbox", autoplay: true, speed: 2, coloring });
   stage.arena.ringColor = "--ink"; // that of a predator is much like amber
   const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive (gray: food)" });
   const reads: (() => void)[] = [];
@@ -84,7 +84,6 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
-    autoplay: true,
     open: async (place) => {
       const next = place.notes.get("world") ?? "predators";
       if (!Object.hasOwn(ABOUT, next)) throw new Error(`it names the world '${next}': there are ${Object.keys(ABOUT).join(", ")}`);

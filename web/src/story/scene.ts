@@ -8,7 +8,6 @@ export type Worlds = Record<string, LiveWorld>;
 export interface Scene {
   section: HTMLElement;
   stage?: Stage;
-  autoplay?: boolean; // whether it moves as soon as it is seen
   /** Shows the place of a link; without it the page begins the world and runs it to the step. */
   open?: (place: Place) => Promise<unknown>;
 }

@@ -12,7 +12,6 @@ import { addressOf, copyAddress, type Place, SHORT } from "./link";
 const PICTURE_MS = 12; // of work for a world that plays, between two pictures
 const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
 const WORDS_MS = 150; // between two looks at the words
-const MOVING = new Set(["creature", "family", "sandbox"]); // scenes that move as soon as they are seen
 export const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 export interface Camera {
@@ -20,6 +19,7 @@ export interface Camera {
   speed: number; // steps per picture
   coloring: Coloring;
   chosen?: number; // the agent that is followed from the start
+  autoplay?: boolean; // whether it moves as soon as it is seen
   rays?: boolean;
   threads?: number; // 0 or nothing for as many as help
   trace?: boolean; // whether the path of the chosen agent is noted
@@ -82,11 +82,11 @@ export class Stage {
     (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
   }
 
-  /** Begins the world if there is none yet: a reader may use a scene of which the arena has never been on the screen. */
-  private ensure(): void {
+  /** Begins the world if there is none yet: when it comes into sight, or is used before. */
+  ensure(): void {
     if (this.live) return;
     this.begin();
-    if (MOVING.has(this.camera.scene) && !CALM.matches) this.setPlaying(true);
+    if (this.camera.autoplay && !CALM.matches) this.setPlaying(true);
   }
 
   /** Begins the world, with what differs from its config. */
@@ -99,7 +99,10 @@ export class Stage {
     this.notes = new Map();
     this.live = new Live(this.world, new Map(this.changes), seed, this.camera.threads ?? 0);
     this.live.chosen = this.chosen;
-    this.live.onMoment = (moment) => this.onMoment(moment);
+    this.live.onMoment = (moment) => {
+      this.onMoment(moment);
+      this.unseen();
+    };
     this.arena.forgetTrail();
     this.arena.fit(this.live);
     this.wordsDue = 0;
@@ -233,6 +236,11 @@ export class Stage {
       }
     } else if (this.playing && this.seen) this.advance(this.camera.speed);
     else live.look();
+  }
+
+  /** Goes on to its goal while the page is hidden, and has no pictures to go on by. */
+  unseen(): void {
+    if (document.hidden && this.goal) this.move();
   }
 
   /** Some steps, as the person who drives it tells; a scene may do it in another way. */
