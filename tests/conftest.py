@@ -1,9 +1,13 @@
-"""What all tests share: a config file to write, and the order in which two workers end together."""
+"""What all tests share: a config file to write, and how workers share the processors and end together."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+# Threads of NumPy's library spin while they wait for one another, on processors that another worker could use.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 LONGEST = (
     "test_combination.py",
