@@ -15,7 +15,8 @@ export class Chapters {
   update(source: Source, marks: Event[], now: number): void {
     this.list.hidden = source.live || marks.length === 0; // a live world keeps its last moments alone
     if (this.list.hidden || document.activeElement === this.list) return;
-    const found = [{ step: source.first, text: "the beginning" }, ...marks].sort((a, b) => a.step - b.step);
+    // A mark may stand before the first moment: the population has rows between two frames.
+    const found = [{ step: source.first, text: "the beginning" }, ...[...marks].sort((a, b) => a.step - b.step)];
     if (JSON.stringify(found) !== JSON.stringify(this.chapters)) {
       this.chapters = found;
       this.list.replaceChildren(...found.map(({ step, text }, i) => option(String(i), `${show(step)}: ${text}`)));
