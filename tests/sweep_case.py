@@ -154,7 +154,7 @@ def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
     ]
     for one in both:
         said, _ = one.communicate(timeout=300)
-        assert one.returncode == 0
+        assert one.returncode == 0, said
         assert "All done" in said
     remote, far = planned(file, url)
     assert far.names("state") == []

@@ -4,7 +4,7 @@ import pytest
 from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, sweep_file
 
 from hedon.error import HedonError
-from hedon.jobs.store import PASSING, Store
+from hedon.jobs.store import PASSING, TRIES, Store
 from hedon.sweep.work import STATE, make_task
 
 
@@ -43,6 +43,28 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     assert [path.name for path in (tmp_path / "a").iterdir() if PASSING in path.name]
     assert store.names("a") == ["b"]
     assert store.read("a/b") == b"old"
+
+
+@pytest.mark.parametrize(("breaks", "tries"), [(TRIES - 1, TRIES), (TRIES, TRIES)])
+def test_what_arrives_cut_off_is_read_again(breaks, tries, tmp_path, monkeypatch):
+    store = Store(f"memory://{tmp_path}")
+    store.write("a", b"whole")
+    cat_file, asked = store._system.cat_file, []
+
+    def cut_off(path: str) -> bytes:
+        asked.append(path)
+        if len(asked) <= breaks:
+            raise DriverError("received 3919872 of 6854895 bytes")
+        return cat_file(path)
+
+    monkeypatch.setattr(store._system, "cat_file", cut_off)
+    monkeypatch.setattr("hedon.jobs.store.PAUSE", 0.0)
+    if breaks < TRIES:
+        assert store.read("a") == b"whole"
+    else:
+        with pytest.raises(HedonError, match=r"cannot read a of memory.*: DriverError: received 3919872 of"):
+            store.read("a")
+    assert len(asked) == tries
 
 
 class DriverError(Exception):

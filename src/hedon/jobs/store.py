@@ -4,6 +4,7 @@ Whatever is written is whole or not there: it is written under a passing name an
 """
 
 import secrets
+import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -16,6 +17,10 @@ from hedon.record.atomic import write_atomically
 
 READERS = 32
 """Contents that are read at a time."""
+TRIES = 4
+"""To read behind a URL: a connection breaks at times, and some stores cut a content off that is replaced meanwhile."""
+PAUSE = 0.1
+"""Between two tries [s]."""
 PASSING = ".tmp-"
 """Part of the names of objects that are being written; no reader sees them."""
 
@@ -91,7 +96,13 @@ class Store:
     def read(self, name: str) -> bytes | None:
         """A content, or None where there is none of this name. JobError: it cannot be read."""
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
-            return self._system.cat_file(self._path(name))
+            for left in reversed(range(TRIES if self.folder is None else 1)):
+                try:
+                    return self._system.cat_file(self._path(name))
+                except Exception as error:
+                    if left == 0 or isinstance(error, FileNotFoundError | NotADirectoryError | PermissionError):
+                        raise
+                    time.sleep(PAUSE)
         return None
 
     def read_all(self, names: Sequence[str]) -> list[bytes | None]:
