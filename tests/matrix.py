@@ -31,7 +31,8 @@ def clang() -> str:
             said = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=False).stdout
             if (number := re.match(r"\d+", said)) and int(number[0]) >= OLDEST_CLANG:
                 return path
-    return f"{zig()} c++" if find_spec("ziglang") else ""
+    # Zig's own idea of this processor may lack what the kernels name, such as 512-bit registers beside AVX10.
+    return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""
 
 
 def passes(python: str, name: str, compiler: str) -> bool:

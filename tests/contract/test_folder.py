@@ -111,7 +111,9 @@ def test_two_reports_at_once_on_a_run_that_goes_on_harm_nothing(tmp_path):
     both = [subprocess.Popen(["hedon", "report", str(folder)], stderr=subprocess.PIPE) for _ in range(2)]
     for report in both:
         _, said = report.communicate(timeout=240)
-        assert (report.returncode, said.decode()) == (0, "")
+        assert report.returncode == 0
+        # On a slow machine it says how far it is.
+        assert all(line.startswith("hedon: writing the report: ") for line in said.decode().splitlines())
     assert running.wait(timeout=120) == 0
     assert load_manifest(folder).status == "finished"
     assert (folder / "report.html").stat().st_size > 10_000
