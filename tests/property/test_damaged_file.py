@@ -124,6 +124,7 @@ NEVER = {
     "cause": ["", "bored"],
     "energy": [float("nan"), float("inf"), -1e30],
     "x": [float("nan"), 1e30],
+    "angle": [float("nan"), 3e38, -3e38],
     "w_normal": [float("inf"), 1e30],
 }
 """What a file may hold that no run has written."""

@@ -15,6 +15,8 @@ NUMPY_TYPES: dict[str, type[np.generic]] = {
     "f32": np.float32,
     "f64": np.float64,
 }
+MOST_TURN = 1e9
+"""No body turns so far in a run [rad]: a heading beyond it is damage, and no figure could be drawn with it."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class Column:
         meaning: one phrase.
         nullable: whether a value may be missing; pass −1 (integers) or NaN (floats) to the writer for such a value.
         choices: the values that a string may have.
+        missing_for: the kinds (column `kind`) whose rows have no value, and no others; None where it is not known.
     """
 
     name: str
@@ -36,6 +39,7 @@ class Column:
     meaning: str
     nullable: bool = False
     choices: tuple[str, ...] = ()
+    missing_for: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import polars as pl
 
-from hedon.record.column import Table
+from hedon.record.column import MOST_TURN, Table
 from hedon.record.error import RecordError
 from hedon.record.folder import PARTS_BEFORE
 from hedon.record.manifest import Manifest
@@ -85,12 +85,18 @@ def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) ->
             wrong += int((~values.is_finite()).sum())
         if wrong:
             yield f"{wrong:,} values of {column.name} are missing or not finite"
+        if column.missing_for is not None and "kind" in rows.columns:
+            of_food = rows["kind"].is_in(column.missing_for)
+            if (values.is_null() != of_food).any():
+                yield f"{column.name} is missing for an agent, or known for a food"
         if values.dtype.is_integer():
             limit = most.get("world" if column.name == "world" else column.unit)
             outside = (values < 0) if limit is None else ~values.is_between(0, limit)
             if outside.any():
                 first = values.filter(outside)[0]
                 yield f"{column.name} = {first}: must be from 0" + ("" if limit is None else f" to {limit}")
+        elif column.unit == "rad" and (far := values.abs() > MOST_TURN).any():
+            yield f"{column.name} = {values.filter(far)[0]:g}: must be from -{MOST_TURN:g} to {MOST_TURN:g}"
         elif column.choices and not (known := values.drop_nulls().is_in(column.choices)).all():
             yield f"{column.name} = {brief(repr(values.drop_nulls().filter(~known)[0]))}: the run has no such name"
 

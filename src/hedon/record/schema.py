@@ -229,11 +229,18 @@ def _frame_table(columns: Columns) -> Table:
         WORLD,
         Column("step", "i64", "step", "steps completed when the frame was taken"),
         Column("kind", "string", "", "the name of the species, or of the food kind", choices=kinds),
-        Column("id", "i64", "1", "agent_id; missing for food", nullable=True),
+        Column("id", "i64", "1", "agent_id; missing for food", nullable=True, missing_for=columns.food_kinds),
         Column("x", "f32", "u", "position of the center"),
         Column("y", "f32", "u", "position of the center"),
-        Column("angle", "f32", "rad", "heading, 0 along +y, counter-clockwise; missing for food", nullable=True),
-        Column("energy", "f32", "energy", "energy; missing for food", nullable=True),
+        Column(
+            "angle",
+            "f32",
+            "rad",
+            "heading, 0 along +y, counter-clockwise; missing for food",
+            nullable=True,
+            missing_for=columns.food_kinds,
+        ),
+        Column("energy", "f32", "energy", "energy; missing for food", nullable=True, missing_for=columns.food_kinds),
         *(
             Column(name, "f32", "amount", f"{name}; missing for food, and for species without it", nullable=True)
             for name in columns.held_names

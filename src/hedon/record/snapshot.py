@@ -12,6 +12,7 @@ from hedon.config.config import Config
 from hedon.config.expression import expressed, gene_column
 from hedon.config.field import value_at
 from hedon.record.atomic import write_atomically
+from hedon.record.column import MOST_TURN
 from hedon.record.error import RecordError
 from hedon.record.folder import SNAPSHOT
 from hedon.text import brief
@@ -190,6 +191,8 @@ def _require_drawable(snapshot: Snapshot) -> None:
     for name in _ARRAYS:
         if not np.isfinite(getattr(snapshot, name)).all():
             raise ValueError(f"{name} has numbers that are not finite")
+    if (np.abs(snapshot.angle) > MOST_TURN).any():
+        raise ValueError(f"angle has numbers beyond {MOST_TURN:g}")
     for name, names in (("species", snapshot.species_names), ("food_kind", snapshot.food_kinds)):
         index = getattr(snapshot, name)
         if not all(isinstance(each, str) for each in names) or ((index < 0) | (index >= len(names))).any():
