@@ -31,8 +31,7 @@ def clang() -> str:
             said = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=False).stdout
             if (number := re.match(r"\d+", said)) and int(number[0]) >= OLDEST_CLANG:
                 return path
-    # Zig's own idea of this processor may lack what the kernels name, such as 512-bit registers beside AVX10.
-    return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""
+    return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""  # by itself it takes all that this processor has
 
 
 def passes(python: str, name: str, compiler: str) -> bool:
@@ -41,6 +40,8 @@ def passes(python: str, name: str, compiler: str) -> bool:
     environment = {each: value for each, value in os.environ.items() if each != "VIRTUAL_ENV"}
     environment |= {"UV_PROJECT_ENVIRONMENT": str(place / "env"), "CXX": compiler}
     options = ["--config-setting", f"build-dir={place / 'engine'}", "--config-setting", "cmake.define.HEDON_STRICT=ON"]
+    if "ziglang" in compiler:
+        options += ["--config-setting", "cmake.define.HEDON_ZIG=ON"]
     sync = [uv(), "sync", "--quiet", "--python", python, "--extra", "rules", "--reinstall-package", "hedon", *options]
     test = [uv(), "run", "--no-sync", "--python", python, "pytest", "--numprocesses", "auto", *TESTS]
     return all(subprocess.run(each, cwd=ROOT, env=environment, check=False).returncode == 0 for each in (sync, test))

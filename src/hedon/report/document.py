@@ -6,6 +6,7 @@ Also the table of `docs/figures.md`, which a test compares.
 import sys
 from collections.abc import Mapping
 from dataclasses import fields
+from inspect import cleandoc
 
 from hedon.record.column import Table
 from hedon.record.manifest import ChannelNote, Manifest, Session
@@ -162,10 +163,10 @@ def _new_keys(keys: Mapping[str, str], others: Mapping[str, str]) -> str:
 
 def _attributes(kind: type) -> str:
     """The attributes of a dataclass, as its docstring describes them."""
-    section = (kind.__doc__ or "").split("Attributes:\n")[1]
+    section = cleandoc(kind.__doc__ or "").split("Attributes:\n")[1]  # as Python 3.13 keeps it
     entries: list[str] = []
     for line in section.rstrip().splitlines():
-        if line.startswith(" " * 12):
+        if line.startswith(" " * 8):
             entries[-1] += " " + line.strip()
         elif line.strip():
             entries.append(line.strip())
