@@ -31,7 +31,8 @@ def clang() -> str:
             said = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=False).stdout
             if (number := re.match(r"\d+", said)) and int(number[0]) >= OLDEST_CLANG:
                 return path
-    return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""  # by itself it takes all that this processor has
+    # Unless told, Zig builds for all that this one processor has.
+    return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""
 
 
 def passes(python: str, name: str, compiler: str) -> bool:
