@@ -1,5 +1,7 @@
 """What the time line marks is a list of chapters, each of which leads to its moment; sparse records play fast."""
 
+from typing import Any
+
 import pytest
 from view_page import demo_server, live_server, run_server, serving, sized
 
@@ -8,7 +10,7 @@ pytest_plugins = ("view_fixture",)
 LIST = "document.querySelector('#chapters')"
 
 
-def link_of(server: object) -> str:
+def link_of(server: Any) -> str:
     return f"http://127.0.0.1:{server.server_port}"
 
 
