@@ -284,7 +284,7 @@ def test_a_click_on_empty_ground_takes_the_card_away(article):
     watched.until("document.querySelector('#family-card').textContent.startsWith('Creature 5:')")
     box = watched.page.locator("#family canvas.world").bounding_box()
     watched.page.mouse.click(box["x"] + 3, box["y"] + 3)
-    watched.until("document.querySelector('#family-card').textContent.startsWith('Click a creature')")
+    watched.until("document.querySelector('#family-card').textContent.startsWith('Click or tap a creature')")
     assert watched.page.locator("#family-number").input_value() == ""
 
 

@@ -65,7 +65,7 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
       chart.dot(within(parent.genome[meal]!), within(child.genome[meal]!), kin ? mark : plain, kin ? 4 : 3);
     }
     const own = stage.life();
-    card.replaceChildren(...(own ? about(own) : [element("p", { text: "Click a creature, or take the next child." })]));
+    card.replaceChildren(...(own ? about(own) : [element("p", { text: "Click or tap a creature, or take the next child." })]));
     next.disabled = children().length === 0;
     if (guess.value() && known.length > 0) guess.answer(verdict(known));
   };
