@@ -135,3 +135,11 @@ def test_what_happens_is_said(servers, watch):
     said = watched.page.locator("#said").text_content()
     assert said.startswith("Paused at step ")
     assert said.endswith(" agents")
+
+
+def test_each_picture_has_a_name_before_it_is_drawn(watch):
+    with serving(live_server("baseline")) as server:
+        watched = watch(server.link)
+        names = watched.get("[...document.querySelectorAll('[role=img]')].map((each) => each.ariaLabel)")
+        assert len(names) > 4
+        assert all(names)

@@ -1,6 +1,6 @@
 // The panel of the chosen agent: what it sees and does, whether it learns, its genes, its life, and its kin to click.
 import { typeColor } from "./color";
-import { by, counted, element, show, styleColor, surface, table } from "./element";
+import { by, counted, element, picture, show, styleColor, surface, table } from "./element";
 import { LearningChart } from "./learning";
 import { castRays } from "./rays";
 import { smell } from "./smells";
@@ -39,8 +39,8 @@ export class AgentPanel {
   private shown = "";
 
   constructor(private readonly choose: (id: number) => void) {
-    this.sight.setAttribute("role", "img");
-    this.course.setAttribute("role", "img");
+    picture(this.sight, "What its rays see");
+    picture(this.course, "Its energy");
   }
 
   update(source: Source, frame: Frame | undefined, chosen: number): void {

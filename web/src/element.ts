@@ -40,6 +40,12 @@ export function show(value: number | undefined, digits = 2): string {
   return value.toLocaleString("en-US", { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
 }
 
+/** A canvas that is a picture has a name from the start: what it shows is told as soon as it is drawn. */
+export function picture(canvas: HTMLCanvasElement, name: string): void {
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", name);
+}
+
 /** A color of the page's style. */
 export function styleColor(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -1,5 +1,5 @@
 // Is it learning? The reward of an agent in each window of its life, as bars, and in a sentence.
-import { element, show, styleColor, surface } from "./element";
+import { element, picture, show, styleColor, surface } from "./element";
 import type { Earned } from "./windows";
 
 const HEIGHT = 96;
@@ -28,8 +28,7 @@ export class LearningChart {
   draw(windows: Earned[], length: number): void {
     this.text.textContent = verdict(windows, length);
     this.canvas.hidden = windows.length === 0;
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `Reward in each window. ${this.text.textContent}`);
+    picture(this.canvas, `Reward in each window. ${this.text.textContent}`);
     if (windows.length === 0) return;
     const pen = surface(this.canvas);
     const shown = rates(windows).slice(-MOST).map((each) => each * length);

@@ -1,5 +1,5 @@
 // Of those who live at the moment that is shown: their ages, and two genes of each.
-import { element, option, show, styleColor, surface } from "./element";
+import { element, option, picture, show, styleColor, surface } from "./element";
 import { quantile } from "./scale";
 import type { Source } from "./source";
 import type { Frame, Life } from "./types";
@@ -17,7 +17,8 @@ export class LivingPlots {
   constructor(private readonly source: Source) {
     const { layout } = source;
     this.scatter.id = "scatter";
-    for (const canvas of [this.ages, this.scatter]) canvas.setAttribute("role", "img");
+    picture(this.ages, "Ages of the living");
+    picture(this.scatter, "Two genes of the living");
     [this.kind, ...this.axes].forEach((select, i) => select.setAttribute("aria-label", ["Species", "Gene along x", "Gene along y"][i]!));
     this.kind.append(...layout.species.map((species, s) => option(String(s), species.name)));
     this.kind.hidden = layout.species.length === 1;

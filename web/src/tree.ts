@@ -1,6 +1,6 @@
 // The tree of the living: how those who live at the moment that is shown descend from one another, colored by a gene.
 import { diverging } from "./color";
-import { by, counted, element, option, show, styleColor, surface } from "./element";
+import { by, counted, element, option, picture, show, styleColor, surface } from "./element";
 import { scaleOf } from "./scale";
 import type { Source } from "./source";
 import type { Frame, Life } from "./types";
@@ -41,7 +41,7 @@ export class Tree {
     private readonly agent: () => number,
   ) {
     this.scales = source.layout.genes.map(({ name }, g) => scaleOf(name, true, (life) => life.genome[g]!));
-    this.canvas.setAttribute("role", "img");
+    picture(this.canvas, "The tree of the living");
     this.gene.setAttribute("aria-label", "Gene that colors the tree");
     this.gene.append(...source.layout.genes.map((gene, g) => option(String(g), gene.title)));
     this.gene.onchange = () => this.redraw();

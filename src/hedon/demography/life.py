@@ -15,7 +15,7 @@ from hedon.config.life import BIRTH_FORMS, HAZARD_FORMS, BirthConfig, HazardConf
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-_NODES, _WEIGHTS = roots_legendre(256)  # NumPy's leggauss takes 0.15 s for so many, on each start
+_NODES, _WEIGHTS = roots_legendre(256)  # those of NumPy take 0.15 s at each start
 _MAX_CUMULATIVE_HAZARD = 50.0
 """Nobody outlives it: the share exp(-50) is below the rounding of a sum."""
 
