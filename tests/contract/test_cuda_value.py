@@ -1,53 +1,39 @@
-"""Worlds of a device as values: a copy goes on there, and on the processor, with the same bits."""
-
-import pickle
-from copy import deepcopy
+"""Worlds of an emulated CUDA device are values: they go on there and on the processor with the same bits."""
 
 import pytest
 from cuda_emulation import emulated as emulated
+from world_copy import LIVELY, PAIR, WAYS, digests
+from worlds import make_simulation
 
-from hedon import Simulation, load_config
-
-SMALL = (
-    "world.rollout_steps=16",
-    "learning.minibatch_size=8",
-    "learning.update_epochs=1",
-    "population.capacity=8",
-    "population.initial_count=4",
-)
-CONFIG = load_config("baseline", overrides=SMALL)
-WAYS = {
-    "clone": lambda simulation: simulation.clone(),
-    "deepcopy": deepcopy,
-    "pickle": lambda simulation: pickle.loads(pickle.dumps(simulation)),
-}
+BOTH = pytest.mark.parametrize("settings", [LIVELY, PAIR], ids=["one", "pair"])
 
 
-def digests(simulation: Simulation) -> list[str]:
-    return [world.digest() for world in simulation.worlds]
-
-
+@BOTH
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-@pytest.mark.parametrize("steps", [9, 20])
-def test_a_copy_on_a_device_goes_on_alone(way, steps, emulated):
-    one = Simulation(CONFIG, seeds=(1, 2), backend=emulated)
-    one.run(steps)
-    other = way(one)
-    at = digests(one)
+def test_a_copy_on_the_device_goes_on_alone(emulated: str, way, settings):
+    there = make_simulation(*settings, seeds=(3, 8), backend=emulated)
+    there.run(21)
+    other = way(there)
+    assert other.engine.device_count > 0
+    at = digests(there)
+    there.run(50)
     assert digests(other) == at
-    one.run(12)
-    assert digests(other) == at
-    other.run(12)
-    assert digests(other) == digests(one) != at
+    other.run(50)
+    assert digests(other) == digests(there) != at
 
 
-@pytest.mark.parametrize("back", [False, True], ids=["to the processor", "to the device"])
-def test_what_is_saved_on_one_goes_on_on_the_other(back, emulated):
-    backends = ("avx2", emulated) if back else (emulated, "avx2")
-    one, other = (Simulation(CONFIG, seeds=(1, 2), backend=backend) for backend in backends)
-    one.run(20)
-    other.run(3)
-    other.restore(one.save())
-    for each in (one, other):
-        each.run(12)
-    assert digests(one) == digests(other)
+@BOTH
+def test_kept_worlds_go_on_on_the_other_side(emulated: str, settings):
+    here, there = (make_simulation(*settings, seeds=(3, 8), backend=each) for each in ("avx2", emulated))
+    here.run(21)
+    there.run(21)
+    kept = here.save(), there.save()
+    here.run(50)
+    there.run(50)
+    end = digests(here)
+    assert digests(there) == end
+    here.restore(kept[1])
+    there.restore(kept[0])
+    here.run(50)
+    there.run(50)
+    assert digests(here) == digests(there) == end
