@@ -1,5 +1,8 @@
 """Where a sweep lives: what is written is whole or not there, and URLs are places like folders."""
 
+import sys
+from types import SimpleNamespace
+
 import pytest
 from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, sweep_file
 
@@ -45,8 +48,12 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     assert store.read("a/b") == b"old"
 
 
-@pytest.mark.parametrize(("breaks", "tries"), [(TRIES - 1, TRIES), (TRIES, TRIES)])
-def test_what_arrives_cut_off_is_read_again(breaks, tries, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("fault", "breaks", "tries"),
+    [("cut off", TRIES - 1, TRIES), ("cut off", TRIES, TRIES), ("no server", 1, 1)],
+)
+def test_what_arrives_cut_off_is_read_again(fault, breaks, tries, tmp_path, monkeypatch):
+    """And nothing else, since a library itself tries for seconds to reach a server."""
     store = Store(f"memory://{tmp_path}")
     store.write("a", b"whole")
     cat_file, asked = store._system.cat_file, []
@@ -59,7 +66,9 @@ def test_what_arrives_cut_off_is_read_again(breaks, tries, tmp_path, monkeypatch
 
     monkeypatch.setattr(store._system, "cat_file", cut_off)
     monkeypatch.setattr("hedon.jobs.store.PAUSE", 0.0)
-    if breaks < TRIES:
+    payload = DriverError if fault == "cut off" else ZeroDivisionError
+    monkeypatch.setitem(sys.modules, "aiohttp", SimpleNamespace(ClientPayloadError=payload))
+    if fault == "cut off" and breaks < TRIES:
         assert store.read("a") == b"whole"
     else:
         with pytest.raises(HedonError, match=r"cannot read a of memory.*: DriverError: received 3919872 of"):

@@ -4,6 +4,7 @@ Whatever is written is whole or not there: it is written under a passing name an
 """
 
 import secrets
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +19,7 @@ from hedon.record.atomic import write_atomically
 READERS = 32
 """Contents that are read at a time."""
 TRIES = 4
-"""To read behind a URL: a connection breaks at times, and some stores cut a content off that is replaced meanwhile."""
+"""To read a content of which a part arrives: connections break, and some stores cut off what is replaced meanwhile."""
 PAUSE = 0.1
 """Between two tries [s]."""
 PASSING = ".tmp-"
@@ -96,11 +97,11 @@ class Store:
     def read(self, name: str) -> bytes | None:
         """A content, or None where there is none of this name. JobError: it cannot be read."""
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
-            for left in reversed(range(TRIES if self.folder is None else 1)):
+            for left in reversed(range(TRIES)):
                 try:
                     return self._system.cat_file(self._path(name))
                 except Exception as error:
-                    if left == 0 or isinstance(error, FileNotFoundError | NotADirectoryError | PermissionError):
+                    if left == 0 or not _cut_off(error):
                         raise
                     time.sleep(PAUSE)
         return None
@@ -142,3 +143,9 @@ class Store:
 
     def _path(self, name: str) -> str:
         return f"{self._root.rstrip('/')}/{name}"
+
+
+def _cut_off(error: Exception) -> bool:
+    """Whether only a part of a content arrived, as the library says by which fsspec asks servers."""
+    aiohttp: Any = sys.modules.get("aiohttp")
+    return aiohttp is not None and isinstance(error, aiohttp.ClientPayloadError)
