@@ -11,7 +11,7 @@ export interface Source {
   readonly obstacles: Place[][]; // their corners
   readonly first: number;
   readonly last: number;
-  readonly spacing: number; // steps between two moments
+  readonly spacing: number; // steps between two moments; 0 where it has none
   readonly ended: boolean; // whether no moment comes after the last one
   readonly lives: Lives;
   readonly series: Series;

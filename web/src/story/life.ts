@@ -112,7 +112,7 @@ export function life(section: HTMLElement, worlds: Worlds): Scene {
   /** Runs until the founder is dead, a piece at a time, as often as it is asked; nothing else stops it but `stop`. */
   const some = async (count: number, piece: number) => {
     const own = ++turn;
-    if (!stage.live) stage.begin();
+    stage.ensure();
     for (let i = 1; i <= count && own === turn; i++) {
       busy = `Life ${i} of ${count}`;
       if (stage.live.last > 0 || ended) stage.begin(stage.seed + 1);

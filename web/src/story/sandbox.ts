@@ -69,7 +69,7 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   section.addEventListener("reset", read);
   by("sandbox-scale").style.background = `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((share) => ramp(share, 1)).join()})`;
   section.querySelector("#sandbox-picture")!.addEventListener("click", () => {
-    if (!stage.live) stage.begin();
+    stage.ensure();
     const { scene } = stage.arena;
     const draw = () => stage.arena.draw(stage.live, stage.frame, coloring, stage.chosen);
     scene.enlarged = Math.max(1, PICTURE_WIDTH / scene.canvas.width);
@@ -99,7 +99,7 @@ function bindVideo(made: HTMLButtonElement, stage: Stage, name: () => string): v
     return;
   }
   made.addEventListener("click", () => {
-    if (!stage.live) stage.begin();
+    stage.ensure();
     const recorder = new MediaRecorder(stage.arena.scene.canvas.captureStream(30));
     const parts: Blob[] = [];
     recorder.ondataavailable = ({ data }) => parts.push(data);
