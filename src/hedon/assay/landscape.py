@@ -13,7 +13,7 @@ from hedon.assay.resample import Floats, relative
 from hedon.assay.sample import Sample
 from hedon.assay.surface import Quadratic, Smooth, fit_quadratic, fit_smooth, quadratic_terms
 from hedon.config.config import Config
-from hedon.config.gene import limit_of
+from hedon.config.gene import limits_of
 from hedon.config.layout import layouts
 from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
@@ -115,16 +115,16 @@ def spread_founders(config: Config, spread: Spread, species: str, rows: int = RO
         species: whose genes.
         rows: genomes in the table.
     """
-    names = layouts(config)[species].gene_names
-    rng = np.random.default_rng(_SEED)
     prefix = f"{species}." if len(config.species) > 1 else ""
-    limits = np.array([limit_of(config, prefix + name) for name in names])
+    columns = [prefix + name for name in layouts(config)[species].gene_names]
+    rng = np.random.default_rng(_SEED)
+    limits = np.array(list(limits_of(config, columns).values()))
     if spread.sd is None:
-        values = rng.uniform(spread.low, spread.high, (rows, len(names)))
+        values = rng.uniform(spread.low, spread.high, (rows, len(columns)))
     else:
-        values = rng.normal(0.0, spread.sd, (rows, len(names)))
+        values = rng.normal(0.0, spread.sd, (rows, len(columns)))
     values = np.clip(values, -limits, limits)
-    return make_founders([prefix + name for name in names], values, ["spread"] * rows)
+    return make_founders(columns, values, ["spread"] * rows)
 
 
 def _read_outcomes(worlds: Sequence[WorldRecord]) -> pl.DataFrame:

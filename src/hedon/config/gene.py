@@ -1,6 +1,8 @@
 """A gene by the name of its column in the records."""
 
-from hedon.config.layout import Gene, layouts
+from collections.abc import Iterable, Mapping
+
+from hedon.config.layout import Gene, SpeciesLayout, layouts
 from hedon.config.settings import Settings
 
 
@@ -11,21 +13,21 @@ def gene_of(config: Settings, column: str) -> Gene:
         config: with the species.
         column: of a genome.
     """
-    return _genes(config, column)[0]
+    return _genes(layouts(config), column)[0]
 
 
-def limit_of(config: Settings, column: str) -> float:
-    """What a gene is clipped to, on both sides; without a species in the column, in all that have it.
+def limits_of(config: Settings, columns: Iterable[str]) -> dict[str, float]:
+    """What genes are clipped to, on both sides, by column; without a species in the column, in all that have it.
 
     Args:
         config: with the species.
-        column: of a genome.
+        columns: of a genome.
     """
-    return min(gene.mutation.limit for gene in _genes(config, column))
-
-
-def _genes(config: Settings, column: str) -> list[Gene]:
-    species, _, name = column.rpartition(".")
     made = layouts(config)
+    return {column: min(gene.mutation.limit for gene in _genes(made, column)) for column in columns}
+
+
+def _genes(made: Mapping[str, SpeciesLayout], column: str) -> list[Gene]:
+    species, _, name = column.rpartition(".")
     wanted = [made[species]] if species else made.values()
     return [gene for layout in wanted for gene in layout.genes if gene.name == name]

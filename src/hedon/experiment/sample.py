@@ -6,12 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.arena import walls
-from hedon.config.config import Config
-from hedon.config.layout import layouts
 from hedon.config.type import types
 from hedon.experiment.world import World
 from hedon.record.checkpoint import Sampled
-from hedon.record.schema import CAUSES, Columns, columns_of
+from hedon.record.schema import CAUSES, Columns
 from hedon.record.snapshot import Snapshot, own_bodies
 
 Rows = dict[str, Any]
@@ -25,7 +23,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
         lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals), as
             `World.agents` and `World.deaths` give them.
     """
-    columns = columns_of(world.config)
+    columns = world.columns
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
     steps = np.maximum(end - lives["birth_step"], 1)
     direct = ("agent_id", "parent_id", "generation", "birth_step", "death_step", "birth_energy", "energy")
@@ -34,12 +32,12 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
         "world": world.index,
         "seed": world.seed,
         **{name: lives[name] for name in direct},
-        **_held_rows(world.config, lives),
+        **_held_rows(world, lives),
         **{f"eaten_{name}": lives["eaten"][:, k] for name, k in _meals(columns).items()},
         "mean_force_left": lives["force_left"] / steps,
         "mean_force_right": lives["force_right"] / steps,
         "reward_sum": lives["reward"],
-        **_gene_rows(world.config, lives),
+        **_gene_rows(world, lives),
     }
     if columns.several:
         rows["species"] = np.array(columns.species)[lives["species"]]
@@ -48,13 +46,12 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     return rows
 
 
-def _gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
+def _gene_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     """The genes of agents by the names of their columns; NaN where a species lacks a gene."""
-    made = list(layouts(config).values())
     rows: Rows = {}
-    for name in columns_of(config).gene_names:
+    for name in world.columns.gene_names:
         values = np.full(len(lives["species"]), np.nan, np.float32)
-        for species, layout in enumerate(made):
+        for species, layout in enumerate(world.layouts):
             if name in layout.gene_names:
                 mine = lives["species"] == species
                 values[mine] = lives["genome"][mine, layout.gene_names.index(name)]
@@ -62,11 +59,11 @@ def _gene_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
     return rows
 
 
-def _held_rows(config: Config, lives: dict[str, NDArray[Any]]) -> Rows:
+def _held_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     """What agents hold of the stores beside energy, by the names of the columns; NaN where a species lacks one."""
     rows: Rows = {}
-    for name in columns_of(config).held_names:
-        has = np.array([name in species.store for species in config.species.values()])
+    for name in world.columns.held_names:
+        has = np.array([name in species.store for species in world.config.species.values()])
         rows[name] = np.where(has[lives["species"]], lives[name], np.nan).astype(np.float32)
     return rows
 
@@ -83,7 +80,7 @@ class PopulationSampler:
     def __init__(self, world: World, species: int = 0, since: Sampled | None = None) -> None:
         self.world = world
         self.species = species
-        self.columns = columns_of(world.config)
+        self.columns = world.columns
         self.since = since or self._now()
 
     def advance(self) -> None:
@@ -112,7 +109,7 @@ class PopulationSampler:
         generation = lives["generation"]
         row["generation_mean"] = generation.mean() if len(generation) else np.nan
         row["generation_max"] = generation.max() if len(generation) else -1
-        for name, weight in _gene_rows(world.config, lives).items():
+        for name, weight in _gene_rows(world, lives).items():
             row[f"{name}_mean"] = weight.mean() if len(weight) else np.nan
             row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
         for k, kind in enumerate(world.config.food):
@@ -147,7 +144,7 @@ def frame_rows(world: World) -> list[Rows]:
     rows = []
     for species, name in enumerate(world.config.species):
         mine = lives["species"] == species
-        agents = {column: values[mine] for column, values in (_held_rows(world.config, lives) | placed).items()}
+        agents = {column: values[mine] for column, values in (_held_rows(world, lives) | placed).items()}
         rows.append({**here, "kind": name, "id": lives["agent_id"][mine], **agents})
     for k, kind in enumerate(world.config.food):
         mine = foods["kind"] == k
@@ -179,7 +176,7 @@ def snapshot(world: World) -> Snapshot:
         ray_spread=np.array([kind.sensor.ray_spread for kind in kinds]),
         mouth_spread=np.array([kind.sensor.mouth_spread for kind in kinds]),
         mouth_center=np.array([kind.sensor.mouth_center for kind in kinds]),
-        own=own_bodies(config, lives["species"], _gene_rows(config, lives)),
+        own=own_bodies(config, lives["species"], _gene_rows(world, lives)),
     )
 
 
@@ -188,7 +185,7 @@ def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
     every = types(world.config)
     most = max(kind.sensor.ray_count for kind in world.config.species.values())
     rays = np.full((len(species), most, len(every)), -1.0, np.float32)
-    for i, layout in enumerate(layouts(world.config).values()):
+    for i, layout in enumerate(world.layouts):
         mine = np.flatnonzero(species == i)
         if len(mine):
             seen = world.rays(i)

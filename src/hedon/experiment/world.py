@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.layout import choose_species, layouts, store_columns
+from hedon.config.layout import SpeciesLayout, choose_species, layouts, store_columns
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.state import State
+from hedon.record.schema import Columns, columns_of
 from hedon.text import brief
 
 
@@ -29,6 +30,16 @@ class World:
         self.index = index
         self.config = config
         self._recorded = False
+
+    @cached_property
+    def layouts(self) -> tuple[SpeciesLayout, ...]:
+        """What the numbers of the agents of each species mean, in the order of the config."""
+        return tuple(layouts(self.config).values())
+
+    @cached_property
+    def columns(self) -> Columns:
+        """What the columns of its records follow from."""
+        return columns_of(self.config)
 
     @property
     def seed(self) -> int:
@@ -199,8 +210,8 @@ class World:
         Raises:
             ArgumentError: There is no species of this name.
         """
-        name = list(self.config.species)[self._species(species)]
-        rays, seen = self.config.species[name].sensor.ray_count, len(layouts(self.config)[name].sees)
+        i = self._species(species)
+        rays, seen = list(self.config.species.values())[i].sensor.ray_count, len(self.layouts[i].sees)
         return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
 
     def digest(self) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.gene import limit_of
+from hedon.config.gene import limits_of
 from hedon.config.layout import gene_columns, layouts
 from hedon.config.problem import nearest
 from hedon.error import HedonError
@@ -150,7 +150,7 @@ class Founders:
         for gene in self.genes:
             if column_of(config, gene) != gene:
                 raise FounderError(f"{brief(origin)}: {unknown_gene(config, gene)}")
-        limits = np.array([limit_of(config, gene) for gene in self.genes], np.float32)
+        limits = np.array(list(limits_of(config, self.genes).values()), np.float32)
         wrong = np.argwhere(np.abs(self.values) > limits)
         if len(wrong):
             row, column = wrong[0]

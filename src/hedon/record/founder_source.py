@@ -8,7 +8,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.gene import limit_of
+from hedon.config.gene import limits_of
 from hedon.config.layout import gene_columns, layouts
 from hedon.record.founder import FounderError, Founders, column_of, join, make_founders, unknown_gene
 from hedon.record.founder_table import read_table
@@ -157,7 +157,7 @@ def parse_point(text: str, config: Config) -> dict[str, float]:
         column = column_of(config, name)
         if column is None:
             raise FounderError(f"{brief(text)}: {unknown_gene(config, name)}")
-        limit = limit_of(config, column)
+        limit = limits_of(config, [column])[column]
         try:
             value = float(number)
         except ValueError:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hedon.config.config import Config
-from hedon.config.gene import limit_of
+from hedon.config.gene import limits_of
 from hedon.record.founder import FOUNDERS, GROUP, SHARE, FounderError, Founders, column_of, make_founders, unknown_gene
 from hedon.text import brief
 
@@ -47,6 +47,7 @@ def read_table(path: Path, config: Config) -> Founders:
     if not 1 <= len(lines) <= MAX_ROWS:
         raise FounderError(f"{origin}: must have from 1 to {MAX_ROWS:,} rows below its first line, not {len(lines):,}")
     values, groups, shares = [], [], {}
+    limits = limits_of(config, genes.values())
     for number, row in lines:
         place = f"{origin}: line {number}"
         if len(row) != len(head):
@@ -58,9 +59,11 @@ def read_table(path: Path, config: Config) -> Founders:
             if not share > 0 or shares.setdefault(group, share) != share:
                 rule = "must be above 0, and the same in all rows of a group"
                 raise FounderError(f"{place}, {SHARE} = {brief(cells[SHARE])}: {rule}")
-        limits = {name: limit_of(config, gene) for name, gene in genes.items()}
         values.append(
-            [_number(cells[name], f"{place}, {name}", -limit, limit, empty=True) for name, limit in limits.items()]
+            [
+                _number(cells[name], f"{place}, {name}", -limits[gene], limits[gene], empty=True)
+                for name, gene in genes.items()
+            ]
         )
         groups.append(group)
     return make_founders(tuple(genes.values()), np.array(values, np.float32), groups, shares or None)

@@ -37,11 +37,11 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
     if any(array.ndim > 1 for array in arrays.values()) or len(set(lengths.values())) > 1:
         raise RecordError(f"rows of {table.name}: columns need the same length and one dimension, got {lengths}")
     count = next(iter(lengths.values()), 1)
-    return pl.DataFrame([_series(table, column, arrays.get(column.name), count) for column in table.columns])
+    types = table.polars_schema
+    return pl.DataFrame([_series(table, c, types[c.name], arrays.get(c.name), count) for c in table.columns])
 
 
-def _series(table: Table, column: Column, array: np.ndarray | None, count: int) -> pl.Series:
-    dtype = table.polars_schema[column.name]
+def _series(table: Table, column: Column, dtype: type[pl.DataType], array: np.ndarray | None, count: int) -> pl.Series:
     if array is None:
         return pl.Series(column.name, [None] * count, dtype=dtype)
     if column.dtype == "string":

@@ -4,7 +4,7 @@ import pytest
 from hedon.assay.landscape import AssayError, spread_founders
 from hedon.assay.option import parse_spread
 from hedon.config import ConfigError, load_config
-from hedon.config.gene import limit_of
+from hedon.config.gene import limits_of
 
 NINE_KINDS = ["sensor.touch_sectors=5", *(f"food.k{i}.gives.energy=1" for i in range(8))]
 
@@ -181,8 +181,8 @@ def test_each_species_has_limits_of_its_own():
     own = ("species.b.diet.eats=[]", "food.normal.gene.initial_mean=30")
     config = load_config("baseline", overrides=[*TWO, *wide, *own])
     assert config.species["b"].genome.weight_limit == 10
-    assert limit_of(config, "a.w_action") == 50
-    assert limit_of(config, "b.w_action") == limit_of(config, "w_action") == 10
+    assert limits_of(config, ["a.w_action"]) == {"a.w_action": 50}
+    assert limits_of(config, ["b.w_action", "w_action"]) == {"b.w_action": 10, "w_action": 10}
     spread = parse_spread("-40:40", None, config.species["a"].genome)
     assert np.abs(spread_founders(config, spread, "a").values).max() > 39
     with pytest.raises(AssayError, match=r"within -10:10"):
