@@ -17,14 +17,16 @@ NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}
 @pytest.mark.parametrize(
     "options",
     [
-        {"intervals": 30, "worlds": 3},
-        {"intervals": 12, "worlds": 1, "extinct": 0},
-        {"intervals": 1, "worlds": 1},
-        {"intervals": 0, "worlds": 1},
-        {"intervals": 5, "worlds": 3, "extinct": 0, "food_kinds": ("normal", "poor", "poison"), "neutral_count": 3},
-        {"intervals": 2, "worlds": 12, "neutral_count": 0},
+        pytest.param({"intervals": 30, "worlds": 3}, id="usual", marks=pytest.mark.long),
+        pytest.param({"intervals": 12, "worlds": 1, "extinct": 0}, id="all extinct", marks=pytest.mark.long),
+        pytest.param({"intervals": 1, "worlds": 1}, id="one window", marks=pytest.mark.long),
+        pytest.param({"intervals": 0, "worlds": 1}, id="no window"),
+        pytest.param(
+            {"intervals": 5, "worlds": 3, "extinct": 0, "food_kinds": ("normal", "poor", "poison"), "neutral_count": 3},
+            id="three kinds, one extinct",
+        ),
+        pytest.param({"intervals": 2, "worlds": 12, "neutral_count": 0}, id="many, no marker", marks=pytest.mark.long),
     ],
-    ids=["usual", "all extinct", "one window", "no window", "three kinds, one extinct", "many, no marker"],
 )
 def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:
     files = write_report(open_run(write_run(tmp_path / "run", **options)))
