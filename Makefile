@@ -36,7 +36,7 @@ static: tools $(UV)
 	$(RUN) ruff format --check .
 	$(RUN) clang-format --dry-run -Werror $(shell find engine tests/native -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
-	$(RUN) pyright
+	$(RUN) pyright src benchmarks release
 	$(RUN) --group cuda python tests/cuda.py
 
 sanitized: tools $(UV)
@@ -44,6 +44,7 @@ sanitized: tools $(UV)
 
 # The same questions asked hundreds of times, and those that take minutes: before a release, beside `make test`.
 test-long: sync
+	$(RUN) $(BROWSER) $(SITE) $(LONG) pyright
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \
 	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
 	  $(RUN) $(BROWSER) $(SITE) $(LONG) pytest --numprocesses auto --dist worksteal -m "long or repeated"

@@ -14,7 +14,7 @@ def link_of(server: Any) -> str:
     return f"http://127.0.0.1:{server.server_port}"
 
 
-@pytest.mark.parametrize("width", [1400, 390])
+@pytest.mark.parametrize("width", [pytest.param(1400, marks=pytest.mark.long), 390])
 def test_a_chapter_leads_to_its_moment(width, watch):
     with serving(demo_server()) as server:
         watched = watch(link_of(server), **sized(width))

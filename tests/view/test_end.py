@@ -10,6 +10,7 @@ from hedon.view.server import Server
 pytest_plugins = ("view_fixture",)
 
 
+@pytest.mark.long
 def test_play_at_the_end_begins_again(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)

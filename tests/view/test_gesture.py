@@ -49,6 +49,7 @@ def test_a_drag_moves_the_world_with_the_finger(watched):
     assert watched.get(f"hedon.arena.scene.toWorld({x + 60}, {y + 30})") == pytest.approx(before, abs=1.0)
 
 
+@pytest.mark.long
 def test_a_view_stays_through_another_size_and_a_reload(watched):
     watched.get("hedon.arena.look(hedon.source, [240, 180, 3])")
     watched.get("hedon.viewed()")

@@ -75,6 +75,7 @@ def test_the_tab_key_reaches_every_control(watched):
     assert wanted <= reached
 
 
+@pytest.mark.long
 def test_buttons_show_the_whole_arena_choose_and_follow(watched):
     whole = watched.get("hedon.arena.scene.zoom")
     box = watched.page.locator("#scene").bounding_box()

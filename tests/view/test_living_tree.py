@@ -47,7 +47,7 @@ def below(parents: dict[int, int], living: set[int], branch: int) -> list[int]:
     return sorted(agent for agent in living if descends(agent))
 
 
-@pytest.mark.parametrize("step", [512, 2048])
+@pytest.mark.parametrize("step", [pytest.param(512, marks=pytest.mark.long), 2048])
 def test_the_tree_is_the_pedigree_of_those_who_live(step, watch, replay, run_folder):
     parents, living = pedigree(run_folder, step)
     watched = opened(watch, replay, step)

@@ -41,6 +41,7 @@ def test_a_replay_plots_the_numbers_of_each_species(tmp_path, watch):
             assert f"{title} ● prey ● predator" in [" ".join(each.split()) for each in titles]
 
 
+@pytest.mark.long
 def test_a_live_world_plots_the_numbers_of_each_species(watch):
     with serving(live_server("predator")) as server:
         watched = watch(server.link)

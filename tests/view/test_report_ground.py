@@ -3,7 +3,6 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from synthetic_run import write_run
-from view_page import GROUNDS
 
 from hedon.record.reader import open_run
 from hedon.report.run import write_report
@@ -18,7 +17,7 @@ def report(tmp_path_factory):
     return folder / "report.html"
 
 
-@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("ground", ["dark", pytest.param("light", marks=pytest.mark.long)])
 def test_the_report_has_the_ground_of_the_screen(ground, report, browser):
     page = browser.new_context(color_scheme=ground).new_page()
     page.goto(report.as_uri())

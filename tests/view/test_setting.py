@@ -53,6 +53,7 @@ def test_a_living_world_goes_on_with_another_value(watched):
     assert "At step 400: food.normal.growth_rate = 2" in said
 
 
+@pytest.mark.long
 def test_a_change_waits_until_the_agents_have_learned(watched):
     window = watched.get("hedon.source.layout.window")
     run_live(watched, window - 1)
@@ -64,7 +65,9 @@ def test_a_change_waits_until_the_agents_have_learned(watched):
     assert watched.get("[hedon.source.last, hedon.source.learning, hedon.source.error]") == [window, 0, ""]
 
 
-@pytest.mark.parametrize("path", ["food.normal.initial_count", "sensor.ray_count"])
+@pytest.mark.parametrize(
+    "path", ["food.normal.initial_count", pytest.param("sensor.ray_count", marks=pytest.mark.long)]
+)
 def test_what_matters_from_the_beginning_says_so(path, watched):
     watched.page.locator(f"[data-path='{path}']").fill("7")
     assert when(watched, path) == "matters from the beginning: start again"

@@ -67,6 +67,7 @@ def steered(watched, track, commands, steps):
     return worlds.simulation.worlds[0].digest()
 
 
+@pytest.mark.long
 def test_reward_rises_without_a_meal_if_moving_feels_good(article):
     watched = article("creature")
     set_knob(watched, "creature", "genome.action.initial_mean", "5")
@@ -154,6 +155,7 @@ def test_a_life_keeps_its_children_and_a_link_begins_without_lives(article):
     assert watched.get(f"[{life}.lives(), {answer}.hidden]") == [[], True], "lives of another setting"
 
 
+@pytest.mark.long
 def test_lives_are_told_by_how_many_were_shorter(article):
     watched = article("life")
     life, answer = stage("life"), "document.querySelector('#life .answer').textContent"
@@ -181,6 +183,7 @@ def test_a_dot_on_a_curve_can_be_dragged(article):
     assert watched.get("document.querySelector('#life input[data-path=\"hazard.kappa\"]').value") == str(kappa)
 
 
+@pytest.mark.long
 def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(article):
     watched = article("family")
     watched.get(f"{stage('family')}.setPlaying(false)")
@@ -210,6 +213,7 @@ def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(
     assert other.get(f"{stage('family')}.chosen") == some
 
 
+@pytest.mark.long
 def test_a_wrong_link_says_what_is_wrong(article):
     watched = article("creature", "#scene=creature&seed=1&step=3&birth.kappa=7")
     watched.until("document.querySelector('#notice').textContent.includes('birth.kappa = 7: must be')")

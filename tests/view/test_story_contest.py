@@ -63,6 +63,7 @@ def rests(watched, name):
     return watched.get(f"[{stage(name)}.running, {stage(name)}.live.last]") == [False, 0]
 
 
+@pytest.mark.long
 def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article):
     watched = article("contest")
     begin = watched.page.locator("#contest-one")
@@ -82,6 +83,7 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
     watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.endsWith('of 20,480. ')")
 
 
+@pytest.mark.long
 def test_a_contest_has_no_world_but_those_that_count(article):
     watched = article("contest", "#scene=contest&seed=1&step=20800")
     play = watched.page.locator("#contest").get_by_role("button", name=re.compile("Play|Pause"))
@@ -118,6 +120,7 @@ def test_the_lines_of_a_contest_stay_on_their_plot(article):
     assert 0.9 * ends[1] < ends[0] < ends[1]
 
 
+@pytest.mark.long
 def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
     watched = article("contest", "#scene=contest&seed=3&step=9000&species.blue.reward.meal_coef=-8")
     watched.until(f"{SCORE}.startsWith('World of seed 3: step') && {SCORE}.endsWith('of 9,000. ')")
@@ -245,7 +248,9 @@ def test_a_finger_draws_scrolls_over_the_result_and_finds_the_buttons_below(arti
     watched.until(f"{ANSWER} === 'Draw first.'")
 
 
-@pytest.mark.parametrize("world", ["predators", "poison", "seasons", "pitfalls"])
+@pytest.mark.parametrize(
+    "world", ["poison", "predators", *(pytest.param(name, marks=pytest.mark.long) for name in ("seasons", "pitfalls"))]
+)
 def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
     watched = article("sandbox")
     sandbox = stage("sandbox")

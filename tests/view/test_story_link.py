@@ -35,6 +35,7 @@ def told(watched, address):
     return watched.get(f"{NOTICE}.querySelector('span').textContent")
 
 
+@pytest.mark.long
 def test_a_damaged_link_is_told_as_that(article):
     watched = article("creature")
     for address, words in DAMAGED.items():

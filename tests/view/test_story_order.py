@@ -82,6 +82,7 @@ def rests(watched, scene):
     return before[:2] == [False, False] and watched.get(at) == before
 
 
+@pytest.mark.long
 def test_what_begins_another_world_ends_the_learning_of_the_one_before(article):
     watched = article("learning")
     learning = stage("learning")
@@ -173,7 +174,7 @@ def test_the_button_ends_a_run_of_any_length(article):
     assert rests(watched, "creature")
 
 
-@pytest.mark.parametrize("used", ["Play", "Reset", "link"])
+@pytest.mark.parametrize("used", ["Play", *(pytest.param(used, marks=pytest.mark.long) for used in ("Reset", "link"))])
 def test_arrow_keys_steer_after_a_click_on_a_button(used, article):
     watched = article("creature")
     creature = stage("creature")
@@ -217,7 +218,7 @@ def test_only_the_main_button_of_a_mouse_steers(article):
     assert watched.get(f"{HINT}.innerText.startsWith('It strolls by itself')")
 
 
-@pytest.mark.parametrize("how", ["click", "key"])
+@pytest.mark.parametrize("how", ["click", pytest.param("key", marks=pytest.mark.long)])
 def test_a_guess_may_be_the_number_where_the_slider_is(how, article):
     watched = article("learning")
     slider = watched.page.locator("#learning .guess input")
@@ -243,6 +244,7 @@ def test_a_button_that_was_pressed_by_a_key_keeps_the_focus(article):
     assert watched.get(f"[{stage('learning')}.seed, {stage('learning')}.aim]") == [1, 80 * 1024]
 
 
+@pytest.mark.long
 def test_a_link_that_another_world_overtakes_chooses_nobody(article):
     watched = article("family")
     family = stage("family")

@@ -121,10 +121,9 @@ def folder(tmp_path_factory):
     ("width", "scheme"),
     [
         (390, "light"),
-        (1400, "dark"),
         *(
             pytest.param(*each, marks=pytest.mark.long)
-            for each in ((390, "dark"), (1024, "light"), (1024, "dark"), (1400, "light"))
+            for each in ((390, "dark"), (1024, "light"), (1024, "dark"), (1400, "light"), (1400, "dark"))
         ),
     ],
 )

@@ -47,6 +47,7 @@ def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article)
     )
 
 
+@pytest.mark.long
 def test_one_that_moving_hurts_differs_in_nothing_else(article):
     watched = article("learning")
     learning = stage("learning")
@@ -94,6 +95,7 @@ def test_rays_have_the_colors_that_the_caption_names(ground, article):
     assert "green at food, gray at walls" in watched.page.locator("#creature figcaption").inner_text()
 
 
+@pytest.mark.long
 def test_arrow_keys_steer_after_a_click_on_a_guess_or_a_slider(article):
     watched = article("creature")
     creature = stage("creature")
@@ -129,6 +131,7 @@ def test_sliders_stay_on_the_screen_with_the_arena(width, article):
     assert width < 800 or knobs["y"] + knobs["height"] - section["y"] < 900
 
 
+@pytest.mark.long
 def test_twenty_lives_are_counted_and_reset_stops_them(article):
     watched = article("life")
     life = stage("life")
@@ -261,6 +264,7 @@ def test_the_card_tells_meals_and_age_of_child_and_parent_also_of_the_dead(artic
     assert number.input_value() == str(dead), "nobody has that number yet"
 
 
+@pytest.mark.long
 def test_dots_of_kin_are_drawn_above_the_others(article):
     watched = article("family")
     family = stage("family")

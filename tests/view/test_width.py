@@ -32,7 +32,8 @@ def violations(watched):
 
 
 SCREENS = list(product(("live", "replay"), SIZES, GROUNDS))
-FEW = [("live", 390, "dark"), ("live", 1400, "light"), ("replay", 390, "light"), ("replay", 1400, "dark")]
+WIDTHS = [390, *(pytest.param(width, marks=pytest.mark.long) for width in SIZES if width != 390)]
+FEW = [("live", 390, "dark"), ("replay", 1400, "light")]
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_axe_finds_nothing(servers, kind, width, ground, watch):
     assert violations(watched) == []
 
 
-@pytest.mark.parametrize("width", SIZES)
+@pytest.mark.parametrize("width", WIDTHS)
 def test_nothing_is_wider_than_the_page_and_no_panel_grows(servers, width, watch):
     watched = watch(servers["replay"], **sized(width))
     rest(watched)
@@ -70,7 +71,7 @@ def test_nothing_is_wider_than_the_page_and_no_panel_grows(servers, width, watch
         assert watched.get(f"Math.max(...{right})") <= width + 1, panel
 
 
-@pytest.mark.parametrize("width", SIZES)
+@pytest.mark.parametrize("width", WIDTHS)
 def test_the_time_line_stays_in_its_place(servers, width, watch):
     watched = watch(servers["live"], **sized(width))
     place = "JSON.stringify(document.querySelector('#timeline').getBoundingClientRect())"

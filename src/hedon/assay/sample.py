@@ -7,6 +7,7 @@ from pathlib import Path
 from hedon.analysis.world.record import WorldRecord
 from hedon.jobs.requirement import RunRequirement, find_runs, read_required
 from hedon.record.reader import Run
+from hedon.text import count
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,7 @@ class Sample:
         died = {seed: step for seed, step in pairs if seed in self.need.steps and step is not None}
         said = [f"seed {seed} at step {step:,}" for seed, step in died.items() if step <= self.steps]
         return (
-            f"`{self.need.name}`: {len(self.need.steps)} worlds, {self.steps:,} steps; "
+            f"`{self.need.name}`: {count(len(self.need.steps), 'world')}, {self.steps:,} steps; "
             f"died out: {', '.join(said) or 'none'}."
         )
 
