@@ -53,7 +53,7 @@ WORLDS = {
         "species.hunter.diet.digestion_steps=10",
         'species.hunter.learning.policy="ppo"',
         'species.hunter.birth.network="learned"',
-        "species.hunter.reward.see.prey.coef=0.1",
+        "species.hunter.reward.pay.see_prey.coef=0.1",
         "species.idle.diet.eats=[]",
         "species.idle.hazard.schedule.scale={points=[[0, 1.0], [100, 3.0]]}",
         "species.late.population.initial_count=0",

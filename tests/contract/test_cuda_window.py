@@ -46,8 +46,8 @@ def test_presets_have_the_same_bits(emulated: str, preset: str):
 
 
 MECHANISMS = {
-    "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.smell.normal.coef=0.1"),
-    "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.see.obstacle.over_rays=max"),
+    "smell": ('sensor.smells=["*"]', "sensor.noses=2", "reward.pay.smell_normal.coef=0.1"),
+    "obstacles": ("obstacle.count=8", "obstacle.damage=0.5", "reward.pay.see_obstacle.channel=see_obstacle_max"),
     "stores": (
         *FED,
         "food.normal.needs.nutrient=1",

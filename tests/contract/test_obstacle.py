@@ -185,17 +185,17 @@ def test_the_same_over_threads_and_pieces():
 
 def test_the_wrong_channel_pays_for_food():
     """The setting by which the sequel's released program differs: what it calls the obstacle's rays are food's."""
-    common = ("reward.action_coef=0", "reward.meal_coef=0", "reward.see.obstacle.gene.initial_mean=1")
+    common = ("reward.action_coef=0", "reward.meal_coef=0", "reward.pay.see_obstacle.gene.initial_mean=1")
 
-    def paid(reads: str) -> float:
-        simulation = make_simulation(*ONE, *STILL, *common, f'reward.see.obstacle.reads="{reads}"')
+    def paid(channel: str) -> float:
+        simulation = make_simulation(*ONE, *STILL, *common, f'reward.pay.see_obstacle.channel="{channel}"')
         beside(simulation, 60.0)
         simulation.run(1)
         world = simulation.worlds[0]
         return float(world.view("life.reward")[world.living[0]])
 
     assert paid("") > 0
-    assert paid("normal") == 0.0
+    assert paid("see_normal") == 0.0
 
 
 @pytest.mark.parametrize(
@@ -206,8 +206,8 @@ def test_the_wrong_channel_pays_for_food():
         ("obstacle.count=200", "too many to place: the arena has room for"),
         ("obstacle.schedule.harmless.points=[[0, 1.0]]", "did you mean harmful"),
         ("obstacle.schedule.harmful.points=[[0, 1.5]]", "factors must be from 0 to 1"),
-        ("reward.see.obstacle.coef=0.1", "it does not see this"),
-        ('reward.see.wall.reads="food"', "must be empty or one of agent, normal, wall"),
+        ("reward.pay.see_obstacle.coef=0.1", "there is no channel 'see_obstacle' here"),
+        ('reward.pay.see_wall.channel="see_food"', "there is no channel 'see_food' here; there are .*see_normal"),
     ],
 )
 def test_contradictions_are_refused_by_name(setting, message):

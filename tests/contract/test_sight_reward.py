@@ -5,7 +5,7 @@ import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
 
-def rewards(over_rays: str, weight: float) -> tuple[float, np.ndarray]:
+def rewards(channel: str, weight: float) -> tuple[float, np.ndarray]:
     """What a prey is paid in a step in which it looks at a predator, and its readings of the predator."""
     simulation = make_simulation(
         *QUICK,
@@ -14,10 +14,10 @@ def rewards(over_rays: str, weight: float) -> tuple[float, np.ndarray]:
         *CHILDLESS,
         "reward.action_coef=0",
         "species.prey.body.radius=10",
-        "species.prey.reward.see.predator.coef=0.1",
-        f'species.prey.reward.see.predator.over_rays="{over_rays}"',
-        f"species.prey.reward.see.predator.gene.initial_mean={weight}",
-        "species.prey.reward.see.predator.gene.initial_sd=0",
+        "species.prey.reward.pay.see_predator.coef=0.1",
+        f'species.prey.reward.pay.see_predator.channel="{channel}"',
+        f"species.prey.reward.pay.see_predator.gene.initial_mean={weight}",
+        "species.prey.reward.pay.see_predator.gene.initial_sd=0",
         "species.predator.body.radius=14",
     )
     set_scene(simulation, [(100, 100, 0.0), (110, 160, 0.0)], species=[0, 1])
@@ -27,12 +27,12 @@ def rewards(over_rays: str, weight: float) -> tuple[float, np.ndarray]:
     return float(world.view("reward")[world.living[0], 0]), seen[:, 1]
 
 
-@pytest.mark.parametrize(("over_rays", "reduce"), [("mean", np.mean), ("max", np.max)])
-def test_the_reward_is_the_weight_times_what_is_seen(over_rays, reduce):
-    paid, readings = rewards(over_rays, 2.5)
+@pytest.mark.parametrize(("channel", "reduce"), [("see_predator", np.mean), ("see_predator_max", np.max)])
+def test_the_reward_is_the_weight_times_what_is_seen(channel, reduce):
+    paid, readings = rewards(channel, 2.5)
     assert (readings > 0).sum() >= 3
     assert paid == pytest.approx(0.1 * 2.5 * reduce(np.maximum(readings, 0)), rel=1e-5)
 
 
 def test_a_weight_of_zero_pays_nothing():
-    assert rewards("mean", 0.0)[0] == 0.0
+    assert rewards("see_predator", 0.0)[0] == 0.0

@@ -71,9 +71,9 @@ def test_smell_is_at_most_one():
 
 
 def test_a_reward_for_smell_is_the_weight_times_the_mean_over_noses():
-    gene = ("reward.smell.normal.gene.initial_mean=2", "reward.smell.normal.gene.initial_sd=0")
+    gene = ("reward.pay.smell_normal.gene.initial_mean=2", "reward.pay.smell_normal.gene.initial_sd=0")
     simulation = make_simulation(
-        *PLAIN, TWO, "sensor.noses=2", "reward.smell.normal.coef=0.3", *gene, "reward.action_coef=0"
+        *PLAIN, TWO, "sensor.noses=2", "reward.pay.smell_normal.coef=0.3", *gene, "reward.action_coef=0"
     )
     set_scene(simulation, [(100, 100, 0.4)], [(100, 130)])
     world = simulation.worlds[0]
@@ -100,7 +100,7 @@ def test_what_agents_learn_from_holds_what_they_smelled():
     ("setting", "message"),
     [
         ('sensor.smells=["food"]', "must be names of agent, normal"),
-        ("reward.smell.normal.coef=1", "it does not smell this: add it to sensor.smells"),
+        ("reward.pay.smell_normal.coef=1", "there is no channel 'smell_normal' here"),
         ("sensor.smell_decay=0", "sensor.smell_decay"),
     ],
 )

@@ -17,7 +17,7 @@ PAIR = (
     "species.wise.body.radius=10",
     "species.led.body.radius=10",
     "species.led.sensor.ray_count=8",
-    "reward.see.normal.coef=0.1",
+    "reward.pay.see_normal.coef=0.1",
 )
 
 

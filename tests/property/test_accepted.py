@@ -49,7 +49,7 @@ ALL_TABLES = (
     "genome.mutation.w_action.law=normal",
 )
 SOURCES = {
-    "one": ("baseline", (*SMALL, *ALL_TABLES, 'sensor.smells=["*"]', "reward.smell.normal={}")),
+    "one": ("baseline", (*SMALL, *ALL_TABLES, 'sensor.smells=["*"]', "reward.pay.smell_normal={}")),
     "two": (
         "predator",
         (*(f"species.{name}.{text}" for name in ("prey", "predator") for text in SMALL[:2]), *SMALL[2:]),

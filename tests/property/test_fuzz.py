@@ -32,8 +32,8 @@ EXAMPLES = int(os.environ.get("HEDON_FUZZ", "0"))
 FUZZ = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 DUMPS = {preset: dump_toml(load_config(preset)) for preset in PRESETS}
 TABLES = (
-    *(f"{owner}reward.see.{name}" for owner in ("", "species.prey.", "species.predator.") for name in ("prey", "pray")),
-    *(f"{owner}reward.smell.{name}" for owner in ("", "species.prey.") for name in ("normal", "normel")),
+    *(f"{own}reward.pay.see_{name}" for own in ("", "species.prey.", "species.predator.") for name in ("prey", "pray")),
+    *(f"{owner}reward.pay.smell_{name}" for owner in ("", "species.prey.") for name in ("normal", "normel")),
     *(
         f"genome.{table}.{name}"
         for table in ("learning", "family", "mutation")

@@ -13,9 +13,6 @@ def inputs(rules: Rules, world: World, turn: Turn) -> dict[str, float]:
     species, settings = rules.of(turn.agent), rules.of(turn.agent).reward
     paid = {name: f"eaten_{name}" for name in (*rules.kinds, *rules.names) if name in species.eats}
     paid["action"] = "effort" if settings.action_norm == "max_force" else "force"
-    for name, see in settings.see.items():
-        paid[f"see_{name}"] = f"see_{see.reads or name}" + ("_max" if see.over_rays == "max" else "")
-    paid |= {f"smell_{name}": f"smell_{name}" for name in settings.smell}
     paid |= {name: pay.channel or name for name, pay in settings.pay.items()}
     if settings.drive_reduction_coef:
         paid["drive_reduction"] = "drive_reduction"
@@ -37,9 +34,6 @@ def coef(species: Species, name: str) -> float:
         return getattr(settings, f"{name}_coef")
     if name in settings.pay:
         return settings.pay[name].coef
-    for sense in ("see", "smell"):
-        if name.startswith(f"{sense}_"):
-            return getattr(settings, sense)[name.removeprefix(f"{sense}_")].coef
     return settings.meal_coef
 
 

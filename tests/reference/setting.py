@@ -72,8 +72,6 @@ class Species:
             **{kind: food.gene for kind, food in config.food.items()},
             **dict.fromkeys(config.species, genome.prey),
             "action": genome.action,
-            **{f"see_{each}": see.gene for each, see in reward.see.items()},
-            **{f"smell_{each}": smell.gene for each, smell in reward.smell.items()},
             **{each: pay.gene for each, pay in reward.pay.items()},
         }
         if gene.startswith("neutral_"):

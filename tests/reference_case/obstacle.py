@@ -8,7 +8,11 @@ OBSTACLES = {
         (
             *("obstacle.count=4", "obstacle.damage=0.3", "obstacle.min_side=15", "obstacle.max_side=35"),
             *("obstacle.schedule.harmful.points=[[0, 0.5], [40, 1.0], [70, 0.25]]",),
-            *("reward.see.obstacle.coef=0.2", 'reward.see.obstacle.reads="normal"', 'energy.at_zero="death"'),
+            *(
+                "reward.pay.see_obstacle.coef=0.2",
+                'reward.pay.see_obstacle.channel="see_normal"',
+                'energy.at_zero="death"',
+            ),
         ),
         {"harmed": 20, "harmless": 10, "starved": 3, "paid_see_obstacle": 100},
     ),
@@ -16,7 +20,7 @@ OBSTACLES = {
         "obstacles in the cells of a grid, with corners to one side, which rays read wrongly",
         (
             *("obstacle.count=5", "obstacle.damage=0.3", "obstacle.cell=30", "obstacle.min_angle=1.5"),
-            *("obstacle.max_angle=2.5", 'obstacle.sight="released"', "reward.see.obstacle.coef=0.2"),
+            *("obstacle.max_angle=2.5", 'obstacle.sight="released"', "reward.pay.see_obstacle.coef=0.2"),
             *("obstacle.min_side=24", "obstacle.max_side=24"),
         ),
         {"harmed": 20, "paid_see_obstacle": 100},

@@ -16,7 +16,10 @@ FAMILIES = {
         (
             *("population.capacity=12", "population.initial_count=10", "reward.action_coef=0.5"),
             *each(
-                "curved", 'reward.family="sinh"', "reward.see.normal.coef=0.1", "reward.see.normal.gene.initial_sd=1"
+                "curved",
+                'reward.family="sinh"',
+                "reward.pay.see_normal.coef=0.1",
+                "reward.pay.see_normal.gene.initial_sd=1",
             ),
             *each("power", 'reward.family="scaled"', "genome.second.initial_sd=0.5", "genome.second.initial_mean=0.2"),
             *each("hungry", 'reward.family="below"', "reward.threshold=2", "reward.threshold_width=1"),

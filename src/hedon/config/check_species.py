@@ -47,7 +47,6 @@ def check_species(check: Check) -> None:
         _stores(check, config, species, path)
         _for_rules(check, config, species, path)
         before = len(check.problems)
-        _sight(check, config, species, path)
         _channels(check, config, species, path)
         if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
             _genes(check, config, species, path)
@@ -185,20 +184,6 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
     check.need(
         not reward.memory or bool(reward.rule), f"{path}reward.memory", "is kept by a rule: give reward.rule too"
     )
-
-
-def _sight(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    seen, smells = chosen(config, species.sensor.sees), smelled(config, species.sensor.smells)
-    for name, see in species.reward.see.items():
-        place, known = f"{path}reward.see.{name}", ", ".join(seen)
-        if name not in seen:
-            check.add(place, f"it does not see this: it sees {known}", nearest(name, seen))
-        rule = f"must be empty or one of {known}"
-        check.need(see.reads in ("", *seen), f"{place}.reads", rule, near=nearest(see.reads, seen))
-    for name in species.reward.smell:
-        if name not in smells:
-            rule = "it does not smell this: add it to sensor.smells" + (f" = {', '.join(smells)}" if smells else "")
-            check.add(f"{path}reward.smell.{name}", rule, nearest(name, smells))
 
 
 def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:

@@ -96,31 +96,6 @@ class GenomeConfig:
 
 
 @dataclass(frozen=True, slots=True)
-class SeeConfig:
-    """A reward for seeing a species, a kind of food, walls or obstacles, by name: coef·weight·what rays read of it."""
-
-    coef: float = setting(0.1, "factor of the term", "", OURS + "; the code of the sequel has 0.1", ge=-1e3, le=1e3)
-    over_rays: Literal["mean", "max"] = setting(
-        "mean", "how the readings of the rays, 0 for those that meet something else, become one number", "", OURS
-    )
-    reads: str = setting(
-        "",
-        "the rays of this name are read instead: a wrong channel. Empty for its own",
-        "",
-        OURS + "; for obstacles the code of the sequel reads those of food",
-    )
-    gene: GeneConfig = section(GeneConfig)
-
-
-@dataclass(frozen=True, slots=True)
-class SmellConfig:
-    """A reward for smelling a species or a kind of food, by its name: coef·weight·mean over the noses."""
-
-    coef: float = setting(0.1, "factor of the term", "", OURS, ge=-1e3, le=1e3)
-    gene: GeneConfig = section(GeneConfig)
-
-
-@dataclass(frozen=True, slots=True)
 class PayConfig:
     """A term of the reward for any channel, by the name of the term: coef·weight·channel. Its gene is `w_NAME`."""
 
@@ -196,6 +171,4 @@ class RewardConfig:
     memory: int = setting(
         0, "numbers that the rule keeps for each agent from step to step", "", OURS, ge=0, le=16, shapes=True
     )
-    see: dict[str, SeeConfig] = section(derived=True)
-    smell: dict[str, SmellConfig] = section(derived=True)
     pay: dict[str, PayConfig] = section(derived=True)

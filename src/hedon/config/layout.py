@@ -241,7 +241,7 @@ def _most(family: str, role: str, name: str) -> float:
 
 
 def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
-    """The layouts of one species. It must see and smell all that it is rewarded for.
+    """The layouts of one species. There must be all channels that it is rewarded for.
 
     Args:
         config: with what the species shares with others.
@@ -249,7 +249,6 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     """
     made, genome, reward = _Layout(config, species), species.genome, species.reward
     eaten, known = diet(config, species), made.known
-    sees, smells = chosen(config, species.sensor.sees), smelled(config, species.sensor.smells)
     for meal, name in enumerate((*config.food, *config.species)):
         if name in eaten:
             food = name in config.food
@@ -257,12 +256,6 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
             made.add_term(name, known["meals", meal], what, law, "reward.meal_coef")
     effort = "effort" if reward.action_norm == "max_force" else "force_norm"
     made.add_term("action", known[effort, 0], "motor action", "genome.action", "reward.action_coef")
-    for name, see in reward.see.items():
-        seen, place = known[f"see_{see.over_rays}", sees.index(see.reads or name)], f"reward.see.{name}"
-        made.add_term(f"see_{name}", seen, f"seeing {name}", f"{place}.gene", f"{place}.coef")
-    for name in reward.smell:
-        smell, place = known["smell_mean", smells.index(name)], f"reward.smell.{name}"
-        made.add_term(f"smell_{name}", smell, f"smelling {name}", f"{place}.gene", f"{place}.coef")
     for name, pay in reward.pay.items():
         (paid,), place = called(known, pay.channel or name), f"reward.pay.{name}"
         made.add_term(name, paid, paid.meaning, f"{place}.gene", f"{place}.coef")
@@ -290,9 +283,9 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     return SpeciesLayout(
         genes=tuple(made.genes),
         terms=tuple(made.terms),
-        sees=sees,
+        sees=chosen(config, species.sensor.sees),
         touches=chosen(config, species.body.collides),
-        smells=smells,
+        smells=smelled(config, species.sensor.smells),
         stores=tuple(species.stores),
         observed=observed,
         last=last,

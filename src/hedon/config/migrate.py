@@ -60,6 +60,10 @@ VALUES = {
 """Choices of settings that have other names now, by the paths of today."""
 GATES = {"by_age": "age"}
 """Families of rewards whose gate a file must name now, by their names before."""
+SENSES = ("see", "smell")
+"""Sections of `reward` whose terms are among those of `reward.pay` now."""
+SENSE_COEF = 0.1
+"""The factor of their terms where a file did not say it."""
 _MEANT = {"learning": {"acting_weights": "float32"}}
 """What complete files of the first versions mean by settings that they lack, where the default is another value."""
 _HINT = "`hedon config migrate FILE` rewrites a file"
@@ -82,7 +86,11 @@ def renamed(tables: Table) -> Iterator[Problem]:
             if isinstance(value, str) and value in names:
                 more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
                 yield Problem(place + path, f'is called "{names[value]}" now{more} ({_HINT})', f'"{value}"')
-
+        for sense in SENSES:
+            for name in _tables(_tables(own.get("reward")).get(sense)):
+                yield Problem(
+                    f"{place}reward.{sense}.{name}", f"is called {place}reward.pay.{sense}_{name} now ({_HINT})"
+                )
     for kind, food in _tables(tables.get("food")).items():
         for name in GIVEN:
             if name in food:
@@ -98,6 +106,9 @@ def new_path(path: str) -> str | None:
     names = path.split(".")
     if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
         return f"food.{names[1]}.gives.{names[2]}"
+    if len(names) > 2 and names[0] == "reward" and names[1] in SENSES:
+        rest = ["channel"] if names[3:] in (["over_rays"], ["reads"]) else names[3:]
+        return ".".join(["reward.pay", f"{names[1]}_{names[2]}", *rest])
     return MOVED.get(path)
 
 
@@ -116,6 +127,7 @@ def migrated(tables: Table) -> Table:
     for food in _tables(made.get("food")).values():
         food |= {"gene": _law(genome, "initial_mean_food")} if has(genome, ["initial_mean_food"]) else {}
     _rename(made, [*species.values(), made])
+    _name_terms(made, {})
     _name_stores(made, {}, whole=True)
     for name in PER_SPECIES if species else ():
         made.pop(name, None)
@@ -155,6 +167,7 @@ def migrate_text(text: str, below: Table) -> str:
 def _rewrite(root: Any, below: Table, table: Callable[[], Any] = dict, row: Callable[[], Any] = dict) -> None:
     """Gives the tables of a short file the names of this version, in place; `row` makes an empty table of one line."""
     _rename(root, [root, *_tables(root.get("species")).values()], table, row)
+    _name_terms(root, below, table)
     _name_stores(root, below, False, table)
 
 
@@ -200,6 +213,35 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, r
                 owner[section][name] = names.get(before, before)
                 if path == "reward.family" and before in GATES:
                     owner[section].setdefault("gate", GATES[before])
+
+
+def _name_terms(root: Any, below: Table, table: Callable[[], Any] = dict) -> None:
+    """Moves rewards for sights and smells to the other terms, in place; arguments as those of `_name_stores`."""
+    for species, owner in {"": root, **_tables(root.get("species"))}.items():
+        reward, under = owner.get("reward"), _tables(below.get("species")).get(species, {})
+        for sense in SENSES if isinstance(reward, dict) else ():
+            for name, told in reward.pop(sense, {}).items():
+                term = f"{sense}_{name}"
+                known = (each["reward"]["pay"][term] for each in (under, below) if has(each, ["reward", "pay", term]))
+                before = next(known, {})
+                if isinstance(told, dict):
+                    _name_channel(told, term, before.get("channel", term))
+                    if not before:
+                        told.setdefault("coef", SENSE_COEF)
+                reward.setdefault("pay", table())[term] = told
+
+
+def _name_channel(told: Any, term: str, before: str) -> None:
+    """Gives a term the channel that it reads, in place, where that is not the one of its preset, or of its name."""
+    over, reads = told.pop("over_rays", ""), told.pop("reads", None)
+    largest = over == "max" or (not over and before.endswith("_max"))
+    read = before.removesuffix("_max") if reads is None else f"see_{reads}" if reads else term
+    channel = read + "_max" * largest
+    if channel != before:
+        told["channel"] = channel
+        comment = "".join(each.trivia.comment for each in (over, reads) if hasattr(each, "trivia"))
+        if comment:
+            told["channel"].comment(comment)
 
 
 def _name_stores(root: Any, below: Table, whole: bool, table: Callable[[], Any] = dict) -> None:

@@ -37,7 +37,7 @@ FOOD = (
     Condition("no predators", "prey-alone"),
 )
 FROZEN = (Condition("predators evolve", "predator"), Condition("predators do not mutate", "predator-frozen"))
-_READS = ("reward.see.obstacle.reads=normal",)
+_READS = ("reward.pay.see_obstacle.channel=see_normal_max",)
 PITFALLS = (
     Condition("damage 10", "pitfall"),
     Condition("damage 1", "pitfall-weak"),

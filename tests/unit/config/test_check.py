@@ -102,8 +102,8 @@ NAME_RULE = 'must have only letters, digits, "-", "_" and ".", at most 80 of the
             "food.normal.gene.initial_mean = 5.0: must be within ± species.b.genome.weight_limit = 1",
         ),
         (
-            [*TWO, "species.b.genome.weight_limit=1", "species.b.reward.see.a.gene.initial_mean=-5"],
-            "species.b.reward.see.a.gene.initial_mean = -5.0: must be within ± species.b.genome.weight_limit = 1",
+            [*TWO, "species.b.genome.weight_limit=1", "species.b.reward.pay.see_a.gene.initial_mean=-5"],
+            "species.b.reward.pay.see_a.gene.initial_mean = -5.0: must be within ± species.b.genome.weight_limit = 1",
         ),
         (
             ["genome.mutation.w_action.limit=2", "genome.action.initial_mean=5"],

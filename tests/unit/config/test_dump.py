@@ -11,7 +11,7 @@ from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_to
 from hedon.config import field as doc
 from hedon.config.config import Config
 from hedon.config.dump import flatten, section_paths
-from hedon.config.evolution import GeneConfig, MutationConfig, SeeConfig, SmellConfig
+from hedon.config.evolution import GeneConfig, MutationConfig, PayConfig
 from hedon.config.load import parse_config
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.settings import PROVENANCE
@@ -131,8 +131,7 @@ RICH = (
     "food.normal.schedule.capacity={points=[[0, 1.0], [5, 0.5]]}",
     'reward.family="above"',
     'sensor.smells=["normal"]',
-    "reward.smell.normal={}",
-    "species.prey.reward.see.normal={}",
+    "species.prey.reward.pay.see_normal={}",
     "reward.pay.moved={}",
     "sensor.observes.age=100",
     "reward.drive_reduction_coef=1",
@@ -187,9 +186,8 @@ def test_no_two_configs_have_one_digest(config: Config) -> None:
 
 tables = {
     "reward": st.builds(
-        lambda see, smell: {"see": see, "smell": smell},
-        st.dictionaries(st.sampled_from(["prey", "predator"]), st.builds(SeeConfig)),
-        st.dictionaries(st.just("normal"), st.builds(SmellConfig)),
+        lambda pay: {"pay": pay},
+        st.dictionaries(st.sampled_from(["see_prey", "see_predator", "moved"]), st.builds(PayConfig)),
     ),
     "genome": st.builds(
         lambda learning, mutation: {"learning": learning, "mutation": mutation},

@@ -19,10 +19,10 @@ ENGINE = Path(__file__).parents[3] / "engine"
 CONFIG = load_config(
     "poison",
     overrides=[
-        "reward.see.poison.coef=0.1",
+        "reward.pay.see_poison.coef=0.1",
         "sensor.smells=['poison']",
         "sensor.scaling=unit",
-        "reward.smell.poison.coef=0.1",
+        "reward.pay.smell_poison.coef=0.1",
         "reward.family=between",
         "reward.gate=age",
         *FED,
@@ -46,7 +46,7 @@ OTHER: dict[str, Any] = {
     OWN + "body.collides": ("normal",),
     OWN + "sensor.sees": ("normal", "poison"),
     OWN + "sensor.smells": ("normal", "poison"),
-    OWN + "reward.see.poison.reads": "normal",
+    OWN + "reward.pay.see_poison.channel": "see_normal",
     OWN + "diet.eats": (("normal", 0.5),),
     OWN + "neighbor.near.of": (),
     OWN + "reward.rule": "",

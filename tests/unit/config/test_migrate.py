@@ -16,7 +16,7 @@ from project_files import ROOT
 from hedon.check.run import check_run
 from hedon.config import ConfigError, diff, digest, dump_toml, load_config
 from hedon.config.dump import flatten
-from hedon.config.evolution import GeneConfig
+from hedon.config.evolution import GeneConfig, PayConfig
 from hedon.config.field import sections, settings
 from hedon.config.load import migrated_file, parse_config
 from hedon.config.migrate import MOVED, STORES, VALUES, migrate_text, renamed
@@ -153,6 +153,36 @@ def test_weights_by_age_get_age_as_their_gate(write: Write, given: str) -> None:
     own = parse_config(whole, "here").species["agent"].reward
     assert (own.family, own.gate) == ("between", "age")
     assert parse_config(whole.replace("by_age", "hungry"), "here").species["agent"].reward.gate == "energy"
+
+
+@pytest.mark.parametrize(
+    ("text", "term", "pay"),
+    [
+        ("[reward.see.normal]\ncoef = 0.5\nover_rays = 'max'", "see_normal", PayConfig("see_normal_max", 0.5)),
+        ("reward.see.wall = { reads = 'normal' }", "see_wall", PayConfig("see_normal", 0.1)),
+        ("sensor.smells = ['normal']\nreward.smell.normal.gene.initial_sd = 0.2", "smell_normal", PayConfig("", 0.1)),
+        ("preset = 'pitfall'\nreward.see.obstacle.reads = 'normal'", "see_obstacle", PayConfig("see_normal_max", 0.1)),
+        ("preset = 'pitfall'\n[reward.see.agent]\nover_rays = 'mean'", "see_agent", PayConfig("see_agent", 0.1)),
+        ("preset = 'predator'\nspecies.prey.reward.see.prey.coef = 0.3", "see_prey", PayConfig("", 0.3)),
+    ],
+)
+def test_rewards_for_sights_and_smells_are_terms_like_others(
+    write: Write, text: str, term: str, pay: PayConfig
+) -> None:
+    file = write(f"{text}  # said\n")
+    with pytest.raises(ConfigError, match=f"is called .*reward.pay.{term} now"):
+        load_config(file)
+    file.write_text(migrated_file(file))
+    assert "# said" in file.read_text()
+    found = next(iter(load_config(file).species.values())).reward.pay[term]
+    assert (found.channel, found.coef) == (pay.channel, pay.coef)
+
+
+def test_paths_of_sights_are_refused_with_their_new_names() -> None:
+    with pytest.raises(ConfigError, match=r"reward\.see\.normal: is called reward\.pay\.see_normal now"):
+        load_config("baseline", overrides=["reward.see.normal.over_rays=max"])
+    with pytest.raises(ConfigError, match=r"is called reward\.pay\.see_normal\.channel now"):
+        load_config("baseline").with_("reward.see.normal.reads", "wall")
 
 
 def test_founders_of_the_first_versions_are_read(tmp_path: Path) -> None:

@@ -27,8 +27,6 @@ mutation.w_action = {}
 [reward]
 family = "above"
 rule = "my.py:pay"
-see.fungus = {}
-smell.fungus = {}
 pay.moved = {}
 [sensor]
 smells = ["*"]
@@ -59,8 +57,6 @@ KINDS = {
     "genome.set.<kind>": "genome.set.sensor.ray_length",
     "genome.extra.<kind>": "genome.extra.kindness",
     "genome.mutation.<kind>": "genome.mutation.w_action",
-    "reward.see.<kind>": "reward.see.fungus",
-    "reward.smell.<kind>": "reward.smell.fungus",
     "reward.pay.<kind>": "reward.pay.moved",
 }
 

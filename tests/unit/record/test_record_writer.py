@@ -283,7 +283,7 @@ def test_every_gene_says_what_it_is() -> None:
         "reward.gate=age",
         "reward.drive_reduction_coef=1.0",
         "genome.learning.gamma.initial_sd=0.1",
-        "reward.see.wall.coef=0.1",
+        "reward.pay.see_wall.coef=0.1",
         "reward.pay.child.channel=births",
     ]
     table = agent_table(columns_of(load_config("baseline", overrides=genes)))
