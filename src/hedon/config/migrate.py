@@ -239,7 +239,7 @@ def _name_channel(told: Any, term: str, before: str) -> None:
     channel = read + "_max" * largest
     if channel != before:
         told["channel"] = channel
-        comment = "".join(each.trivia.comment for each in (over, reads) if hasattr(each, "trivia"))
+        comment = "".join(getattr(getattr(each, "trivia", None), "comment", "") for each in (over, reads))
         if comment:
             told["channel"].comment(comment)
 
