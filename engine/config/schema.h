@@ -232,12 +232,13 @@ struct StoreConfig {
   float child_share;
   StoreAtZero at_zero;
   float hazard_weight;
+  float birth_weight;
   float motor_threshold;  ///< [amount]
   HEDON_FIELDS(StoreConfig, initial, capacity, basic_cost, action_cost, decay, child_share, at_zero, hazard_weight,
-      motor_threshold)
+      birth_weight, motor_threshold)
   static constexpr Limit LIMITS[] = {Limit::from(0, 1000000), Limit::over(0, 1000000), Limit::from(0, 10000),
-      Limit::from(0, 10000), Limit::from(0, 1), Limit::from(0, 1), Limit(), Limit::from(0, 10000), Limit::from(0,
-      1000)};
+      Limit::from(0, 10000), Limit::from(0, 1), Limit::from(0, 1), Limit(), Limit::from(0, 10000), Limit::from(-10000,
+      10000), Limit::from(0, 1000)};
 };
 
 struct HazardSchedule {

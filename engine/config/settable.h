@@ -27,6 +27,7 @@ HEDON_ENUM(GenomeSet, body_radius,
       store_decay,
       store_child_share,
       store_hazard_weight,
+      store_birth_weight,
       store_motor_threshold,
       hazard_kappa,
       hazard_alpha_energy,
@@ -67,6 +68,7 @@ HEDON_FN SettableNumber settable(SpeciesConfig& config, GenomeSet which, int32_t
     case GenomeSet::store_decay: return {&own.decay, 0.0f, 1.0f};
     case GenomeSet::store_child_share: return {&own.child_share, 0.0f, 1.0f};
     case GenomeSet::store_hazard_weight: return {&own.hazard_weight, 0.0f, 10000.0f};
+    case GenomeSet::store_birth_weight: return {&own.birth_weight, -10000.0f, 10000.0f};
     case GenomeSet::store_motor_threshold: return {&own.motor_threshold, 0.0f, 1000.0f};
     case GenomeSet::hazard_kappa: return {&config.hazard.kappa, 0.0f, 1.0f};
     case GenomeSet::hazard_alpha_energy: return {&config.hazard.alpha_energy, 0.0f, 1000000.0f};

@@ -22,13 +22,13 @@ HEDON_FN double hazard_by_age(const HazardConfig& config, double age) {
   return config.alpha_age * exp_double(config.beta_age * age);
 }
 
-/// Probability of having a child in a step at energy `energy`, by its form.
-HEDON_FN double birth_rate(const BirthConfig& config, double energy) {
+/// Probability of having a child in a step at a weighted sum of the stores, by its form.
+HEDON_FN double birth_rate(const BirthConfig& config, double held) {
   switch (config.form) {
     case BirthForm::logistic:
-      return config.kappa / (1.0 + exp_double(config.logit_offset - static_cast<double>(config.beta) * energy));
+      return config.kappa / (1.0 + exp_double(config.logit_offset - static_cast<double>(config.beta) * held));
     case BirthForm::threshold:
-      return static_cast<double>(config.beta) * energy >= config.logit_offset ? config.kappa : 0.0;
+      return static_cast<double>(config.beta) * held >= config.logit_offset ? config.kappa : 0.0;
   }
   return 0.0;
 }
@@ -69,7 +69,13 @@ HEDON_FN double death_chance(const World& world, int32_t slot) {
 
 /// Probability that the agent in `slot` has a child at the end of this step.
 HEDON_FN double birth_chance(const World& world, int32_t slot) {
-  return birth_rate(world.species(slot).config.birth, world.state.life[slot].energy);
+  const Species& species = world.species(slot);
+  const auto weighted = [&](int32_t store) {
+    return static_cast<double>(store_of(species.config, store).birth_weight) * world.held(slot, store);
+  };
+  double held = weighted(ENERGY);
+  for (int32_t i = 1; i < species.stores(); ++i) held += weighted(i);
+  return birth_rate(species.config.birth, held);
 }
 
 }  // namespace hedon

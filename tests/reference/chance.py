@@ -40,11 +40,11 @@ def death_chance(species: Species, agent: Agent, step: int) -> float:
     return factor_at(hazard.schedule, "scale", step) * chance
 
 
-def birth_chance(species: Species, energy: float) -> float:
-    birth = species.birth
+def birth_chance(species: Species, agent: Agent) -> float:
+    birth, held = species.birth, sum(store.birth_weight * agent.held[name] for name, store in species.stores.items())
     if birth.form == "threshold":
-        return birth.kappa if birth.beta * energy >= birth.logit_offset else 0.0
-    return birth.kappa / (1 + math.exp(birth.logit_offset - birth.beta * energy))
+        return birth.kappa if birth.beta * held >= birth.logit_offset else 0.0
+    return birth.kappa / (1 + math.exp(birth.logit_offset - birth.beta * held))
 
 
 def harmful(rules: Rules, step: int) -> int:

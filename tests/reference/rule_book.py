@@ -46,7 +46,7 @@ class RuleBook:
         return self._chance("hazard", world, turn, plain)
 
     def birth_chance(self, world: World, turn: Turn) -> float:
-        return self._chance("birth", world, turn, birth_chance(self.rules.of(turn.agent), turn.agent.energy))
+        return self._chance("birth", world, turn, birth_chance(self.rules.of(turn.agent), turn.agent))
 
     def _chance(self, use: str, world: World, turn: Turn, plain: float) -> float:
         function = self.found[turn.agent.species][use]

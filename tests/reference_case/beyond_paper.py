@@ -156,11 +156,12 @@ INNER = {
         "a store that food needs, one that decays and one whose end kills; energy that decays and makes slow",
         (
             "store.water={capacity=5.0, initial=2.5, basic_cost=0.05, child_share=0.5}",
-            *("store.water.scale=2", "store.water.hazard_weight=0.3"),
+            *("store.water.scale=2", "store.water.hazard_weight=0.3", "store.water.birth_weight=0.4"),
             "store.venom={capacity=9.0, initial=1.0, decay=0.05, motor_threshold=2.0, action_cost=1e-4}",
             *("food.normal.gives.water=1", "food.grain.gives={energy=2.0, water=-0.2, venom=1.5}"),
             *("food.grain.needs={water=2.0, energy=0.5}", "food.grain.growth_rate=1", "food.grain.capacity=20"),
             *("energy.decay=0.01", "energy.motor_threshold=6", "energy.hazard_weight=0.7", "energy.scale=20"),
+            "energy.birth_weight=0.6",
             *each("land", "population.capacity=20", "population.initial_count=14", 'sensor.scaling="unit"'),
             *each("sea", "population.capacity=20", "population.initial_count=14", "energy.observed=false"),
             *each("sea", "store.air={capacity=6.0, initial=4.0, basic_cost=0.1, child_share=0.5}"),

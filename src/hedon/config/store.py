@@ -36,6 +36,14 @@ class StoreConfig:
     hazard_weight: float = setting(
         0.0, "weight of the hazard's part by energy, with this store in place of energy", "", OURS, ge=0, le=1e4
     )
+    birth_weight: float = setting(
+        0.0,
+        "the chance of a child follows the sum over the stores of this times what is held, in place of energy alone",
+        "",
+        OURS,
+        ge=-1e4,
+        le=1e4,
+    )
     motor_threshold: float = setting(
         0.0, "amount that takes about half of both motors' force; 0: it takes none", "amount", OURS, ge=0, le=1e3
     )
@@ -78,3 +86,4 @@ class EnergyConfig(StoreConfig):
         CODE + '; "death" is ours',
     )
     hazard_weight: float = setting(1.0, "weight of the hazard's part by energy", "", EITHER, ge=0, le=1e4)
+    birth_weight: float = setting(1.0, "weight of energy in what births follow", "", EITHER, ge=-1e4, le=1e4)

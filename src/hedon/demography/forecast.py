@@ -17,7 +17,15 @@ from hedon.config.species import SpeciesConfig
 from hedon.config.type import diet
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success
-from hedon.demography.schedule import factor_at, factor_range, hazard_of, mean_factor, mean_hazard, scaled_hazard
+from hedon.demography.schedule import (
+    birth_of,
+    factor_at,
+    factor_range,
+    hazard_of,
+    mean_factor,
+    mean_hazard,
+    scaled_hazard,
+)
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(32)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -176,7 +184,7 @@ def _feeding(config: Config, species: str) -> dict[str, float]:
 def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
     hazard = mean_hazard(own)
     lifetime = float(expected_lifetime(hazard, energy))
-    r0 = float(reproduction_number(hazard, own.birth, energy)) if own.birth.kappa else 0.0
+    r0 = float(reproduction_number(hazard, birth_of(own), energy)) if own.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
     population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
     return EnergyLevel(energy, lifetime, r0, refusal, population)
@@ -230,7 +238,7 @@ def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
     if low < high:
         ends = [scaled_hazard(hazard_of(own), factor) for factor in (low, high)]
         lives = [_steps(float(expected_lifetime(end, energy))) for end in ends]
-        r0 = [float(reproduction_number(end, own.birth, energy)) if own.birth.kappa else 0.0 for end in ends]
+        r0 = [float(reproduction_number(end, birth_of(own), energy)) if own.birth.kappa else 0.0 for end in ends]
         which = _which(own.hazard.schedule, "scale")
         yield (
             f"The chance of death follows a schedule, from {low:g} to {high:g} times what is set: lives and R0 are "
@@ -309,6 +317,8 @@ def _beyond(config: Config, species: str) -> Iterator[str]:
         empty = weight * float(energy_hazard(own.hazard, 0.0)) * mean_factor(own.hazard.schedule, "scale")
         if empty:
             yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
+        if store.birth_weight:
+            yield f"Births follow {name} too; the numbers here are without any of it."
         if store.at_zero == "death":
             yield f"Without {name} agents die at once: how often that happens is not forecast."
     gated = [kind for kind in diet(config, own) if kind in config.food and config.food[kind].needs]

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hedon.config.life import HazardConfig
+from hedon.config.life import BirthConfig, HazardConfig
 from hedon.config.schedule import ScheduleConfig
 from hedon.config.species import SpeciesConfig
 
@@ -65,6 +65,11 @@ def hazard_of(own: SpeciesConfig) -> HazardConfig:
     """The hazard of a species by energy and age, with its weight of energy."""
     weight = own.energy.hazard_weight if own.hazard.form == "age_energy" else 1.0
     return replace(own.hazard, kappa=weight * own.hazard.kappa)
+
+
+def birth_of(own: SpeciesConfig) -> BirthConfig:
+    """The chance of a child of a species by energy alone, with its weight of energy."""
+    return replace(own.birth, beta=own.energy.birth_weight * own.birth.beta)
 
 
 def mean_hazard(own: SpeciesConfig) -> HazardConfig:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hedon.analysis.world.population import run_tail
 from hedon.config.species import SpeciesConfig
 from hedon.demography.life import expected_lifetime, reproduction_number
-from hedon.demography.schedule import mean_hazard
+from hedon.demography.schedule import birth_of, mean_hazard
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 
 _LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
@@ -62,7 +62,7 @@ def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
         The line R0 = 1, with its label, for the legend.
     """
     energy = _energies(own)
-    r0 = reproduction_number(mean_hazard(own), own.birth, energy)
+    r0 = reproduction_number(mean_hazard(own), birth_of(own), energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
     one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
     axes.set_title("children tried in a life, R0")

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from hedon.config.life import HazardConfig
 from hedon.config.species import SpeciesConfig
 from hedon.demography.life import birth_rate, expected_lifetime, hazard, reproduction_number, survival
+from hedon.demography.schedule import birth_of
 from hedon.figure.demography import draw_reproduction
 from hedon.figure.style import (
     BLUE,
@@ -48,11 +49,11 @@ def draw_hazard(config: HazardConfig) -> Figure:
 def draw_birth(own: SpeciesConfig) -> Figure:
     """The chance of a birth by energy, and the children that are tried in a life at constant energy."""
     energy = np.linspace(0, min(_MOST_ENERGY, own.energy.capacity), _POINTS)
-    none = float(reproduction_number(own.hazard, own.birth, 0.0))
+    none = float(reproduction_number(own.hazard, birth_of(own), 0.0))
     with styled():
         figure = new_figure(8.6, 3.2)
         chance, children = figure.subplots(1, 2)
-        chance.plot(energy, 1e3 * birth_rate(own.birth, energy), color=BLUE, linewidth=2.0)
+        chance.plot(energy, 1e3 * birth_rate(birth_of(own), energy), color=BLUE, linewidth=2.0)
         chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * own.birth.kappa), xlabel="energy")
         chance.set_title("chance of trying a birth [1/1000 steps]")
         one = draw_reproduction(children, own)
