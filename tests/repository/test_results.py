@@ -235,12 +235,14 @@ def window_rows(name: str) -> list[str]:
         columns = [("births", prey), ("deaths_eaten", prey), ("food_normal", prey), ("energy_mean", prey)]
         alive, run = [("alive", prey), ("alive", predators)], PREDATOR_RUN
     else:
+        rows = rows.filter(sight="released")
         columns = [(column, rows) for column in PITFALL_COLUMNS[1:]]
         alive, run = [("alive", rows)], PITFALL_RUN
 
     def range_of(column: str, mine: pl.DataFrame, number: int) -> str:
         values = mine.filter(step=number * WINDOW)[column].to_list()
-        shown = [f"{value:.1f}" if column == "energy_mean" else str(value) for value in (min(values), max(values))]
+        digits = 1 if column == "energy_mean" else 0
+        shown = [f"{value:.{digits}f}" for value in (min(values), sum(values) / len(values), max(values))]
         return "\N{EN DASH}".join(dict.fromkeys(shown))
 
     made = []
