@@ -1,5 +1,6 @@
 """Commands about configs: list the presets, show a config, compare two, check one."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -131,7 +132,8 @@ def migrate(
 ) -> None:
     """Rewrite a config file of an earlier version with the names of this one.
 
-    Comments stay, unless the file is complete. Folders of runs need it not: they are read as they are.
+    Comments stay where their lines do, and those that go are shown; a complete file is written anew. Folders of runs
+    need it not: they are read as they are.
 
     \b
     Examples:
@@ -139,8 +141,13 @@ def migrate(
       hedon config migrate my.toml --stdout
     """
     from hedon.config.load import load_config, migrated_file
+    from hedon.config.toml import read_toml
 
     text = migrated_file(file)
+    if not read_toml(file).get("complete"):
+        for comment in re.findall(r"#.*", file.read_text(encoding="utf-8-sig")):
+            if comment not in text:
+                typer.echo(f"hedon: {file}: a comment goes with its line: {comment}", err=True)
     if stdout:
         typer.echo(text, nl=False)
         return

@@ -144,7 +144,8 @@ def migrated(tables: Table) -> Table:
 def migrate_text(text: str, below: Table) -> str:
     """A short file of an earlier version with the names of this one.
 
-    Comments and order stay, but where dotted keys leave no place for what is moved: such a file is written anew.
+    Comments and order stay, but where dotted keys leave no place for what is moved: there terms of the reward become
+    tables of one line, or else the whole file is written anew.
 
     Args:
         text: of the file.
@@ -155,19 +156,22 @@ def migrate_text(text: str, below: Table) -> str:
 
     meant = tomlkit.parse(text).unwrap()
     _rewrite(meant, below)
-    for row in (tomlkit.table, tomlkit.inline_table):
+    inline = tomlkit.inline_table
+    for table, row in ((tomlkit.table, tomlkit.table), (tomlkit.table, inline), (inline, inline)):
         document: Any = tomlkit.parse(text)
         with suppress(TOMLKitError, LookupError, tomllib.TOMLDecodeError):  # tables that stand at several places
-            _rewrite(document, below, tomlkit.table, row)
+            _rewrite(document, below, table, row, in_line=table is inline)
             if _told(tomllib.loads(tomlkit.dumps(document))) == _told(meant):
                 return tomlkit.dumps(document)
     return tomlkit.dumps(meant)
 
 
-def _rewrite(root: Any, below: Table, table: Callable[[], Any] = dict, row: Callable[[], Any] = dict) -> None:
+def _rewrite(
+    root: Any, below: Table, table: Callable[[], Any] = dict, row: Callable[[], Any] = dict, in_line: bool = False
+) -> None:
     """Gives the tables of a short file the names of this version, in place; `row` makes an empty table of one line."""
     _rename(root, [root, *_tables(root.get("species")).values()], table, row)
-    _name_terms(root, below, table)
+    _name_terms(root, below, table, in_line)
     _name_stores(root, below, False, table)
 
 
@@ -215,8 +219,17 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, r
                     owner[section].setdefault("gate", GATES[before])
 
 
-def _name_terms(root: Any, below: Table, table: Callable[[], Any] = dict) -> None:
+def _name_terms(root: Any, below: Table, table: Callable[[], Any] = dict, in_line: bool = False) -> None:
     """Moves rewards for sights and smells to the other terms, in place; arguments as those of `_name_stores`."""
+
+    def moved(told: Any) -> Any:
+        if not (in_line and isinstance(told, dict)):
+            return told
+        row = table()
+        for name, value in told.items():
+            row[name] = moved(value)
+        return row
+
     for species, owner in {"": root, **_tables(root.get("species"))}.items():
         reward, under = owner.get("reward"), _tables(below.get("species")).get(species, {})
         for sense in SENSES if isinstance(reward, dict) else ():
@@ -228,7 +241,7 @@ def _name_terms(root: Any, below: Table, table: Callable[[], Any] = dict) -> Non
                     _name_channel(told, term, before.get("channel", term))
                     if not before:
                         told.setdefault("coef", SENSE_COEF)
-                reward.setdefault("pay", table())[term] = told
+                reward.setdefault("pay", table())[term] = moved(told)
 
 
 def _name_channel(told: Any, term: str, before: str) -> None:

@@ -113,6 +113,18 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
     assert whole.read_text() == dump_toml(load_config(EARLIER / "one" / "config.toml"))
 
 
+def test_a_comment_that_goes_with_its_line_is_shown(tmp_path: Path) -> None:
+    file = tmp_path / "short.toml"
+    dotted = "reward.see.predator = { coef = 0.5 }  # fear\nreward.see.prey.coef = 0.2  # company\n"
+    file.write_text(f"# mine\npreset = 'predator'\n[species.prey]\n{dotted}birth.kappa = 0.1  # often\n")
+    answer = hedon("config", "migrate", str(file))
+    assert answer.returncode == 0
+    assert [line.rpartition(": ")[2] for line in answer.stderr.splitlines()] == ["# fear", "# company"]
+    kept = file.read_text()
+    assert all(comment in kept for comment in ("# mine", "# often"))
+    assert load_config(file).species["prey"].reward.pay["see_predator"].coef == 0.5
+
+
 @pytest.mark.parametrize("old", MOVED)
 def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: str) -> None:
     new = MOVED[old]
