@@ -207,7 +207,8 @@ def _warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...], fed
     found = [*_gene_warnings(own), *_rule_warnings(own)]
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
-    if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime):
+    fed_by_others = any(store.birth_weight > 0 for store in own.store.values())  # whom this forecast takes to be full
+    if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime) and not fed_by_others:
         found.append(
             f"It can live without eating: R0 is {starving.r0:.2f} at energy 0, so an agent that never eats replaces "
             f"itself. It lives {starving.lifetime:,.0f} steps and pays nothing. The world can go on starving, its size "
@@ -318,7 +319,8 @@ def _beyond(config: Config, species: str) -> Iterator[str]:
         if empty:
             yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
         if store.birth_weight:
-            yield f"Births follow {name} too; the numbers here are without any of it."
+            held = f"full of {name}" if store.birth_weight > 0 else f"without {name}"
+            yield f"Births follow {name} too: R0 here is that of agents {held}."
         if store.at_zero == "death":
             yield f"Without {name} agents die at once: how often that happens is not forecast."
     gated = [kind for kind in diet(config, own) if kind in config.food and config.food[kind].needs]

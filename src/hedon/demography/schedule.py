@@ -68,8 +68,10 @@ def hazard_of(own: SpeciesConfig) -> HazardConfig:
 
 
 def birth_of(own: SpeciesConfig) -> BirthConfig:
-    """The chance of a child of a species by energy alone, with its weight of energy."""
-    return replace(own.birth, beta=own.energy.birth_weight * own.birth.beta)
+    """The chance of a child of a species by energy, for who holds the best of its other stores: all it can, or none."""
+    others = sum(max(store.birth_weight, 0.0) * store.capacity for store in own.store.values())
+    beta, offset = own.birth.beta, own.birth.logit_offset
+    return replace(own.birth, beta=own.energy.birth_weight * beta, logit_offset=offset - beta * others)
 
 
 def mean_hazard(own: SpeciesConfig) -> HazardConfig:

@@ -10,9 +10,9 @@ from hedon.config.arena import outline
 from hedon.config.body import MotorConfig
 from hedon.config.schedule import ScheduleConfig
 from hedon.demography.forecast import forecast, fresh_force, setting_warnings
-from hedon.demography.life import expected_lifetime, hazard
+from hedon.demography.life import birth_rate, expected_lifetime, hazard
 from hedon.demography.placement import is_free, placement_success
-from hedon.demography.schedule import factor_at, mean_factor, scaled_hazard
+from hedon.demography.schedule import birth_of, factor_at, mean_factor, scaled_hazard
 
 
 def setting(*overrides: str) -> Config:
@@ -35,6 +35,22 @@ def test_the_papers_setting_lives_without_eating() -> None:
     populations = [level.population for level in found.levels]
     assert populations == sorted(populations)
     assert populations[-1] == 200
+
+
+def test_births_that_follow_another_store_are_those_of_who_is_full_of_it() -> None:
+    water = ("store.water={capacity=20, basic_cost=0.01}", "food.normal.gives.water=1", "energy.birth_weight=0")
+    by_water = setting(*water, "store.water.birth_weight=2").species["agent"]
+    energy = np.array([0.0, 7.0])
+    np.testing.assert_allclose(
+        birth_rate(birth_of(by_water), energy), birth_rate(by_water.birth, np.array([40.0, 40.0]))
+    )
+    against = setting(*water, "store.water.birth_weight=-2").species["agent"]
+    np.testing.assert_array_equal(birth_rate(birth_of(against), energy), birth_rate(against.birth, np.zeros(2)))
+    lively = warnings(*water, "store.water.birth_weight=2", "birth.form=threshold", "birth.logit_offset=3")
+    assert "Births follow water too: R0 here is that of agents full of water." in lively
+    assert "cannot live" not in lively
+    assert "without eating" not in lively, "who eats nothing has no water"
+    assert "agents without water." in warnings(*water, "store.water.birth_weight=-2")
 
 
 def test_room_and_refusals_meet() -> None:
