@@ -206,8 +206,8 @@ def test_the_wrong_channel_pays_for_food():
         ("obstacle.count=200", "too many to place: the arena has room for"),
         ("obstacle.schedule.harmless.points=[[0, 1.0]]", "did you mean harmful"),
         ("obstacle.schedule.harmful.points=[[0, 1.5]]", "factors must be from 0 to 1"),
-        ("reward.pay.see_obstacle.coef=0.1", "there is no channel 'see_obstacle' here"),
-        ('reward.pay.see_wall.channel="see_food"', "there is no channel 'see_food' here; there are .*see_normal"),
+        ("reward.pay.see_obstacle.coef=0.1", "no channel 'see_obstacle' here; sensor.sees says what it sees"),
+        ('reward.pay.see_wall.channel="see_food"', "there is no channel 'see_food' here; .*see_normal"),
     ],
 )
 def test_contradictions_are_refused_by_name(setting, message):

@@ -100,7 +100,10 @@ def test_what_agents_learn_from_holds_what_they_smelled():
     ("setting", "message"),
     [
         ('sensor.smells=["food"]', "must be names of agent, normal"),
-        ("reward.pay.smell_normal.coef=1", "there is no channel 'smell_normal' here"),
+        (
+            "reward.pay.smell_normal.coef=1",
+            "there is no channel 'smell_normal' here; sensor.smells says what it smells",
+        ),
         ("sensor.smell_decay=0", "sensor.smell_decay"),
     ],
 )

@@ -31,6 +31,12 @@ NAME = r"[a-z][a-z0-9_]{0,31}"
 NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
 RESERVED_STARTS = ("eaten_", "w_", "g_", "neutral_", "extra_", "set_point")
 """How names of meals and genes begin in the records."""
+CHANNEL_SETTINGS = {
+    "season_": "sensor.season_period gives a year where no schedule does",
+    "see_": "sensor.sees says what it sees",
+    "smell_": "sensor.smells says what it smells",
+}
+"""The settings that some channels need, by how the names of these begin."""
 MAX_COVERAGE = 0.45
 """Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
@@ -194,8 +200,8 @@ def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str)
     def need(name: str, place: str) -> None:
         count = len(called(known, name))
         if count == 0:
-            year = "; sensor.season_period gives a year where no schedule does" if name.startswith("season_") else ""
-            rule = f"there is no channel {brief(name)!r} here{year}; there are " + ", ".join(names)
+            given = next((f"; {told}" for start, told in CHANNEL_SETTINGS.items() if name.startswith(start)), "")
+            rule = f"there is no channel {brief(name)!r} here{given}; there are " + ", ".join(names)
             check.add(place, rule, nearest(name, names))
         elif count > 1:
             check.add(place, f"{count} channels are called {name}: rename a food, a species or a store")
