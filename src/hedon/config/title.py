@@ -16,7 +16,7 @@ def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> 
 
 
 def weight_title(name: str) -> str:
-    """What a gene is called: the weight of action, of seeing something or of a food, or by its name."""
+    """What a gene is called: the weight of action, of seeing or smelling something or of a food, or by its name."""
     for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
         if name.startswith("w_") and name.endswith(ending):
             return weight_title(name.removesuffix(ending)) + said
@@ -27,6 +27,7 @@ def weight_title(name: str) -> str:
     if name.startswith("g_"):
         return f"{name.removeprefix('g_').replace('_', ' ')}, power of ten"
     what = name.removeprefix("w_")
-    if what.startswith("see_"):
-        return f"weight of seeing {what.removeprefix('see_')}"
+    for start, said in (("see_", "seeing"), ("smell_", "smelling")):
+        if what.startswith(start):
+            return f"weight of {said} {what.removeprefix(start)}"
     return f"weight of {what} food" if name.startswith("w_") else f"gene {name}"

@@ -217,6 +217,7 @@ def _without_agents(snapshot: Snapshot) -> Snapshot:
         ("w_normal_old", "weight of normal food, when old"),
         ("w_action_scale", "weight of action, power of ten"),
         ("w_see_prey", "weight of seeing prey"),
+        ("w_smell_prey", "weight of smelling prey"),
         ("g_gamma", "gamma, power of ten"),
         ("set_point", "gene set_point"),
     ],
