@@ -65,6 +65,10 @@ MECHANISMS = {
         *("sensor.observes.energy_change=0.1", "sensor.observes.near_agent=5", "sensor.observes.season_sine=1"),
         "sensor.season_period=9",
     ),
+    "births by stores": (
+        *("store.milk={capacity=20, initial=8, child_share=0.5, birth_weight=0.8}", "food.normal.gives.milk=3"),
+        *("energy.birth_weight=-0.2", "birth.kappa=0.5", "birth.logit_offset=2"),
+    ),
     "fixed": ("learning.policy=fixed", "birth.network=initial", "birth.kappa=0.5"),
     "heredity": ("birth.network=learned", "birth.mating=pairs", "birth.kappa=0.5", "birth.mating_range=100"),
     "genes of numbers": (

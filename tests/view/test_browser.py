@@ -198,6 +198,7 @@ def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
 
 def test_an_agent_shows_its_stores_and_what_it_observes(watch):
     settings = ["store.water.capacity=7", "store.water.initial=3", "store.water.basic_cost=0.01", "sensor.scaling=unit"]
+    settings += ["store.water.birth_weight=4", "energy.birth_weight=-0.1", "birth.kappa=0.02"]
     settings += ["sensor.observes.age=100", "sensor.observes.moved=0.5"]
     config = load_config("small", overrides=settings)
     page = {"run": False, "worlds": [live_world(config, "small")]}
@@ -209,6 +210,8 @@ def test_an_agent_shows_its_stores_and_what_it_observes(watch):
         simulation = Simulation(config, seeds=[1], backend="" if watched.get("hedon.source.fused") else "portable")
         simulation.run(100)
         world, layout = simulation.worlds[0], layouts(config)["agent"]
+        assert world.counters["births"] > 5
+        assert watched.get("hedon.source.digest()") == world.digest()
         lives, observed = world.agents(), world.observations(0)[:, -len(layout.observed) :]
         for i in range(0, world.alive, 9):
             watched.get(f"hedon.choose({lives['agent_id'][i]})")
