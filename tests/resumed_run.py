@@ -1,13 +1,17 @@
 """Small runs that are stopped and resumed, and how two of them are compared."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
+from numpy.typing import NDArray
 from polars.testing import assert_frame_equal
 
 from hedon.config.load import load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
+from hedon.record.array_file import ArrayWriter
+from hedon.record.checkpoint import Fill
 from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
 
@@ -51,3 +55,13 @@ def assert_same_run(folder: Path, other: Path) -> None:
     assert_frame_equal(*agents, check_exact=True)
     assert_frame_equal(a.population(), b.population(), check_exact=True)
     assert_frame_equal(*frames, check_exact=True)
+
+
+def filler(arrays: Mapping[str, NDArray[Any]]) -> Fill:
+    """What fills a checkpoint with these arrays, by name."""
+
+    def fill(out: ArrayWriter) -> None:
+        for name, array in arrays.items():
+            out.add(name, array)
+
+    return fill

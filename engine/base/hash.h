@@ -11,6 +11,10 @@ class Hash {
  public:
   void add(const char* from, size_t bytes) {
     mix(bytes);
+    add_words(from, bytes);
+  }
+  /// Without their number: of pieces one after the other, all but the last must be whole words.
+  void add_words(const char* from, size_t bytes) {
     for (size_t at = 0; at < bytes; at += 8) {
       uint64_t word = 0;
       memcpy(&word, from + at, bytes - at < 8 ? bytes - at : 8);

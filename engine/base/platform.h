@@ -18,6 +18,20 @@ void* reserve_pages(size_t bytes);
 /// Gives memory back that `reserve_pages` gave.
 void release_pages(void* block, size_t bytes);
 
+/// Puts a new file of a folder behind pages that `reserve_pages` gave: the system writes out what is not used where
+/// memory is short, and reads it again. The file has no name, takes its room at once, and goes when it is closed or
+/// the process ends. Returns its number, or minus the system's number of what went wrong.
+int64_t back_with_file(void* first, size_t bytes, const char* folder);
+
+/// Pages of such a file are soon read: all of them are fetched at once.
+void expect_in_file(const void* first, size_t bytes);
+
+/// What a part of such a file holds is needed no more: it is not read before it is written again.
+void forget_in_file(int64_t file, int64_t first, int64_t bytes);
+
+/// Closes such a file, after its pages were given back.
+void close_file(int64_t file);
+
 /// Memory of this machine [byte]. A page is not told.
 int64_t physical_memory();
 

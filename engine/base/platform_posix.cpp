@@ -1,6 +1,7 @@
 /// The system that a process of Linux, macOS or another kind of Unix has.
 #if !defined(__wasm__) && !defined(_WIN32)
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -8,6 +9,9 @@
 #include <sched.h>
 #endif
 
+#include <cerrno>
+#include <cstdlib>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -25,6 +29,55 @@ void* reserve_pages(size_t bytes) {
 }
 
 void release_pages(void* block, size_t bytes) { munmap(block, bytes); }
+
+namespace {
+
+/// Gives a file its length and its room on the disk. Returns 0, or the number of what went wrong.
+int make_room(int file, off_t bytes) {
+#if defined(__APPLE__)
+  fstore_t room = {F_ALLOCATEALL, F_PEOFPOSMODE, 0, bytes, 0};
+  if (fcntl(file, F_PREALLOCATE, &room) != 0 || ftruncate(file, bytes) != 0) return errno;
+  return 0;
+#else
+  return posix_fallocate(file, 0, bytes);
+#endif
+}
+
+}  // namespace
+
+int64_t back_with_file(void* first, size_t bytes, const char* folder) {
+  std::string name = std::string(folder) + "/hedon-XXXXXX";
+  const int file = mkstemp(name.data());
+  if (file < 0) return -errno;
+  unlink(name.c_str());
+  int problem = make_room(file, static_cast<off_t>(bytes));
+  if (problem == 0 && mmap(first, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file, 0) == MAP_FAILED)
+    problem = errno;
+  if (problem != 0) {
+    close(file);
+    return -problem;
+  }
+#if defined(MADV_RANDOM)
+  madvise(first, bytes, MADV_RANDOM);  // a step writes a little into many places: their neighbors need not be fetched
+#endif
+  return file;
+}
+
+void expect_in_file([[maybe_unused]] const void* first, [[maybe_unused]] size_t bytes) {
+#if defined(MADV_WILLNEED)
+  const uintptr_t page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE)), from = reinterpret_cast<uintptr_t>(first);
+  madvise(reinterpret_cast<void*>(from / page * page), bytes + from % page, MADV_WILLNEED);
+#endif
+}
+
+void forget_in_file([[maybe_unused]] int64_t file, [[maybe_unused]] int64_t first, [[maybe_unused]] int64_t bytes) {
+#if defined(FALLOC_FL_ZERO_RANGE)
+  // It keeps the room on the disk. Where a file system does not know it, pages are read before they are written.
+  fallocate(static_cast<int>(file), FALLOC_FL_ZERO_RANGE, first, bytes);
+#endif
+}
+
+void close_file(int64_t file) { close(static_cast<int>(file)); }
 
 int64_t physical_memory() {
   return static_cast<int64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<int64_t>(sysconf(_SC_PAGESIZE));

@@ -4,6 +4,7 @@
 #if defined(__wasm__)
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <utility>
 
@@ -64,6 +65,14 @@ void* reserve_pages(size_t bytes) {
 }
 
 void release_pages(void* block, size_t) { free(block); }
+
+int64_t back_with_file(void*, size_t, const char*) { return -ENOTSUP; }
+
+void expect_in_file(const void*, size_t) {}
+
+void forget_in_file(int64_t, int64_t, int64_t) {}
+
+void close_file(int64_t) {}
 
 int available_processors() { return 1 + seated; }
 

@@ -8,6 +8,7 @@
 #include <process.h>
 
 #include <bit>
+#include <cerrno>
 #include <utility>
 
 #include "base/platform.h"
@@ -24,6 +25,15 @@ int64_t physical_memory() {
   status.dwLength = sizeof status;
   return GlobalMemoryStatusEx(&status) != 0 ? static_cast<int64_t>(status.ullTotalPhys) : 0;
 }
+
+// Its page file does that by itself, for all memory.
+int64_t back_with_file(void*, size_t, const char*) { return -ENOTSUP; }
+
+void expect_in_file(const void*, size_t) {}
+
+void forget_in_file(int64_t, int64_t, int64_t) {}
+
+void close_file(int64_t) {}
 
 /// Of the processors' group that the process is in: at most 64.
 int available_processors() {

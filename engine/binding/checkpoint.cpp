@@ -1,8 +1,10 @@
 #include "binding/checkpoint.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
-#include <cstring>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -14,15 +16,37 @@ namespace hedon {
 namespace {
 
 using Code = nb::dlpack::dtype_code;
-constexpr Code CODES[] = {Code::Int, Code::UInt, Code::Float};  // in the order of NumberKind
-
 using AnyArray = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
+
+constexpr Code CODES[] = {Code::Int, Code::UInt, Code::Float};  // in the order of NumberKind
 
 NumberKind kind_of(const nb::dlpack::dtype& type, const std::string& name) {
   for (int kind = 0; kind < 3; ++kind) {
     if (type.code == static_cast<uint8_t>(CODES[kind]) && type.lanes == 1) return static_cast<NumberKind>(kind);
   }
   throw nb::value_error((name + " does not hold plain numbers").c_str());
+}
+
+/// A checkpoint of numbers where the caller has them.
+struct GivenArrays {
+  Checkpoint checkpoint;
+  std::vector<AnyArray> held;  ///< what keeps them there
+};
+
+/// ValueError: something is not an array of plain numbers.
+GivenArrays from_arrays(const nb::dict& arrays) {
+  GivenArrays out;
+  for (const auto& [key, value] : arrays) {
+    const std::string name = nb::str(key).c_str();
+    AnyArray array;
+    if (!nb::try_cast(value, array)) throw nb::value_error((name + " is not an array of numbers in C order").c_str());
+    SavedArray saved{{name, kind_of(array.dtype(), name), array.dtype().bits / 8, {}}, {}, nullptr};
+    for (size_t d = 0; d < array.ndim(); ++d) saved.shape.push_back(static_cast<int64_t>(array.shape(d)));
+    saved.bytes = {static_cast<const char*>(array.data()), array.nbytes()};
+    out.checkpoint.push_back(std::move(saved));
+    out.held.push_back(std::move(array));
+  }
+  return out;
 }
 
 }  // namespace
@@ -41,20 +65,35 @@ nb::dict to_arrays(Checkpoint checkpoint) {
   return out;
 }
 
-Checkpoint from_arrays(const nb::dict& arrays) {
-  Checkpoint out;
-  for (const auto& [key, value] : arrays) {
-    const std::string name = nb::str(key).c_str();
-    AnyArray array;
-    if (!nb::try_cast(value, array)) throw nb::value_error((name + " is not an array of numbers in C order").c_str());
-    SavedArray saved{name, kind_of(array.dtype(), name), array.dtype().bits / 8, {}, {}, nullptr};
-    for (size_t d = 0; d < array.ndim(); ++d) saved.shape.push_back(static_cast<int64_t>(array.shape(d)));
-    saved.held.reset(new char[array.nbytes()]);  // the array may be a copy that was made for this call
-    saved.bytes = {saved.held.get(), array.nbytes()};
-    if (array.nbytes() > 0) memcpy(saved.held.get(), array.data(), array.nbytes());
-    out.push_back(std::move(saved));
-  }
-  return out;
+void save_to(PythonSimulation& self, int world, const nb::callable& begin, const nb::callable& piece) {
+  self.slotted(world);
+  self.need_whole(world);
+  std::exception_ptr raised;  // the engine is built without exceptions: none may pass through it
+  const auto guarded = [&](auto&& call) {
+    try {
+      call();
+    } catch (...) {
+      raised = std::current_exception();
+    }
+    return !raised;
+  };
+  const auto head = [&](const SavedHead& array) {
+    constexpr const char* KINDS[] = {"i", "u", "f"};  // in the order of NumberKind
+    const std::string type = KINDS[static_cast<int>(array.kind)] + std::to_string(array.size);
+    return guarded([&] { begin(array.name, type, array.shape); });
+  };
+  const auto bytes = [&](std::span<const char> part) {
+    return guarded([&] { piece(nb::bytes(part.data(), part.size())); });
+  };
+  self.get().save(world, {head, bytes});
+  if (raised) std::rethrow_exception(raised);
+}
+
+void restore_from(PythonSimulation& self, int world, const nb::dict& arrays) {
+  self.world(world);
+  const GivenArrays given = from_arrays(arrays);
+  const std::string complaint = self.get().restore(world, given.checkpoint);
+  if (!complaint.empty()) throw nb::value_error(complaint.c_str());
 }
 
 nb::bytes pack(PythonSimulation& self, const nb::bytes& head) {

@@ -10,8 +10,12 @@ namespace hedon {
 
 nanobind::dict to_arrays(Checkpoint checkpoint);
 
-/// Throws value_error if something is not an array of plain numbers.
-Checkpoint from_arrays(const nanobind::dict& arrays);
+/// Calls begin(name, type, shape) for each array of a world in turn, then piece(bytes) until all its bytes are given.
+void save_to(PythonSimulation& self, int world, const nanobind::callable& begin, const nanobind::callable& piece);
+
+/// Replaces a world by a saved one, whose arrays are read where the caller has them. ValueError: what is wrong; the
+/// world is then unchanged.
+void restore_from(PythonSimulation& self, int world, const nanobind::dict& arrays);
 
 /// All worlds with a text of the caller's, in one piece of memory that Python owns from the start.
 nanobind::bytes pack(PythonSimulation& self, const nanobind::bytes& head);

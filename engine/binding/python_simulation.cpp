@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -36,17 +37,17 @@ const Kernel* need_kernel(const std::string& name) {
 }
 
 /// Refuses a simulation that does not fit into this machine's memory, before any memory is reserved.
-void need_memory(const Config& config, size_t walls, size_t worlds, int threads) {
+void need_memory(const Config& config, size_t walls, size_t worlds, int threads, bool in_files) {
   const MemoryNeed need =
       Simulation::bytes_needed(config, static_cast<int32_t>(walls), static_cast<int64_t>(worlds), threads);
-  const double needed = static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
+  const double needed = static_cast<double>(need.total(in_files));
   const double present = static_cast<double>(physical_memory());
   if (needed > present) {
-    char text[160];
+    char text[200];
     snprintf(text, sizeof text,
              "the worlds need %.1f GB of memory, and this machine has %.1f GB: lower population.capacity, "
-             "world.rollout_steps or the number of seeds",
-             needed / 1e9, present / 1e9);
+             "world.rollout_steps or the number of seeds%s",
+             needed / 1e9, present / 1e9, in_files ? "" : ", or set HEDON_SCRATCH to a folder");
     throw EngineError(text);
   }
   // A limit on addresses (ulimit -v) shows only when memory is reserved.
@@ -98,16 +99,19 @@ Config need_config(nb::dict config) {
 PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer_walls,
                                    const std::vector<uint64_t>& seeds, int threads, const std::string& kernel,
                                    const std::vector<int32_t>& slot_order, bool flush_denormals,
-                                   const std::string& device) {
+                                   const std::string& device, const std::string& scratch) {
   const FloatMode mode;
   const Config known = need_config(config);
   const std::vector<Segment> segments = to_segments(walls);
   const int used = count_threads(threads);
   need(check_arguments(known, segments, outer_walls, static_cast<int64_t>(seeds.size()), used, slot_order));
-  need_memory(known, segments.size(), seeds.size(), used);
+  need_memory(known, segments.size(), seeds.size(), used, !scratch.empty());
   const DeviceProgram* const program = device.empty() ? nullptr : need_device(device, known);
   simulation_ = std::make_unique<Simulation>(known, segments, static_cast<int32_t>(outer_walls), seeds, used,
-                                             need_kernel(kernel), slot_order, flush_denormals, program);
+                                             need_kernel(kernel), slot_order, flush_denormals, program, scratch);
+  if (simulation_->scratch_error() != 0)
+    throw EngineError("HEDON_SCRATCH: no file for these worlds can be made in '" + scratch +
+                      "': " + strerror(simulation_->scratch_error()));
   if (!simulation_->pool().whole())
     throw EngineError("the system gives no " + std::to_string(used) +
                       " threads: use fewer, or check the limits `ulimit -u` and `ulimit -v`");

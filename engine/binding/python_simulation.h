@@ -30,11 +30,12 @@ class PythonSimulation {
  public:
   /// Arguments as `Simulation` has them; 0 threads for all processors, "" for the best kernel.
   /// device   file of the library of a device that advances the worlds; "" for the threads
+  /// scratch   folder for the files of what is cold; "" to keep it in memory
   /// EngineError: a number is out of bounds, the kernel is unknown, there is too little memory, or there is no place
   /// for the initial agents or foods; or the device cannot be used.
   PythonSimulation(nanobind::dict config, WallsIn walls, int64_t outer_walls, const std::vector<uint64_t>& seeds,
                    int threads, const std::string& kernel, const std::vector<int32_t>& slot_order, bool flush_denormals,
-                   const std::string& device);
+                   const std::string& device, const std::string& scratch);
 
   ~PythonSimulation();
   PythonSimulation(const PythonSimulation&) = delete;

@@ -65,12 +65,6 @@ nb::dict to_dict(const Struct& values) {
   return out;
 }
 
-void restore(PythonSimulation& self, int index, const nb::dict& arrays) {
-  self.world(index);
-  const std::string complaint = self.get().restore(index, from_arrays(arrays));
-  if (!complaint.empty()) throw nb::value_error(complaint.c_str());
-}
-
 /// The deaths that wait, the oldest first.
 std::vector<int64_t> waiting_rows(const World& world) {
   const WorldHead& head = world.head();
@@ -266,10 +260,10 @@ void bind_simulation(nb::module_& module) {
       "Many worlds under one config. Views are read-only and valid until the next `run`. EngineError: it runs "
       "in another thread, or this process was forked from the one that made it.")
       .def(nb::init<nb::dict, WallsIn, int64_t, const std::vector<uint64_t>&, int, const std::string&,
-                    const std::vector<int32_t>&, bool, const std::string&>(),
+                    const std::vector<int32_t>&, bool, const std::string&, const std::string&>(),
            nb::arg("config"), nb::arg("walls"), nb::arg("outer_walls"), nb::arg("seeds"), nb::arg("threads") = 1,
            nb::arg("kernel") = "", nb::arg("slot_order") = std::vector<int32_t>{}, nb::arg("flush_denormals") = true,
-           nb::arg("device") = "")
+           nb::arg("device") = "", nb::arg("scratch") = "")
       .def("run", &S::run, nb::arg("steps"),
            "Advances every world that is not over; releases the interpreter lock. Ctrl-C raises KeyboardInterrupt.")
       .def("take_rows", &take_rows, nb::arg("world"),
@@ -292,7 +286,12 @@ void bind_simulation(nb::module_& module) {
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
           "Copies of everything that decides a world's future, as arrays.")
-      .def("restore", &restore, nb::arg("world"), nb::arg("arrays"),
+      .def("save_to", &save_to, nb::arg("world"), nb::arg("begin"), nb::arg("piece"),
+           nb::sig("def save_to(self, world: int, begin: typing.Callable[[str, str, list[int]], object], "
+                   "piece: typing.Callable[[bytes], object]) -> None"),
+           "The same in pieces, for one who has no memory for copies: begin(name, type, shape) for each array in turn, "
+           "then piece(bytes) until all its bytes are given.")
+      .def("restore", &restore_from, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
       .def("pack", &pack, nb::arg("head"),

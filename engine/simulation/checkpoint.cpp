@@ -32,7 +32,7 @@ SavedExtent extent_of(const World& world) {
 
 template <class T>
 SavedArray save_list(const std::string& name, const std::vector<T>& values, std::vector<int64_t> shape) {
-  SavedArray array = make_saved<T>(name, std::move(shape));
+  SavedArray array = make_saved({name, kind_of<T>(), static_cast<int32_t>(sizeof(T)), std::move(shape)});
   if (!values.empty()) memcpy(array.held.get(), values.data(), array.bytes.size());
   return array;
 }
@@ -110,18 +110,31 @@ void save_lists(const World& world, const SavedExtent& extent, Take&& take) {
   save_pairs(world, rank, list.walls, 2, wall, take);
 }
 
-/// Calls take(SavedArray) for each array of a checkpoint in turn, so that a digest needs memory for only one.
-template <class Take>
-void save_each(const World& world, Take&& take) {
+/// Bytes of a piece of an array, about: some fit into a cache.
+constexpr int64_t PIECE = int64_t{1} << 18;
+/// Rows of a piece are a multiple of this many, so that all pieces but the last have whole words of eight bytes.
+constexpr int64_t PIECE_ROWS = 8;
+
+/// Gives all arrays of a checkpoint to a sink.
+void save_each(const World& world, const CheckpointSink& sink) {
   const SavedExtent extent = extent_of(world);
+  std::vector<char> room;
+  bool going = true;
   for_each_saved(world, extent, [&]<class T>(const std::string& name, const SavedRows<T>& rows) {
-    SavedArray array = make_saved<T>(name, rows.shape());
-    const size_t bytes = rows.row_bytes();
-    for (int64_t i = 0; i < rows.count; ++i)
-      memcpy(array.held.get() + static_cast<size_t>(i) * bytes, rows.row(i), bytes);
-    take(std::move(array));
+    going = going && sink.begin({name, kind_of<T>(), static_cast<int32_t>(sizeof(T)), rows.shape()});
+    const int64_t bytes = static_cast<int64_t>(rows.row_bytes());
+    const int64_t most = std::max(PIECE / (PIECE_ROWS * std::max<int64_t>(bytes, 1)), int64_t{1}) * PIECE_ROWS;
+    for (int64_t first = 0; first < rows.count && bytes > 0 && going; first += most) {
+      const int64_t count = std::min(most, rows.count - first);
+      room.resize(static_cast<size_t>(count * bytes));
+      for (int64_t i = 0; i < count; ++i)
+        memcpy(room.data() + i * bytes, rows.row(first + i), static_cast<size_t>(bytes));
+      going = sink.piece({room.data(), room.size()});
+    }
   });
-  save_lists(world, extent, take);
+  save_lists(world, extent, [&](const SavedArray& array) {
+    going = going && sink.begin(array) && (array.bytes.empty() || sink.piece(array.bytes));
+  });
 }
 
 /// Counts the bytes of packed worlds, or writes them where there is room for them.
@@ -186,15 +199,36 @@ void pack_world(const World& world, Packer& out) {
 
 }  // namespace
 
+void Simulation::save(int index, const CheckpointSink& sink) { save_each(complete(index), sink); }
+
 Checkpoint Simulation::save(int index) {
   Checkpoint out;
-  save_each(complete(index), [&](SavedArray&& array) { out.push_back(std::move(array)); });
+  size_t filled = 0;
+  const auto begin = [&](const SavedHead& head) {
+    out.push_back(make_saved(head));
+    filled = 0;
+    return true;
+  };
+  const auto piece = [&](std::span<const char> bytes) {
+    memcpy(out.back().held.get() + filled, bytes.data(), bytes.size());
+    filled += bytes.size();
+    return true;
+  };
+  save(index, {begin, piece});
   return out;
 }
 
 uint64_t Simulation::digest(int index) {
   Hash hash;
-  save_each(complete(index), [&](const SavedArray& array) { hash.add(array.bytes.data(), array.bytes.size()); });
+  const auto begin = [&](const SavedHead& head) {
+    hash.mix(head.length());
+    return true;
+  };
+  const auto piece = [&](std::span<const char> bytes) {
+    hash.add_words(bytes.data(), bytes.size());
+    return true;
+  };
+  save(index, {begin, piece});
   return hash.value();
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,17 +17,33 @@ namespace hedon {
 
 enum class NumberKind : int32_t { integer, natural, real };  ///< signed, unsigned, floating
 
-/// One array of a checkpoint, in C order.
-struct SavedArray {
+/// What one array of a checkpoint is; its numbers are in C order.
+struct SavedHead {
   std::string name;
   NumberKind kind;
   int32_t size;  ///< bytes of one number
   std::vector<int64_t> shape;
+
+  size_t length() const {
+    size_t all = static_cast<size_t>(size);
+    for (const int64_t length : shape) all *= static_cast<size_t>(length);
+    return all;
+  }
+};
+
+struct SavedArray : SavedHead {
   std::span<const char> bytes;   ///< in `held`, or in memory of the caller
   std::unique_ptr<char[]> held;  ///< null if the memory is the caller's
 };
 
 using Checkpoint = std::vector<SavedArray>;
+
+/// Takes the arrays of a checkpoint in turn, and each in pieces, so that nobody needs memory for all of one. Gets
+/// nothing more after it has answered false.
+struct CheckpointSink {
+  std::function<bool(const SavedHead&)> begin;
+  std::function<bool(std::span<const char>)> piece;
+};
 
 /// A checkpoint with what a world's future does not depend on, but its reader does: its seed, and who is in which slot.
 struct SavedWorld {

@@ -1,9 +1,11 @@
 /// Looks at the arrays of a checkpoint, which may come from anyone.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,6 +72,19 @@ class Inspector {
     constexpr T LARGEST = std::numeric_limits<T>::max();
     return all_of<T>(name, static_cast<double>(-LARGEST), static_cast<double>(LARGEST),
                      [](T value) { return std::fabs(value) <= LARGEST; });
+  }
+
+  /// Whether the rows of a table of floats hold nothing but 0 where the count of that row is 0.
+  bool none_before(const std::string& count, const std::string& table) {
+    const std::vector<int64_t> counts = numbers<int64_t>(count);
+    const std::span<const char> bytes = find(table)->bytes;
+    const size_t row = counts.empty() ? 0 : bytes.size() / counts.size();
+    for (size_t i = 0; i < counts.size(); ++i) {
+      const std::span<const char> one = bytes.subspan(i * row, row);
+      if (counts[i] == 0 && std::any_of(one.begin(), one.end(), [](char byte) { return byte != 0; }))
+        return refuse(table + " is not 0 for an agent whose " + count + " are");
+    }
+    return true;
   }
 
   const World& world_;

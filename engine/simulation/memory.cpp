@@ -15,6 +15,24 @@ Memory::Memory(int64_t bytes) : size_(bytes) {
 
 Memory::~Memory() {
   if (block_ != nullptr) release_pages(block_, static_cast<size_t>(size_ + PAGE));
+  if (file_ >= 0) close_file(file_);
+}
+
+int Memory::keep_in_file(int64_t first, const std::string& folder) {
+  if (first >= size_) return 0;
+  const int64_t file = back_with_file(first_ + first, static_cast<size_t>(size_ - first), folder.c_str());
+  if (file < 0) return static_cast<int>(-file);
+  in_file_ = first;
+  file_ = file;
+  return 0;
+}
+
+void Memory::forget(const void* from, int64_t bytes) {
+  if (file_ < 0) return;
+  const int64_t first = static_cast<const char*>(from) - first_ - in_file_;
+  const int64_t begin = (first + SMALL_PAGE - 1) / SMALL_PAGE * SMALL_PAGE;
+  const int64_t end = (first + bytes) / SMALL_PAGE * SMALL_PAGE;
+  if (begin < end) forget_in_file(file_, begin, end - begin);
 }
 
 PhysicsCapacity world_physics_capacity(const World& world) {

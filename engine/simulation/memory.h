@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/array.h"
+#include "base/platform.h"
 #include "world/shape.h"
 #include "world/state.h"
 #include "world/world.h"
@@ -40,8 +41,10 @@ class Memory {
   static constexpr int64_t ALIGNMENT = 64;  ///< of each array: a cache line, and 16 floats
 #if defined(__wasm__)
   static constexpr int64_t PAGE = ALIGNMENT;  ///< no pages to choose from, and all memory is committed
+  static constexpr int64_t SMALL_PAGE = ALIGNMENT;
 #else
-  static constexpr int64_t PAGE = int64_t{1} << 21;  ///< a large page
+  static constexpr int64_t PAGE = int64_t{1} << 21;        ///< a large page
+  static constexpr int64_t SMALL_PAGE = int64_t{1} << 16;  ///< at least a page of any system
 #endif
 
   Memory() = default;
@@ -56,16 +59,32 @@ class Memory {
   char* data() const { return first_; }
   int64_t size() const { return size_; }
 
+  /// Keeps all from `first` on, a multiple of `SMALL_PAGE`, in a file of a folder instead. Nothing may have been
+  /// written there. Returns 0, or the system's number of what went wrong.
+  int keep_in_file(int64_t first, const std::string& folder);
+
+  /// These bytes are soon read.
+  void expect(const void* from, int64_t bytes) const {
+    if (file_ >= 0) expect_in_file(from, static_cast<size_t>(bytes));
+  }
+
+  /// Pages of the file that hold nothing but these bytes are not read before they are written again.
+  void forget(const void* from, int64_t bytes);
+
  private:
   void swap(Memory& other) {
     std::swap(size_, other.size_);
     std::swap(block_, other.block_);
     std::swap(first_, other.first_);
+    std::swap(in_file_, other.in_file_);
+    std::swap(file_, other.file_);
   }
 
   int64_t size_ = 0;
   void* block_ = nullptr;
   char* first_ = nullptr;
+  int64_t in_file_ = 0;  ///< where the part begins that a file holds
+  int64_t file_ = -1;    ///< -1: none
 };
 
 /// Bytes that an array takes, in whole cache lines.
@@ -83,6 +102,25 @@ int64_t lay_out(Struct& fields, char* at) {
   for_each_array(fields, "", [&]<class T>(const std::string&, Array<T>& array) {
     if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
     offset += laid_out_bytes(array);
+  });
+  return offset;
+}
+
+/// The same for those arrays of the state whose sizes are so.
+template <class IsSo>
+int64_t lay_out_some(WorldState& state, char* at, IsSo&& is_so) {
+  int64_t offset = 0;
+  const auto place = [&]<class T>(const std::string&, Array<T>& array) {
+    if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
+    offset += laid_out_bytes(array);
+  };
+  WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
+    auto& field = state.*member;
+    if (!is_so(size)) return;
+    if constexpr (IsArray<std::remove_cvref_t<decltype(field)>>::value)
+      place(name, field);
+    else
+      for_each_array(field, "", place);
   });
   return offset;
 }

@@ -69,7 +69,7 @@ bool read_world(Reader& in, SavedWorld& world) {
   world.slots = {slots.data(), slots.size()};
   for (std::string_view name; in.text(name);) {
     if (name.empty()) return true;
-    SavedArray array{std::string(name), NumberKind::integer, 0, {}, {}, nullptr};
+    SavedArray array{{std::string(name), NumberKind::integer, 0, {}}, {}, nullptr};
     if (!read_array(in, array)) return false;
     world.arrays.push_back(std::move(array));
   }

@@ -189,14 +189,11 @@ constexpr NumberKind kind_of() {
 }
 
 /// An array of a checkpoint, without values.
-template <class T>
-SavedArray make_saved(const std::string& name, std::vector<int64_t> shape) {
-  int64_t count = 1;
-  for (const int64_t length : shape) count *= length;
-  const size_t bytes = static_cast<size_t>(count) * sizeof(T);
+inline SavedArray make_saved(SavedHead head) {
+  const size_t bytes = head.length();
   std::unique_ptr<char[]> held(new char[bytes]);  // written by the caller
   const std::span<const char> all(held.get(), bytes);
-  return {name, kind_of<T>(), static_cast<int32_t>(sizeof(T)), std::move(shape), all, std::move(held)};
+  return {std::move(head), all, std::move(held)};
 }
 
 /// Names of the pairs of the three kinds, and of their impulses.

@@ -29,16 +29,42 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Places all arrays of a world from `at` on, unless `at` is null; returns the number of bytes.
-int64_t lay_out_world(World& world, char* at) {
+struct WorldBytes {
+  int64_t all;
+  int64_t warm;  ///< those before the cold arrays
+};
+
+/// Places all arrays of a world from `at` on, unless `at` is null: the cold ones last, on pages of their own.
+WorldBytes lay_out_world(World& world, char* at) {
   int64_t bytes = 0;
   const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
-  bytes += lay_out(world.state, next());
+  bytes += lay_out_some(world.state, next(), [](ArrayShape size) { return !is_cold(size); });
   bytes += lay_out(world.physics_scratch, next());
   bytes += lay_out(world.scratch, next());
   bytes += lay_out(world.scene, next());
-  return bytes;
+  const int64_t warm = bytes = (bytes + Memory::SMALL_PAGE - 1) / Memory::SMALL_PAGE * Memory::SMALL_PAGE;
+  bytes += lay_out_some(world.state, next(), is_cold);
+  return {bytes, warm};
 }
+
+/// Fetches what is cold of a world a little before it is read, if it is in a file.
+struct Cold {
+  const Memory& memory;
+  const World& world;
+
+  void rollout(int32_t slot) const {
+    const Array<ObservationLine>& seen = world.state.observation;
+    const int64_t lines = seen.count / world.shape->capacity;
+    memory.expect(&seen[slot * lines], lines * static_cast<int64_t>(sizeof(ObservationLine)));
+  }
+  void moments(int32_t slot) const {
+    if (!world.species(slot).learns || world.state.updates[slot] == 0) return;
+    const Learner learner = learner_of(world, slot);
+    const int64_t bytes = world.shape->params * static_cast<int64_t>(sizeof(float));
+    memory.expect(learner.first_moment, bytes);
+    memory.expect(learner.second_moment, bytes);
+  }
+};
 
 }  // namespace
 
@@ -51,7 +77,8 @@ int64_t learn_stride(const WorldShape& shape, const Config& config) {
 
 Simulation::Simulation(const Config& config, std::vector<Segment> walls, int32_t outer_walls,
                        const std::vector<uint64_t>& seeds, int threads, const Kernel* kernel,
-                       const std::vector<int32_t>& slot_order, bool flush, const DeviceProgram* program)
+                       const std::vector<int32_t>& slot_order, bool flush, const DeviceProgram* program,
+                       const std::string& scratch)
     : config_(config),
       kernel_(kernel),
       flush_(flush),
@@ -69,7 +96,10 @@ Simulation::Simulation(const Config& config, std::vector<Segment> walls, int32_t
     world.kernel = kernel_;
     world.seed = seeds[i];
     set_counts(world, program == nullptr ? threads : std::max(threads, DEVICE_MEMBERS));
-    memory_.emplace_back(lay_out_world(world, nullptr));
+    const WorldBytes bytes = lay_out_world(world, nullptr);
+    memory_.emplace_back(bytes.all);
+    if (!scratch.empty()) scratch_error_ = memory_.back().keep_in_file(bytes.warm, scratch);
+    if (scratch_error_ != 0) break;
     lay_out_world(world, memory_.back().data());
     begin(world);
     if (!world.over()) init_population(world);
@@ -77,7 +107,7 @@ Simulation::Simulation(const Config& config, std::vector<Segment> walls, int32_t
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
   pool_ = std::make_unique<Pool>(threads, flush_);  // last, since threads that begin take memory too
-  if (program == nullptr || !pool_->whole()) return;
+  if (program == nullptr || !pool_->whole() || scratch_error_ != 0) return;
   const int worlds = world_count(), devices = std::min(program->count(), worlds);
   for (int d = 0; d < devices; ++d)
     devices_.push_back(
@@ -117,13 +147,14 @@ MemoryNeed Simulation::bytes_needed(const Config& config, int32_t walls, int64_t
   set_counts(world, threads);
   const auto bytes = [](const auto&... arrays) { return (laid_out_bytes(arrays) + ...); };
   const WorldState& state = world.state;
-  const int64_t networks =
-      bytes(state.params, state.folded_bias, state.packed_weights, state.first_moment, state.second_moment);
-  const int64_t rollouts = bytes(state.observation, state.action, state.log_prob, state.value, state.reward);
+  const WorldBytes all = lay_out_world(world, nullptr);
+  const int64_t networks = bytes(state.params, state.folded_bias, state.packed_weights);
+  const int64_t rollouts = bytes(state.action, state.log_prob, state.value, state.reward);
   const int64_t physics = lay_out(world.state.physics, nullptr) + lay_out(world.physics_scratch, nullptr);
-  const int64_t rest = lay_out_world(world, nullptr) - networks - rollouts - physics;
+  const int64_t rest = all.warm - networks - rollouts - physics;
   const int64_t learning = threads * learn_stride(shape, config) * static_cast<int64_t>(sizeof(float));
-  return {worlds * networks, worlds * rollouts, worlds * physics, worlds * rest + learning};
+  return {worlds * networks, worlds * (all.all - all.warm), worlds * rollouts, worlds * physics,
+          worlds * rest + learning};
 }
 
 /// Makes zeroed memory an empty world: all slots free, no agent, no food.
@@ -159,8 +190,8 @@ void Simulation::empty(World& world) {
     auto& field = world.state.*member;
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, PhysicsState>) {
       for_each_array(field, "", clear);
-    } else if (!Device::is_large(size)) {  // who takes a slot gets networks and rollouts of its own
-      clear(name, field);
+    } else if (!Device::is_large(size) && size.rows != Extent::learner_slots) {
+      clear(name, field);  // who takes a slot gets networks, rollouts and an optimizer of its own
     }
   });
   begin(world);
@@ -208,7 +239,9 @@ void Simulation::advance_with(Team team, int thread, int world, int64_t steps) {
   const auto pacer = [&](Team& members, int64_t count, auto&& step_once) {
     return step_at_pace(members, pace, count, step_once);
   };
-  advance(team, worlds_[static_cast<size_t>(world)], steps, scratch, learn_stride_, pacer, lap);
+  World& here = worlds_[static_cast<size_t>(world)];
+  const Cold cold{memory_[static_cast<size_t>(world)], here};
+  advance(team, here, steps, scratch, learn_stride_, pacer, lap, cold);
 }
 
 void Simulation::run(int64_t steps) {
@@ -224,6 +257,11 @@ void Simulation::run(int64_t steps) {
   const int threads = pool_->size();
   const int count = static_cast<int>(going.size());
   if (count == 0) return;
+  for (const int i : going) {
+    const Array<ObservationLine>& old = numbers(i).state.observation;
+    if (numbers(i).head().step % shape_.steps == 0)
+      memory_[static_cast<size_t>(i)].forget(old.data, old.count * static_cast<int64_t>(sizeof(ObservationLine)));
+  }
   // The largest number of worlds that divides evenly over all threads runs with one thread per world; teams of threads
   // step the remaining worlds.
   const int alone = count / threads * threads;

@@ -45,12 +45,16 @@ enum class ActionForm : int32_t {
 
 /// Bytes that a simulation reserves, by purpose. Memory that is never touched costs nothing.
 struct MemoryNeed {
-  int64_t networks;  ///< and the moments of their optimizers
-  int64_t rollouts;
+  int64_t networks;
+  int64_t cold;      ///< moments of the optimizers, and observations: what may lie in files
+  int64_t rollouts;  ///< without the observations
   int64_t physics;
   int64_t rest;
 
-  HEDON_FIELDS(MemoryNeed, networks, rollouts, physics, rest)
+  HEDON_FIELDS(MemoryNeed, networks, cold, rollouts, physics, rest)
+
+  /// All bytes, or those that are not in files.
+  int64_t total(bool in_files) const { return networks + (in_files ? 0 : cold) + rollouts + physics + rest; }
 };
 
 /// Floats of scratch for each thread that learns, in whole cache lines.
@@ -63,10 +67,12 @@ class Simulation {
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
   /// flush   whether denormals are flushed to zero; it changes no result
   /// program  of the devices that advance the worlds, which are dealt out to them; null for the threads
-  /// The arguments must have passed `check_config` and `check_arguments`. It can do nothing unless `pool().whole()`.
+  /// scratch  folder for the files of what is cold; empty to keep it in memory. It changes no result.
+  /// The arguments must have passed `check_config` and `check_arguments`. It can do nothing unless `pool().whole()` and
+  /// `scratch_error()` is 0.
   Simulation(const Config& config, std::vector<Segment> walls, int32_t outer_walls, const std::vector<uint64_t>& seeds,
              int threads, const Kernel* kernel, const std::vector<int32_t>& slot_order, bool flush = true,
-             const DeviceProgram* program = nullptr);
+             const DeviceProgram* program = nullptr, const std::string& scratch = "");
 
   /// Bytes that a simulation reserves: compare them with the machine's memory before you make it.
   static MemoryNeed bytes_needed(const Config& config, int32_t walls, int64_t worlds, int threads);
@@ -77,6 +83,7 @@ class Simulation {
 
   /// Everything that decides a world's future, as arrays. Deaths that the reader has not yet taken are not included.
   Checkpoint save(int index);
+  void save(int index, const CheckpointSink& sink);
 
   /// Replaces a world by a saved one, which continues with the same bits. Returns "", or what is wrong with the
   /// checkpoint; then the world is unchanged.
@@ -143,6 +150,8 @@ class Simulation {
   const WorldShape& shape() const { return shape_; }
   const Config& config() const { return config_; }
   bool flush() const { return flush_; }
+  /// 0, or the system's number of why there are no files in `scratch`.
+  int scratch_error() const { return scratch_error_; }
   /// What advances the worlds: the name of an instruction set or of a device.
   const char* kernel_name() const { return devices_.empty() ? kernel_->name : devices_[0]->program().name; }
   const Pool& pool() const { return *pool_; }
@@ -162,6 +171,7 @@ class Simulation {
   WorldShape shape_;
   const Kernel* kernel_;
   bool flush_;
+  int scratch_error_ = 0;
   std::vector<Segment> walls_;
   std::vector<int32_t> slot_order_;
   std::vector<Memory> memory_;

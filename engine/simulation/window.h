@@ -54,12 +54,14 @@ HEDON_FN void close_window(World& world, int32_t taught) {
 
 /// Every agent that lived through the whole window learns from its rollout, if its species learns; all others wait for
 /// the next window.
-/// `scratch` holds `stride` floats for each member of the group.
-template <class Group>
-HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride) {
+/// `scratch` holds `stride` floats for each member of the group. ahead(slot) is called a little before the agent in
+/// `slot` learns.
+template <class Group, class Ahead>
+HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride, Ahead&& ahead) {
   const int32_t taught = count_taught(world);
   group.for_each_claimed(taught, [&](int32_t i) {
     const int32_t slot = world.state.living[i];
+    if (i + AHEAD < taught) ahead(world.state.living[i + AHEAD]);
     const Species& species = world.species(slot);
     if (!species.learns) return;
     note_start(world, slot);
@@ -77,9 +79,10 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
 /// Advances a world by `steps` steps, with learning at the end of each window; stops early if the world is over.
 /// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with the whole group or a part of
 /// it.
-template <class Group, class Pacer, class Lap>
+/// `cold` has `rollout(slot)` and `moments(slot)`, which are called a little before those of an agent are read.
+template <class Group, class Pacer, class Lap, class Cold>
 HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
-                      Lap&& lap) {
+                      Lap&& lap, const Cold& cold) {
   const int64_t window = world.shape->steps;
   group.together([&](const auto& crew) { prepare_step(crew, world); });
   while (steps > 0 && !world.over()) {
@@ -90,9 +93,12 @@ HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch,
       return !world.over();
     });
     if (world.head().step % window == 0 && !world.over()) {
-      learn_window(group, world, scratch, stride);
+      learn_window(group, world, scratch, stride, [&](int32_t slot) {
+        cold.rollout(slot);
+        cold.moments(slot);
+      });
       lap(Part::learning);
-      audit(group, world);
+      audit(group, world, [&](int32_t slot) { cold.moments(slot); });
       lap(Part::life);
     }
   }

@@ -117,7 +117,7 @@ void make_world(const WorldInput& from, int32_t threads) {
 
 double bytes_needed(const WorldInput& of, int32_t threads) {
   const MemoryNeed need = Simulation::bytes_needed(of.config, static_cast<int32_t>(of.walls.size()), 1, threads);
-  return static_cast<double>(need.networks + need.rollouts + need.physics + need.rest);
+  return static_cast<double>(need.total(false));
 }
 
 template <class T>
@@ -242,8 +242,8 @@ HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
   if (!learning) return 0;
   together([&](Team& team) {
     WorkSlice slice(team, learned, learned + count);
-    learn_window(slice, world(), aligned_scratch(), scratch_stride());
-    if (slice.done()) audit(team, world());
+    learn_window(slice, world(), aligned_scratch(), scratch_stride(), [](int32_t) {});
+    if (slice.done()) audit(team, world(), [](int32_t) {});
     if (team.rank() == 0) learners = slice.count();
   });
   learned += count;

@@ -134,6 +134,9 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   return -1;
 }
 
+/// How many agents earlier one is told whose data will be read, where they may lie in a file.
+inline constexpr int32_t AHEAD = 8;
+
 /// How far two discs may overlap: the radius of a body. Overlaps after contacts are much smaller: motors close a gap by
 /// at most about 0.3 u per substep, and the corrections of the next substep remove a third of that. With more overlap a
 /// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other:
@@ -196,15 +199,19 @@ HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
 }
 
 /// Checks a world. All members of the group call it; the first problem, in canonical order, becomes the fault.
-template <class Group>
-HEDON_FN void audit(Group& group, World& world) {
+/// ahead(slot) is called a little before the agent in `slot` is checked.
+template <class Group, class Ahead>
+HEDON_FN void audit(Group& group, World& world, Ahead&& ahead) {
   group.once([&] {
     audit_slots(world);
     audit_capacity(world);
   });
   if (world.fault().status != Status::ok) return;
   const int32_t living = world.head().living_count;
-  group.for_each(living, [&](int32_t i) { world.scratch.finding[i] = audit_agent(world, world.state.living[i]); });
+  group.for_each(living, [&](int32_t i) {
+    if (i + AHEAD < living) ahead(world.state.living[i + AHEAD]);
+    world.scratch.finding[i] = audit_agent(world, world.state.living[i]);
+  });
   group.once([&] {
     for (int32_t i = 0; i < living; ++i) {
       const Finding& found = world.scratch.finding[i];

@@ -95,6 +95,11 @@ struct ArrayShape {
   Lifetime lifetime;
 };
 
+/// Whether an array is one of those that are large and needed only where agents learn: moments and observations.
+constexpr HEDON_INLINE bool is_cold(ArrayShape size) {
+  return size.width == Extent::observations || (size.rows == Extent::learner_slots && size.width == Extent::params);
+}
+
 /// members   of the team that steps the world
 HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
   switch (of) {

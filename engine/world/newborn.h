@@ -13,10 +13,11 @@
 
 namespace hedon {
 
-/// Makes the optimizer of a slot that of an agent that has learned nothing.
+/// Makes the optimizer of a slot that of an agent that has learned nothing. Where nobody has learned since the world
+/// was made, the moments are 0, and their memory is not touched.
 HEDON_FN void forget_updates(World& world, int32_t slot) {
-  if (!world.species(slot).learns) return;
   const WorldState& state = world.state;
+  if (!world.species(slot).learns || state.updates[slot] == 0) return;
   const int32_t size = world.species(slot).network.size();
   const int64_t first = int64_t{slot} * world.shape->params;
   for (int32_t p = 0; p < size; ++p) state.first_moment[first + p] = state.second_moment[first + p] = 0.0f;

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from command import hedon
-from resumed_run import WINDOW, assert_same_run, small_run
+from resumed_run import WINDOW, assert_same_run, filler, small_run
 
 from hedon import _engine
 from hedon.config import load_config
@@ -15,7 +15,7 @@ from hedon.experiment.plan import RunPlan
 from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import lock, resume
 from hedon.experiment.run import run
-from hedon.record.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
+from hedon.record.checkpoint import load_checkpoint, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS, checkpoint_paths, part_path, part_paths
 from hedon.record.manifest import Parent, load_manifest
@@ -147,7 +147,7 @@ def spoil(folder, **changes):
     path = checkpoint_paths(folder)[-1]
     old = load_checkpoint(path)
     arrays = changes.pop("arrays", old.arrays)
-    save_checkpoint(folder, Checkpoint(replace(old.head, **changes), arrays))
+    save_checkpoint(folder, replace(old.head, **changes), filler(arrays))
 
 
 def test_a_checkpoint_of_another_version_config_or_shape_says_what_differs(half):

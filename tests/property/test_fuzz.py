@@ -24,7 +24,7 @@ from hedon.config.field import Setting, leaves
 from hedon.config.load import PRESETS, load_config
 from hedon.config.problem import ConfigError
 from hedon.error import EngineError, HedonError
-from hedon.experiment.memory import memory_needed
+from hedon.experiment.memory import COLD, memory_needed
 from hedon.experiment.simulation import Simulation
 from hedon.record.folder import holds_run
 
@@ -135,7 +135,7 @@ def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path):
             assert "fuzz.toml" in str(said) or ", with changes" in str(said)
             return
         assert load_from_text(dump_toml(config), path) == config
-        if memory_needed(config, 1, 1)["rollouts"] < 10**8:
+        if memory_needed(config, 1, 1)[COLD] < 10**8:
             found["lived"] += run_briefly(config)
 
     trial()

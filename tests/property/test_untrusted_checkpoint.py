@@ -103,6 +103,15 @@ def test_a_value_out_of_bounds_is_refused(saved, target, name):
     refused(target, saved | {name: spoiled}, name.replace("impulse", "pair"))
 
 
+@pytest.mark.parametrize("name", ["first_moment", "second_moment"])
+def test_an_optimizer_that_has_done_nothing_holds_nothing(saved, target, name):
+    """Who takes the slot later begins with what is there."""
+    new = int(np.flatnonzero(saved["updates"] == 0)[-1])
+    spoiled = saved[name].copy()
+    spoiled[new, 3] = 1e-9
+    refused(target, saved | {name: spoiled}, f"{name} is not 0 for an agent whose updates are")
+
+
 def test_every_array_is_checked_for_presence_type_shape_and_finite_numbers(saved, target):
     for name, array in saved.items():
         refused(target, {key: value for key, value in saved.items() if key != name}, name)

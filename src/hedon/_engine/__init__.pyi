@@ -1,6 +1,6 @@
 """The native engine of hedon: the simulation and nothing else."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 import numpy
@@ -50,7 +50,7 @@ class Simulation:
     Many worlds under one config. Views are read-only and valid until the next `run`. EngineError: it runs in another thread, or this process was forked from the one that made it.
     """
 
-    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = [], flush_denormals: bool = True, device: str = '') -> None: ...
+    def __init__(self, config: dict, walls: Annotated[NDArray[numpy.float32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], outer_walls: int, seeds: Sequence[int], threads: int = 1, kernel: str = '', slot_order: Sequence[int] = [], flush_denormals: bool = True, device: str = '', scratch: str = '') -> None: ...
 
     def run(self, steps: int) -> None:
         """
@@ -70,6 +70,11 @@ class Simulation:
 
     def save(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
         """Copies of everything that decides a world's future, as arrays."""
+
+    def save_to(self, world: int, begin: Callable[[str, str, list[int]], object], piece: Callable[[bytes], object]) -> None:
+        """
+        The same in pieces, for one who has no memory for copies: begin(name, type, shape) for each array in turn, then piece(bytes) until all its bytes are given.
+        """
 
     def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[Any]]) -> None:
         """

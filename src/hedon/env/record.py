@@ -116,7 +116,7 @@ class Record:
             self._recorder.interval()
         if shown:
             self._recorder.frame()
-        if time.perf_counter() >= self._due and not self._writer.saving:
+        if time.perf_counter() >= self._due:
             self._due = time.perf_counter() + CHECKPOINT_SECONDS
             self._recorder.checkpoint(self._step, self._seconds)
 

@@ -3,17 +3,17 @@
 import time
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hedon.config.dump import dump_toml
 from hedon.error import EngineError
 from hedon.experiment.plan import Moment
 from hedon.experiment.sample import PopulationSampler, agent_rows, frame_rows
 from hedon.experiment.simulation import Simulation
+from hedon.record.array_file import ArrayWriter
 from hedon.record.checkpoint import CheckpointHead, Sampled
 from hedon.record.writer import Writer
 
@@ -116,23 +116,21 @@ class Recorder:
             seconds: Spent on steps so far, over all sessions [s].
         """
         self.living()
-        self.writer.save_checkpoint(*self._saved(step, seconds))
+        self.writer.save_checkpoint(self._head(step, seconds), self._fill)
 
     def fault(self, seconds: float) -> None:
         """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""
         self.deaths(partial=True)
         step = max(world.step for world in self.simulation.worlds)
-        self.writer.save_fault(*self._saved(step, seconds))
+        self.writer.save_fault(self._head(step, seconds), self._fill)
 
-    def _saved(self, step: int, seconds: float) -> tuple[CheckpointHead, dict[str, NDArray[Any]]]:
+    def _head(self, step: int, seconds: float) -> CheckpointHead:
         simulation = self.simulation
-        arrays: dict[str, NDArray[Any]] = {}
         digests = [""] * len(simulation.worlds)
         for i, world in enumerate(simulation.worlds):
             with suppress(EngineError):  # a world that stopped since its slots are inconsistent
-                arrays |= {f"{i}/{name}": array for name, array in simulation.engine.save(i).items()}
                 digests[i] = world.digest()
-        head = CheckpointHead(
+        return CheckpointHead(
             step=step,
             config=dump_toml(simulation.config),
             seeds=simulation.seeds,
@@ -143,7 +141,12 @@ class Recorder:
             sampled=tuple(sampler.since for sampler in self.samplers),
             digests=tuple(digests),
         )
-        return head, arrays
+
+    def _fill(self, out: ArrayWriter) -> None:
+        """Writes the arrays of all worlds, which the engine gives in pieces."""
+        for i in range(len(self.simulation.worlds)):
+            with suppress(EngineError):  # as above
+                self.simulation.engine.save_to(i, partial(_begin, out, i), out.piece)
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows.
@@ -163,3 +166,7 @@ class Recorder:
             return world.extinct_step
         lives = bool((world.view("species")[world.living] == species).any())
         return None if lives else self.last_deaths.get((world.index, species))
+
+
+def _begin(out: ArrayWriter, world: int, name: str, dtype: str, shape: list[int]) -> None:
+    out.begin(f"{world}/{name}", dtype, shape)

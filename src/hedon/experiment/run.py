@@ -152,8 +152,10 @@ def advance(
                 recorder.interval()
             if plan.frames and step % plan.frames == 0:
                 recorder.frame()
-            if not writer.saving and due.now(interrupted):
+            if due.now(interrupted, window_ends=step % plan.config.world.rollout_steps == 0):
+                saving = time.perf_counter()
                 recorder.checkpoint(step, seconds)
+                due.saved(saving)
             if display is not None and step < plan.steps:  # the last moment is shown below, with its own rows
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
@@ -178,18 +180,25 @@ def advance(
 
 
 class _Due:
-    """Decides when to save a checkpoint: at intervals, and immediately when the run is asked to end."""
+    """Decides when to save a checkpoint: at intervals, and immediately when the run is asked to end.
+
+    At an interval's end it waits for the window's, since rollouts are larger than all else. Large worlds have longer
+    intervals: saving takes at most a twentieth of the time.
+    """
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._next = time.perf_counter() + seconds
         self._heard = 0
 
-    def now(self, interrupted: Interrupts) -> bool:
-        if time.perf_counter() < self._next and interrupted.count == self._heard:
-            return False
-        self._next, self._heard = time.perf_counter() + self._seconds, interrupted.count
-        return True
+    def now(self, interrupted: Interrupts, *, window_ends: bool) -> bool:
+        asked, self._heard = interrupted.count > self._heard, interrupted.count
+        return asked or (window_ends and time.perf_counter() >= self._next)
+
+    def saved(self, begun: float) -> None:
+        """Notes that a checkpoint was saved just now, since `begun`."""
+        now = time.perf_counter()
+        self._next = now + max(self._seconds, 19 * (now - begun))
 
 
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:

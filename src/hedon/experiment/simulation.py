@@ -28,6 +28,9 @@ from hedon.text import brief
 
 BACKEND_VARIABLE = "HEDON_BACKEND"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
+SCRATCH_VARIABLE = "HEDON_SCRATCH"
+"""Environment variable that names a folder for the moments of learners and their observations, which then need no
+memory; see the guide on large worlds. It changes no result."""
 MAX_WORLD_SEED = 2**64 - 1
 """Largest seed of a world; records of a run hold only the lower half of these."""
 MAX_RUN_STEPS = 2**62
@@ -92,7 +95,14 @@ class Simulation:
         device = device_library(backend)
         host = "" if device else backend
         self.engine = _engine.Simulation(
-            given.settings, given.walls, given.outer_walls, list(seeds), self._threads, host, device=device
+            given.settings,
+            given.walls,
+            given.outer_walls,
+            list(seeds),
+            self._threads,
+            host,
+            device=device,
+            scratch=os.environ.get(SCRATCH_VARIABLE, ""),
         )
         self.rules = rules
         for rule in self.rules:

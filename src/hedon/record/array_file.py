@@ -1,17 +1,109 @@
-"""Reads files of plain NumPy arrays, which may come from anyone: no pickle, and no memory before sizes are known."""
+"""Files of plain NumPy arrays: written in pieces, read where they lie. They may come from anyone: no pickle."""
 
+import hashlib
 import io
 import math
+import struct
 import zipfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+_VERSION = (1, 0)
+"""Of the format of an array that NumPy has for any plain numbers."""
+_ALIGNMENT = 64
+"""Arrays begin at multiples of it in the file, so that they can be used where they lie [byte]."""
+_LOCAL_HEAD, _LENGTHS = 30, struct.Struct("<26xHH")
+"""Bytes before the name of a member, and where the lengths of its name and of what follows it stand (zip, 4.3.7)."""
+_LONGEST_HEAD = np.lib.format.MAGIC_LEN + 2 + (1 << 16)
+"""Bytes that what an array is can take before its numbers, at most."""
+_PIECE = 1 << 20
+"""Bytes of an array that are hashed at a time."""
+
+
+class ArrayWriter:
+    """Writes an npz file as `numpy.savez` does, array after array, each in pieces. A context manager.
+
+    Args:
+        file: Open for writing, empty.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._archive = zipfile.ZipFile(file, "w", zipfile.ZIP_STORED)
+        self._member: Any = None
+        self._name = ""
+        self._sums: dict[str, Any] = {}
+
+    def __enter__(self) -> "ArrayWriter":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._end()
+        self._archive.close()
+
+    def add(self, name: str, array: NDArray[Any]) -> None:
+        """Writes a whole array.
+
+        Args:
+            name: Of it in the file.
+            array: Of plain numbers, any shape.
+        """
+        self.begin(name, array.dtype.str, array.shape)
+        self.piece(np.ascontiguousarray(array).data.cast("B") if array.size else b"")
+
+    def begin(self, name: str, dtype: str, shape: Sequence[int]) -> None:
+        """Begins an array; its bytes, in C order, follow by `piece`.
+
+        Args:
+            name: Of it in the file.
+            dtype: Of its numbers, as NumPy writes it.
+            shape: Of it.
+        """
+        self._end()
+        kind = np.dtype(dtype)
+        self._member = self._archive.open(f"{name}.npy", "w", force_zip64=True)
+        text = repr({"descr": kind.str, "fortran_order": False, "shape": tuple(shape)})
+        before = self._file.tell() + len(np.lib.format.magic(*_VERSION)) + 2 + len(text) + 1
+        text += " " * (-before % _ALIGNMENT) + "\n"
+        self._member.write(np.lib.format.magic(*_VERSION) + struct.pack("<H", len(text)) + text.encode())
+        self._name, self._sums[name] = name, _sum_of(kind, tuple(shape))
+
+    def piece(self, data: bytes | memoryview) -> None:
+        """Writes the next bytes of the array that was begun last."""
+        self._member.write(data)
+        self._sums[self._name].update(data)
+
+    def digest(self) -> str:
+        """SHA-256 of what was written so far: equal to `digest` of the same arrays."""
+        return _digest({name: each.hexdigest() for name, each in self._sums.items()})
+
+    def _end(self) -> None:
+        if self._member is not None:
+            self._member.close()
+            self._member = None
+
+
+def digest(arrays: Mapping[str, NDArray[Any]]) -> str:
+    """SHA-256 over names, types, shapes and bytes of arrays, any shape; does not depend on their order."""
+    sums = {}
+    for name, array in arrays.items():
+        each = _sum_of(array.dtype, array.shape)
+        data = np.ascontiguousarray(array).data.cast("B") if array.size else memoryview(b"")
+        for first in range(0, len(data), _PIECE):
+            each.update(data[first : first + _PIECE])
+        sums[name] = each.hexdigest()
+    return _digest(sums)
+
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz file as `numpy.savez` writes it, by name, any shape.
+    """The arrays of an npz file as `ArrayWriter` and `numpy.savez` write it, by name, any shape.
+
+    Those at places that suit their type are not read now: they are views of the file, which must not change while they
+    are in use. So a file may be larger than memory.
 
     Raises:
         ValueError: the file holds anything but plain numbers, or more than it could.
@@ -25,17 +117,34 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         for entry in entries:
             if entry.compress_type != zipfile.ZIP_STORED or entry.filename in members:
                 raise ValueError(f"{entry.filename} was not written by hedon")
-            members[entry.filename.removesuffix(".npy")] = _parse_array(archive.read(entry))
+        damaged = archive.testzip()
+        if damaged is not None:
+            raise ValueError(f"{damaged} is damaged")
+        file = np.asarray(np.memmap(path, np.uint8, "r"))
+        for entry in entries:
+            head = entry.header_offset
+            first = head + _LOCAL_HEAD + sum(_LENGTHS.unpack(file[head : head + _LOCAL_HEAD].tobytes()))
+            array = _parse_array(file[first : first + entry.file_size])
+            members[entry.filename.removesuffix(".npy")] = array
     return members
 
 
-def _parse_array(data: bytes) -> NDArray[Any]:
-    file = io.BytesIO(data)
-    if np.lib.format.read_magic(file) != (1, 0):
+def _parse_array(data: NDArray[np.uint8]) -> NDArray[Any]:
+    head = io.BytesIO(data[:_LONGEST_HEAD].tobytes())
+    if np.lib.format.read_magic(head) != _VERSION:
         raise ValueError("an array has an unknown format")
-    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
+    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(head)
     if dtype.kind not in "iuf" or not dtype.isnative or in_columns:
         raise ValueError(f"an array has type {dtype}, but only plain numbers are allowed")
-    if math.prod(shape) * dtype.itemsize != len(data) - file.tell():
+    numbers = data[head.tell() :]
+    if math.prod(shape) * dtype.itemsize != len(numbers):
         raise ValueError("the length of an array does not match its shape")
-    return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape)
+    return np.require(numbers.view(dtype).reshape(shape), requirements=["A"])
+
+
+def _sum_of(kind: np.dtype[Any], shape: tuple[int, ...]) -> Any:
+    return hashlib.sha256(f"{kind.str} {shape}\n".encode())
+
+
+def _digest(sums: Mapping[str, str]) -> str:
+    return hashlib.sha256("".join(f"{name} {of}\n" for name, of in sorted(sums.items())).encode()).hexdigest()

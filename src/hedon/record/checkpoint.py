@@ -1,19 +1,18 @@
 """Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading runs no code."""
 
-import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.record.array_file import read_arrays
+from hedon.record.array_file import ArrayWriter, digest, read_arrays
 from hedon.record.atomic import write_atomically
-from hedon.record.earlier import with_names
+from hedon.record.earlier import earlier_digest, with_names
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_path, checkpoint_paths
 
@@ -22,7 +21,11 @@ if TYPE_CHECKING:
 
 KEPT = 2
 """Checkpoints that a run keeps: the newest, and one more in case the newest is damaged."""
-_HEAD, _DIGEST = "head", "digest"  # the members that are not arrays of a world: JSON, and SHA-256 of all other members
+# The members that are not arrays of a world: JSON, and SHA-256 of all others, in this version and in earlier ones.
+_HEAD, _DIGEST, _EARLIER_DIGEST = "head", "sha256", "digest"
+
+Fill = Callable[[ArrayWriter], object]
+"""Writes the arrays of all worlds, in the engine's shapes: "0/params" is the array `params` of world 0."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Checkpoint:
 
     Attributes:
         head: what is known of the worlds without their arrays.
-        arrays: of all worlds, in the engine's shapes: "0/params" is its array `params` of world 0.
+        arrays: of all worlds, in the engine's shapes: "0/params" is its array `params` of world 0. Views of the file.
     """
 
     head: CheckpointHead
@@ -81,36 +84,42 @@ class Checkpoint:
         return {name.removeprefix(prefix): array for name, array in self.arrays.items() if name.startswith(prefix)}
 
 
-def save_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
+def save_checkpoint(folder: Path, head: CheckpointHead, fill: Fill) -> None:
     """Writes a checkpoint of a run atomically, then removes all but the newest ones.
 
     Args:
         folder: of the run.
-        checkpoint: what to save.
+        head: of the checkpoint.
+        fill: writes the arrays.
 
     Raises:
         OSError: as the file system raises it; the earlier checkpoints are then unchanged.
     """
-    write_checkpoint(checkpoint_path(folder, checkpoint.head.step), checkpoint)
+    write_checkpoint(checkpoint_path(folder, head.step), head, fill)
     for old in checkpoint_paths(folder)[:-KEPT]:
         old.unlink(missing_ok=True)
 
 
-def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+def write_checkpoint(path: Path, head: CheckpointHead, fill: Fill) -> None:
     """Writes one checkpoint atomically; makes its folder if it is missing.
 
     Args:
         path: of the file.
-        checkpoint: what to write.
+        head: of the checkpoint.
+        fill: writes the arrays.
 
     Raises:
         OSError: as the file system raises it.
     """
     path.parent.mkdir(exist_ok=True)
-    head = np.frombuffer(json.dumps(asdict(checkpoint.head)).encode(), np.uint8)
-    members = {_HEAD: head, **checkpoint.arrays}
-    members[_DIGEST] = np.frombuffer(_digest(members).encode(), np.uint8)
-    write_atomically(path, lambda file: np.savez(file, **members))
+
+    def write(file: BinaryIO) -> None:
+        with ArrayWriter(file) as out:
+            out.add(_HEAD, np.frombuffer(json.dumps(asdict(head)).encode(), np.uint8))
+            fill(out)
+            out.add(_DIGEST, np.frombuffer(out.digest().encode(), np.uint8))
+
+    write_atomically(path, write)
 
 
 def load_checkpoint(path: Path) -> Checkpoint:
@@ -122,8 +131,9 @@ def load_checkpoint(path: Path) -> Checkpoint:
     """
     try:
         members = read_arrays(path)
-        digest = members.pop(_DIGEST).tobytes().decode()
-        if digest != _digest(members):
+        earlier = members.pop(_EARLIER_DIGEST, None)
+        said = members.pop(_DIGEST) if earlier is None else earlier
+        if said.tobytes().decode() != (digest if earlier is None else earlier_digest)(members):
             raise ValueError("its content does not match its digest")
         head = _heads().validate_json(with_names(members.pop(_HEAD).tobytes()))
         if path.name != checkpoint_path(path.parent, head.step).name:
@@ -131,15 +141,6 @@ def load_checkpoint(path: Path) -> Checkpoint:
         return Checkpoint(head, members)
     except Exception as error:  # a file that is not from hedon can raise any exception
         raise RecordError(f"damaged checkpoint {path}: {error}") from error
-
-
-def _digest(members: Mapping[str, NDArray[Any]]) -> str:
-    """SHA-256 over names, types, shapes and bytes of arrays; does not depend on their order."""
-    digest = hashlib.sha256()
-    for name, array in sorted(members.items()):
-        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
 
 
 @cache

@@ -1,6 +1,12 @@
-"""Names that files of earlier versions have, and what they are called now."""
+"""What files of earlier versions have in place of what they have now."""
 
+import hashlib
 import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 NAMES = {"kernel": "backend", "inner": "stores"}
 """Fields of a manifest, of its sessions, and of the head of a checkpoint."""
@@ -26,3 +32,12 @@ def with_names(content: bytes) -> bytes:
             if isinstance(each, dict) and old in each and name not in each:
                 each[name] = each.pop(old)
     return json.dumps(found).encode()
+
+
+def earlier_digest(arrays: Mapping[str, NDArray[Any]]) -> str:
+    """The digest that a checkpoint of version 0.4 has as its member `digest`, of arrays of any shape."""
+    found = hashlib.sha256()
+    for name, array in sorted(arrays.items()):
+        found.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
+        found.update(np.ascontiguousarray(array).data)
+    return found.hexdigest()

@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 import polars as pl
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hedon.record.atomic import write_atomically
-from hedon.record.checkpoint import Checkpoint, CheckpointHead, save_checkpoint, write_checkpoint
+from hedon.record.checkpoint import CheckpointHead, Fill, save_checkpoint, write_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import CONFIG, FAULT, checkpoint_path, require_no_run
 from hedon.record.manifest import Manifest, save_manifest
@@ -31,6 +30,8 @@ _CLOSE = object()
 
 class Writer:
     """Writes a run's folder; nothing else does.
+
+    Rows are written by a thread, and a checkpoint by the caller's: it is written from the worlds as they are.
 
     Use it as a context manager. The caller may reuse the arrays of rows as soon as a call returns. An error of
     the writing thread, such as a full disk, is raised as `RecordError` by the next call, at the latest by
@@ -71,7 +72,6 @@ class Writer:
         self._folders = {path: _identity(path) for path in (self.folder, *(self.folder / name for name in self.tables))}
         self._queue: queue.Queue = queue.Queue(queue_size)
         self._fault: Exception | None = None
-        self._saving = threading.Event()
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="hedon-record", daemon=True)
         self._thread.start()
@@ -104,25 +104,31 @@ class Writer:
         """
         self._put(("living", self._frame("agents", rows)))
 
-    def save_checkpoint(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def save_checkpoint(self, head: CheckpointHead, fill: Fill) -> None:
         """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
 
         Args:
             head: without the digests of parts.
-            arrays: of all worlds, by "world/name", in the engine's shapes.
+            fill: writes the arrays of all worlds.
 
         Raises:
             RecordError: as `append`.
         """
-        self._saving.set()
-        self._put(Checkpoint(head, dict(arrays)))
+        self.flush()
+        self.require_folder()
+        parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
+        try:
+            save_checkpoint(self.folder, replace(head, parts=parts), fill)
+        except OSError as error:
+            self._fault = error
+            self._raise_fault()
 
-    def save_fault(self, head: CheckpointHead, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def save_fault(self, head: CheckpointHead, fill: Fill) -> None:
         """Saves the state of a run that stopped at a fault, in its own folder, after all rows are on disk.
 
         Args:
             head: without the digests of parts.
-            arrays: of all worlds, by "world/name", in the engine's shapes.
+            fill: writes the arrays of all worlds.
 
         Raises:
             RecordError: as `append`.
@@ -130,14 +136,9 @@ class Writer:
         self.flush()
         path = checkpoint_path(self.folder, head.step, FAULT)
         try:
-            write_checkpoint(path, Checkpoint(head, dict(arrays)))
+            write_checkpoint(path, head, fill)
         except OSError as error:
             raise RecordError(f"cannot write {path}: {error}") from error
-
-    @property
-    def saving(self) -> bool:
-        """Whether a checkpoint is not yet on disk. It uses as much memory as the networks of its worlds."""
-        return self._saving.is_set()
 
     def save_manifest(self, manifest: Manifest) -> None:
         """Replaces the manifest immediately.
@@ -247,11 +248,6 @@ class Writer:
                 self._parts.replace_living(rows)
             else:
                 self._parts.append(table, rows)
-        if isinstance(item, Checkpoint):
-            self._parts.flush()
-            parts = {table: tuple(digests) for table, digests in self._parts.parts.items()}
-            save_checkpoint(self.folder, Checkpoint(replace(item.head, parts=parts), item.arrays))
-            self._saving.clear()
         if item is _CLOSE or isinstance(item, threading.Event):
             self._parts.flush()
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from resumed_run import filler
 
+from hedon.record.array_file import ArrayWriter, digest
 from hedon.record.checkpoint import Checkpoint, CheckpointHead, Sampled, load_checkpoint, save_checkpoint
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_path, checkpoint_paths
@@ -28,7 +30,7 @@ def head(step: int = 7) -> CheckpointHead:
 
 
 def saved(folder: Path) -> Path:
-    save_checkpoint(folder, Checkpoint(head(), ARRAYS))
+    save_checkpoint(folder, head(), filler(ARRAYS))
     return checkpoint_path(folder, 7)
 
 
@@ -42,6 +44,29 @@ def test_a_checkpoint_comes_back_as_it_was_written(tmp_path: Path) -> None:
     assert set(found.world(0)) == {"params", "head.step"}
 
 
+def test_what_is_read_lies_in_the_file(tmp_path: Path) -> None:
+    """A checkpoint may be larger than memory."""
+    for array in load_checkpoint(saved(tmp_path)).arrays.values():
+        assert not array.flags.owndata
+        assert array.flags.aligned
+        assert not array.flags.writeable
+
+
+def test_pieces_make_the_same_file_as_a_whole_array(tmp_path: Path) -> None:
+    array = np.arange(4000, dtype=np.float64).reshape(-1, 5)
+    data = array.tobytes()
+    with (tmp_path / "pieces").open("wb") as file, ArrayWriter(file) as out:
+        out.begin("some", "f8", array.shape)
+        for first in range(0, len(data), 777):
+            out.piece(data[first : first + 777])
+        assert out.digest() == digest({"some": array}) != digest({"some": array + 1})
+    with (tmp_path / "whole").open("wb") as file, ArrayWriter(file) as out:
+        out.add("some", array)
+    assert (tmp_path / "pieces").read_bytes() == (tmp_path / "whole").read_bytes()
+    with (tmp_path / "whole").open("rb") as file:
+        np.testing.assert_array_equal(np.load(file)["some"], array, strict=True)
+
+
 def test_numpy_reads_it_too(tmp_path: Path) -> None:
     with np.load(saved(tmp_path), allow_pickle=False) as file:
         np.testing.assert_array_equal(file["0/params"], ARRAYS["0/params"])
@@ -49,7 +74,7 @@ def test_numpy_reads_it_too(tmp_path: Path) -> None:
 
 def test_the_newest_two_are_kept(tmp_path: Path) -> None:
     for step in (5, 6, 70, 71, 72):
-        save_checkpoint(tmp_path, Checkpoint(head(step), ARRAYS))
+        save_checkpoint(tmp_path, head(step), filler(ARRAYS))
     assert checkpoint_paths(tmp_path) == [checkpoint_path(tmp_path, 71), checkpoint_path(tmp_path, 72)]
 
 
