@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 def bench(
     parts: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PART]...", help="What to measure; by default all except device, growth and rule."),
+        typer.Argument(
+            metavar="[PART]...", help="What to measure; by default all that need neither a device nor minutes."
+        ),
     ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write all raw numbers to this file.")
@@ -33,7 +35,8 @@ def bench(
         typer.Option(metavar="N,...", help="Numbers of worlds; by default 1, and one per thread on all processors."),
     ] = "",
     slots: Annotated[
-        str, typer.Option(metavar="N,...", help="Sizes for growth, from 200,2000,20000,100000; by default all.")
+        str,
+        typer.Option(metavar="N,...", help="Sizes for growth and crowd: 200,2000,20000,100000."),
     ] = "",
     kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
     windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
@@ -57,6 +60,8 @@ def bench(
       rule      rules in Python, beside the formulas of a config; needs hedon[rules]
       device    whole worlds on a device, by numbers of worlds; needs --device, and is then the only part by default
       growth    one world without learning, up to 500 times as large; takes minutes and 21 GB
+      crowd     one world full of learning founders, up to 500 times as large; takes half an hour, and 37 GB of
+                memory or 10 GB and a disk (HEDON_SCRATCH)
 
     Other programs may use the machine too. So the cases are measured in turn, several times, and times are
     medians with quartiles: compare only numbers from one run. Every part checks what it measured; if a check

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks import device, growth, network, physics, rays, records, rule, startup, value, world
+from benchmarks import crowd, device, growth, network, physics, rays, records, rule, startup, value, world
 from benchmarks.machine import Calibration, calibrate, describe
 from benchmarks.measure import Row, Table
 from benchmarks.plan import Plan, PlanError
@@ -43,10 +43,11 @@ PARTS = {
     "rule": Part("rules in Python, beside the formulas of a config", rule.measure, rule.table),
     "device": Part("whole worlds on a device, by numbers of worlds; needs --device", device.measure, device.table),
     "growth": Part("one world without learning, up to 500 times as large", growth.measure, growth.table),
+    "crowd": Part("one world full of learning founders, up to 500 times as large", crowd.measure, crowd.table),
 }
-DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("device", "growth", "rule"))
-"""Growth takes minutes and gigabytes, a rule needs an optional package, and a device is not everywhere: they run only
-if asked for."""
+DEFAULT_PARTS = tuple(name for name in PARTS if name not in ("device", "growth", "crowd", "rule"))
+"""Growth and a crowd take minutes and gigabytes, a rule needs an optional package, and a device is not everywhere: they
+run only if asked for."""
 
 
 def choose(names: Sequence[str], device: str = "") -> tuple[str, ...]:

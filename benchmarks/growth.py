@@ -28,21 +28,16 @@ ROLLOUT_ROWS = 2_400_000
 PARTS = ("sense_and_act", "physics", "life")
 
 
-def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
-    """The preset, with the same densities, in an arena `across` times as wide and `up` times as high.
-
-    There is one founder, because the scene brings the agents. A window is one step longer than the timed steps, so
-    that no window ends.
+def scaled(plan: Plan, across: int, up: int) -> list[str]:
+    """Overrides that give the preset an arena `across` times as wide and `up` times as high, with the same densities.
 
     Args:
         plan: The plan with the preset.
         across: Factor of the width.
         up: Factor of the height.
-        steps: Steps that will be run.
 
     Raises:
         PlanError: The preset has inner walls, or food that does not grow everywhere: its density is not uniform.
-        ConfigError: The scaled numbers are out of range.
     """
     base = plan.config()
     if base.arena.inner_walls or any(food.placement.form != "uniform" for food in base.food.values()):
@@ -52,18 +47,34 @@ def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
         f"arena.width={base.arena.width * across}",
         f"arena.height={base.arena.height * up}",
         f"population.capacity={base.species[ONLY].population.capacity * factor}",
-        "population.initial_count=1",
-        f"world.rollout_steps={steps + 1}",
-        f"learning.minibatch_size={steps + 1}",
     ]
     for kind, food in base.food.items():
         overrides += [
             f"food.{kind}.capacity={food.capacity * factor}",
             f"food.{kind}.growth_rate={food.growth_rate * factor}",
             f"food.{kind}.candidates={food.candidates * factor}",
-            f"food.{kind}.initial_count=0",
         ]
-    return plan.config(*overrides)
+    return overrides
+
+
+def scaled_config(plan: Plan, across: int, up: int, steps: int) -> Config:
+    """The preset as `scaled` makes it, without learning: a window is one step longer than the timed steps.
+
+    There is one founder and no food, because the scene brings them.
+
+    Args:
+        plan: The plan with the preset.
+        across: Factor of the width.
+        up: Factor of the height.
+        steps: Steps that will be run.
+
+    Raises:
+        PlanError: As `scaled`.
+        ConfigError: The scaled numbers are out of range.
+    """
+    alone = ["population.initial_count=1", *(f"food.{kind}.initial_count=0" for kind in plan.config().food)]
+    window = [f"world.rollout_steps={steps + 1}", f"learning.minibatch_size={steps + 1}"]
+    return plan.config(*scaled(plan, across, up), *alone, *window)
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
@@ -75,7 +86,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     """
     base = plan.config()
     rows: list[Row] = []
-    for slots, (across, up) in _sizes(plan).items():
+    for slots, (across, up) in sizes(plan).items():
         piece = 4 if plan.quick else max(1, min(MAX_PIECE_STEPS, (ROLLOUT_ROWS // slots - TRIALS) // PIECES))
         config = scaled_config(plan, across, up, TRIALS + piece * PIECES)
         threads = sorted({plan.threads[0], plan.threads[-1]})
@@ -106,8 +117,12 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
     return rows
 
 
-def _sizes(plan: Plan) -> dict[int, tuple[int, int]]:
-    """The tiles that the plan asks for, by numbers of slots."""
+def sizes(plan: Plan) -> dict[int, tuple[int, int]]:
+    """The tiles that the plan asks for, by numbers of slots.
+
+    Raises:
+        PlanError: It asks for a size that there is not.
+    """
     capacity = plan.config().species[ONLY].population.capacity
     sizes = {capacity * across * up: (across, up) for across, up in (QUICK_TILES if plan.quick else TILES)}
     for slots in plan.slots or ():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from worlds import QUICK, make_simulation
 
-from benchmarks import growth
+from benchmarks import crowd, growth
 from benchmarks.bench import DEFAULT_PARTS, PARTS, choose
 from benchmarks.check import CheckError, check_same_lives, check_world
 from benchmarks.floor import network_flop, step_floor
@@ -15,6 +15,7 @@ from benchmarks.measure import spread
 from benchmarks.plan import PlanError, make_plan
 from benchmarks.scene import Scene, go_on_from_peopled, peopled, scene_of
 from hedon.config.load import load_config
+from hedon.experiment import memory
 from hedon.experiment.simulation import Simulation
 
 NO_RATES = Calibration({}, {}, 0.0)
@@ -110,6 +111,18 @@ def test_a_size_that_finds_no_memory_says_so(monkeypatch):
     assert notes[0].startswith("400 slots: skipped, needs")
 
 
+def test_a_crowd_is_a_window_in_which_all_learn(monkeypatch):
+    rows = crowd.measure(make_plan(threads="1,2", quick=True), NO_RATES)
+    assert [(row["slots"], row["threads"]) for row in rows] == [(200, 1), (200, 2), (400, 1), (400, 2)]
+    for row in rows:
+        assert 0.95 * row["slots"] < row["learners"] <= row["slots"]
+    assert len(crowd.table(rows, NO_RATES).lines) == 4
+    monkeypatch.setattr(memory, "memory_present", lambda: 105_000_000)
+    rows = crowd.measure(make_plan(threads="1", quick=True), NO_RATES)
+    assert ["refused" in row for row in rows] == [False, True]
+    assert "400 agents: skipped: the run may need 0.1 GB" in crowd.table(rows, NO_RATES).notes[0]
+
+
 def test_the_scene_of_a_world_can_be_put_into_another():
     plan = make_plan(threads="1", quick=True)
     copy = make_simulation(*QUICK)
@@ -160,7 +173,7 @@ def test_worlds_of_one_seed_that_differ_fail_their_check():
 def test_parts_and_their_nearest_names():
     assert choose(()) == DEFAULT_PARTS
     assert choose(("world", "rays", "world")) == ("world", "rays")
-    assert set(DEFAULT_PARTS) == set(PARTS) - {"device", "growth", "rule"}
+    assert set(DEFAULT_PARTS) == set(PARTS) - {"device", "growth", "crowd", "rule"}
     with pytest.raises(PlanError, match=r"'fysics' is not a part .*; did you mean physics\?"):
         choose(("rays", "fysics"))
 
