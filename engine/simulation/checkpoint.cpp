@@ -115,8 +115,11 @@ constexpr int64_t PIECE = int64_t{1} << 18;
 /// Rows of a piece are a multiple of this many, so that all pieces but the last have whole words of eight bytes.
 constexpr int64_t PIECE_ROWS = 8;
 
+/// Rows as long as this may lie in a file, and are asked for a little before they are read [byte].
+constexpr int64_t LONG_ROW = 4096;
+
 /// Gives all arrays of a checkpoint to a sink.
-void save_each(const World& world, const CheckpointSink& sink) {
+void save_each(const World& world, const Memory& memory, const CheckpointSink& sink) {
   const SavedExtent extent = extent_of(world);
   std::vector<char> room;
   bool going = true;
@@ -127,8 +130,10 @@ void save_each(const World& world, const CheckpointSink& sink) {
     for (int64_t first = 0; first < rows.count && bytes > 0 && going; first += most) {
       const int64_t count = std::min(most, rows.count - first);
       room.resize(static_cast<size_t>(count * bytes));
-      for (int64_t i = 0; i < count; ++i)
+      for (int64_t i = 0; i < count; ++i) {
+        if (bytes >= LONG_ROW) memory.expect(rows.row(std::min(first + i + AHEAD, rows.count - 1)), bytes);
         memcpy(room.data() + i * bytes, rows.row(first + i), static_cast<size_t>(bytes));
+      }
       going = sink.piece({room.data(), room.size()});
     }
   });
@@ -199,7 +204,9 @@ void pack_world(const World& world, Packer& out) {
 
 }  // namespace
 
-void Simulation::save(int index, const CheckpointSink& sink) { save_each(complete(index), sink); }
+void Simulation::save(int index, const CheckpointSink& sink) {
+  save_each(complete(index), memory_[static_cast<size_t>(index)], sink);
+}
 
 Checkpoint Simulation::save(int index) {
   Checkpoint out;

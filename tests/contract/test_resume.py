@@ -20,6 +20,7 @@ from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS, checkpoint_paths, part_path, part_paths
 from hedon.record.manifest import Parent, load_manifest
 from hedon.record.reader import open_run
+from hedon.record.writer import Writer
 
 STEPS = 500
 
@@ -302,3 +303,17 @@ def test_a_world_that_dies_out_before_the_checkpoint_of_its_window_is_computed_a
     resume(tmp_path / "run", 90, threads=1)
     found, note = replay_run(tmp_path / "run", 1)
     assert (found, note.split(" to ")[0]) == ((), "computed again from step 40")
+
+
+def test_checkpoints_are_saved_at_the_ends_of_windows_and_once_at_the_end(tmp_path, monkeypatch):
+    """A checkpoint within a window would hold its rollouts, which are larger than all else."""
+    saved, save = [], Writer.save_checkpoint
+    monkeypatch.setattr(Writer, "save_checkpoint", lambda *given: [saved.append(given[1].step), save(*given)])
+    small_run(tmp_path / "run", 40 * WINDOW, frames=10, checkpoint_seconds=0)
+    assert saved[0] == 0
+    assert len(saved) > 2, "none but the first and the last"
+    assert saved[-1] == 40 * WINDOW
+    assert len(set(saved)) == len(saved)
+    assert not any(step % WINDOW for step in saved)
+    resume(tmp_path / "run", 40 * WINDOW + 5)
+    assert saved[-2:] == [40 * WINDOW, 40 * WINDOW + 5], "the last may be within a window"

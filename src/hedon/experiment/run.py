@@ -144,6 +144,7 @@ def advance(
     due = _Due(plan.checkpoint_seconds)
     try:
         recorder.checkpoint(step, seconds)
+        saved = step
         for step in _steps(simulation, plan, start.step, interrupted):
             seconds = start.seconds + time.perf_counter() - begun
             writer.require_folder()
@@ -156,10 +157,12 @@ def advance(
                 saving = time.perf_counter()
                 recorder.checkpoint(step, seconds)
                 due.saved(saving)
+                saved = step
             if display is not None and step < plan.steps:  # the last moment is shown below, with its own rows
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
-        recorder.checkpoint(step, seconds)
+        if saved != step:
+            recorder.checkpoint(step, seconds)
         recorder.interval()
         if display is not None:
             display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
