@@ -88,7 +88,7 @@ def test_an_unknown_part_names_the_nearest_and_what_there_is():
     assert answer.returncode == 2
     assert answer.stderr == (
         "hedon: 'word' is not a part (there are rays, forward, update, physics, world, records, startup, value, rule, "
-        "device, growth); did you mean world?\n"
+        "device, growth, crowd); did you mean world?\n"
     )
 
 

@@ -15,6 +15,7 @@ from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
+from hedon.record.folder import checkpoint_path
 from hedon.record.founder import FOUNDERS
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
@@ -143,7 +144,8 @@ def advance(
     seconds, step, status = start.seconds, start.step, "failed"
     due = _Due(plan.checkpoint_seconds)
     try:
-        recorder.checkpoint(step, seconds)
+        if not checkpoint_path(plan.out, step).exists():  # it is there where a run goes on from it
+            recorder.checkpoint(step, seconds)
         saved = step
         for step in _steps(simulation, plan, start.step, interrupted):
             seconds = start.seconds + time.perf_counter() - begun
