@@ -50,8 +50,8 @@ void need_memory(const Config& config, size_t walls, size_t worlds, int threads,
              needed / 1e9, present / 1e9, in_files ? "" : ", or set HEDON_SCRATCH to a folder");
     throw EngineError(text);
   }
-  // A limit on addresses (ulimit -v) shows only when memory is reserved.
-  const size_t bytes = static_cast<size_t>(needed) + worlds * static_cast<size_t>(Memory::PAGE);
+  // A limit on addresses (ulimit -v) shows only when memory is reserved; files have addresses too.
+  const size_t bytes = static_cast<size_t>(need.total(false)) + worlds * static_cast<size_t>(Memory::PAGE);
   void* const probe = reserve_pages(bytes);
   if (probe == nullptr)
     throw EngineError("the system refuses memory for the worlds, though there is enough: check the limit `ulimit -v`");

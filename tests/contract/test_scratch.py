@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -91,3 +92,21 @@ def test_a_disk_with_too_little_room_is_refused(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(memory, "memory_present", lambda: 10**18)
     with pytest.raises(MemoryNeedError, match=r"the run needs \d+\.\d GB there, and \d+\.\d GB are free"):
         require_memory(make_simulation().config, worlds, 1)
+
+
+def test_addresses_that_the_system_refuses_are_an_error_not_a_crash(tmp_path: Path) -> None:
+    """Files need no memory, but addresses."""
+    code = """
+import resource
+from hedon.config.load import load_config
+from hedon.error import EngineError
+from hedon.experiment.simulation import Simulation
+resource.setrlimit(resource.RLIMIT_AS, (3_000_000_000, 3_000_000_000))
+try:
+    Simulation(load_config("baseline"), range(60), 1)
+except EngineError as error:
+    print(error)
+"""
+    given = os.environ | {SCRATCH_VARIABLE: str(tmp_path)}
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, env=given)
+    assert "refuses memory for the worlds" in answer.stdout, answer.stderr

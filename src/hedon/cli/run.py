@@ -84,6 +84,7 @@ def run(
 
     The environment variable HEDON_BACKEND does for every command what --backend does for this one. hedon resume goes
     on with the device of the run where it can be used, and otherwise on the processor, with the same bits.
+    HEDON_SCRATCH names a folder for what only learners need, for worlds larger than memory.
     """
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from

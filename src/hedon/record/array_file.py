@@ -3,6 +3,7 @@
 import hashlib
 import io
 import math
+import os
 import struct
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -120,7 +121,8 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         damaged = archive.testzip()
         if damaged is not None:
             raise ValueError(f"{damaged} is damaged")
-        file = np.asarray(np.memmap(path, np.uint8, "r"))
+        # Windows removes no file that is mapped, and a run removes its old checkpoints.
+        file = np.fromfile(path, np.uint8) if os.name == "nt" else np.asarray(np.memmap(path, np.uint8, "r"))
         for entry in entries:
             head = entry.header_offset
             first = head + _LOCAL_HEAD + sum(_LENGTHS.unpack(file[head : head + _LOCAL_HEAD].tobytes()))
