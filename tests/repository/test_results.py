@@ -111,6 +111,31 @@ def test_contests_by_other_ways_of_learning():
     assert told in page("../paper/paper.md").replace("\n", " ")
 
 
+def test_evolution_from_above():
+    """Falls from where the worlds began, and pairs with the control from 0, by Student's t."""
+    text_of, worlds = page("start.md"), table("start/from/worlds.csv").sort("start", "seed")
+    assert table("start/rate/worlds.csv")["seed"].unique().sort().equals(worlds["seed"].unique().sort())
+    for (start, step), rows in worlds.group_by("start", "step"):
+        food = rows.sort("seed")["w_normal"].to_numpy()
+        by_seed = ", ".join(text(value, 1) for value in food)
+        if start == 5 or step in (512_000, 1_024_000):
+            assert f"| {by_seed} | {span(food, 2, sign=False)} |" in text_of, (start, step)
+    last = worlds.filter(step=1_024_000)
+    control = table("start/rate/worlds.csv").filter(learning_rate=0.0003, step=1_024_000).sort("seed")["w_normal"]
+    tests = {f"from {start}, less {start}": last.filter(start=start)["w_normal"].to_numpy() - start for start in (5, 2)}
+    tests["from 5 less the control, less 5"] = (last.filter(start=5)["w_normal"] - control).to_numpy() - 5
+    corrected = dict(zip(tests, holm([p_of(values) for values in tests.values()]), strict=True))
+    for name, values in tests.items():
+        below, p_values = (values < 0).sum(), f"{small(p_of(values))} | {small(corrected[name])}"
+        row = f"| {name} | {span(values, 2)} | {below} of 6 | {p_values} |"
+        assert row in text_of, row
+
+
+def small(p: float) -> str:
+    """A p, of which more than four digits are not told."""
+    return "< 0.0001" if p < 0.0001 else p_text(p)
+
+
 def test_contests_of_eight_worlds_are_told_by_worlds_first():
     shown = page("start.md")
     for name in ("food", "paper"):
