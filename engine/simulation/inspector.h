@@ -75,7 +75,7 @@ class Inspector {
   }
 
   /// Whether the rows of a table of floats hold nothing but 0 where the count of that row is 0.
-  bool none_before(const std::string& count, const std::string& table) {
+  bool zero_until_counted(const std::string& table, const std::string& count) {
     const std::vector<int64_t> counts = numbers<int64_t>(count);
     const std::span<const char> bytes = find(table)->bytes;
     const size_t row = counts.empty() ? 0 : bytes.size() / counts.size();

@@ -63,9 +63,9 @@ class Memory {
   /// written there. Returns 0, or the system's number of what went wrong.
   int keep_in_file(int64_t first, const std::string& folder);
 
-  /// These bytes are soon read.
+  /// These bytes are soon read: fetches them, if the file has them.
   void expect(const void* from, int64_t bytes) const {
-    if (file_ >= 0) expect_in_file(from, static_cast<size_t>(bytes));
+    if (file_ >= 0 && from >= first_ + in_file_) expect_in_file(from, static_cast<size_t>(bytes));
   }
 
   /// Pages of the file that hold nothing but these bytes are not read before they are written again.
@@ -95,25 +95,30 @@ int64_t laid_out_bytes(const Array<T>& array) {
   return (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
 }
 
-/// Bytes that the arrays of `fields` take, each rounded up to whole cache lines; points them into `at` unless null.
+/// Places arrays one after the other from `at` on, each rounded up to whole cache lines; counts bytes where it is null.
+struct Placer {
+  char* at;
+  int64_t bytes = 0;
+
+  template <class T>
+  void operator()(const std::string&, Array<T>& array) {
+    if (at != nullptr) array.data = reinterpret_cast<T*>(at + bytes);
+    bytes += laid_out_bytes(array);
+  }
+};
+
+/// Bytes that the arrays of `fields` take; places them from `at` on unless it is null.
 template <class Struct>
 int64_t lay_out(Struct& fields, char* at) {
-  int64_t offset = 0;
-  for_each_array(fields, "", [&]<class T>(const std::string&, Array<T>& array) {
-    if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
-    offset += laid_out_bytes(array);
-  });
-  return offset;
+  Placer placer{at};
+  for_each_array(fields, "", placer);
+  return placer.bytes;
 }
 
 /// The same for those arrays of the state whose sizes are so.
 template <class IsSo>
 int64_t lay_out_some(WorldState& state, char* at, IsSo&& is_so) {
-  int64_t offset = 0;
-  const auto place = [&]<class T>(const std::string&, Array<T>& array) {
-    if (at != nullptr) array.data = reinterpret_cast<T*>(at + offset);
-    offset += laid_out_bytes(array);
-  };
+  Placer place{at};
   WorldState::for_each_shape([&](const char* name, auto member, ArrayShape size) {
     auto& field = state.*member;
     if (!is_so(size)) return;
@@ -122,7 +127,7 @@ int64_t lay_out_some(WorldState& state, char* at, IsSo&& is_so) {
     else
       for_each_array(field, "", place);
   });
-  return offset;
+  return place.bytes;
 }
 
 /// Numbers of bodies, circles, walls and pairs that the physics of a world must hold.

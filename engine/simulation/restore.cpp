@@ -139,7 +139,7 @@ bool check_life(Inspector& in) {
          (!in.world_.shape->counts_births || in.within<int32_t>("births", 0, MOST)) &&
          (!in.world_.shape->learning ||
           (in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
-           in.none_before("updates", "first_moment") && in.none_before("updates", "second_moment"))) &&
+           in.zero_until_counted("first_moment", "updates") && in.zero_until_counted("second_moment", "updates"))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
          in.within<float>("body.angle", -turn, turn);
 }

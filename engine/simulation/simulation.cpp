@@ -191,7 +191,8 @@ void Simulation::empty(World& world) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, PhysicsState>) {
       for_each_array(field, "", clear);
     } else if (!Device::is_large(size) && size.rows != Extent::learner_slots) {
-      clear(name, field);  // who takes a slot gets networks, rollouts and an optimizer of its own
+      // What is left: who takes a slot gets networks, rollouts and an optimizer of its own.
+      clear(name, field);
     }
   });
   begin(world);

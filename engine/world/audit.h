@@ -134,9 +134,6 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   return -1;
 }
 
-/// How many agents earlier one is told whose data will be read, where they may lie in a file.
-inline constexpr int32_t AHEAD = 8;
-
 /// How far two discs may overlap: the radius of a body. Overlaps after contacts are much smaller: motors close a gap by
 /// at most about 0.3 u per substep, and the corrections of the next substep remove a third of that. With more overlap a
 /// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other:

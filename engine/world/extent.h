@@ -100,6 +100,9 @@ constexpr HEDON_INLINE bool is_cold(ArrayShape size) {
   return size.width == Extent::observations || (size.rows == Extent::learner_slots && size.width == Extent::params);
 }
 
+/// How many agents ahead cold arrays are asked for.
+inline constexpr int32_t AHEAD = 8;
+
 /// members   of the team that steps the world
 HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
   switch (of) {
