@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from command import hedon
+from polars.testing import assert_frame_equal
 from resumed_run import WINDOW, assert_same_run, filler, small_run
 
 from hedon import _engine
@@ -317,3 +318,21 @@ def test_checkpoints_are_saved_at_the_ends_of_windows_and_once_at_the_end(tmp_pa
     assert not any(step % WINDOW for step in saved)
     resume(tmp_path / "run", 40 * WINDOW + 5)
     assert saved[-2:] == [40 * WINDOW, 40 * WINDOW + 5], "the last may be within a window"
+
+
+def test_records_are_those_of_the_checkpoint_as_soon_as_a_run_goes_on(half, monkeypatch):
+    """Else a second kill would leave the living of a later moment beside them."""
+    before = open_run(half).agents()
+    resume(half, steps=STEPS, checkpoint_seconds=1e9)
+    for path in checkpoint_paths(half)[1:]:
+        path.unlink()  # as a kill leaves it: records up to the end, and no later checkpoint
+    assert open_run(half).agents().height > before.height
+    seen = []
+
+    def stop(*_):
+        seen.append(open_run(half).agents())
+        return iter(())
+
+    monkeypatch.setattr("hedon.experiment.run._steps", stop)
+    resume(half, steps=STEPS)
+    assert_frame_equal(seen[0], before)

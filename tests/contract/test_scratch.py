@@ -55,6 +55,7 @@ def test_a_run_with_files_is_the_run_without(tmp_path: Path, monkeypatch: pytest
 
 
 def test_memory_is_needed_for_what_is_not_in_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(SCRATCH_VARIABLE, raising=False)
     config = make_simulation().config
     need = memory_needed(config, 1, 1)
     enough = sum(need.values()) - need[COLD]
@@ -90,23 +91,24 @@ def test_a_disk_with_too_little_room_is_refused(tmp_path: Path, monkeypatch: pyt
     free = os.statvfs(tmp_path).f_bavail * os.statvfs(tmp_path).f_frsize
     worlds = free // memory_needed(make_simulation().config, 1, 1)[COLD] + 1000
     monkeypatch.setattr(memory, "memory_present", lambda: 10**18)
-    with pytest.raises(MemoryNeedError, match=r"the run needs \d+\.\d GB there, and \d+\.\d GB are free"):
+    with pytest.raises(
+        MemoryNeedError, match=r"the run needs \d+\.\d GB there, and \d+\.\d GB are free: lower population"
+    ):
         require_memory(make_simulation().config, worlds, 1)
 
 
-def test_addresses_that_the_system_refuses_are_an_error_not_a_crash(tmp_path: Path) -> None:
-    """Files need no memory, but addresses."""
-    code = """
-import resource
-from hedon.config.load import load_config
-from hedon.error import EngineError
-from hedon.experiment.simulation import Simulation
-resource.setrlimit(resource.RLIMIT_AS, (3_000_000_000, 3_000_000_000))
-try:
-    Simulation(load_config("baseline"), range(60), 1)
-except EngineError as error:
-    print(error)
-"""
+@pytest.mark.long
+def test_every_golden_digest_holds_with_files(tmp_path: Path) -> None:
+    """All presets and mechanisms, one species and several, on processors and on the emulated device."""
     given = os.environ | {SCRATCH_VARIABLE: str(tmp_path)}
-    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, env=given)
-    assert "refuses memory for the worlds" in answer.stdout, answer.stderr
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        str(Path(__file__).parents[1] / "golden"),
+    ]
+    answer = subprocess.run(command, capture_output=True, text=True, check=False, env=given)
+    assert answer.returncode == 0, answer.stdout

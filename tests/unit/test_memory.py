@@ -15,6 +15,7 @@ from hedon.config.load import load_config
 from hedon.error import HedonError
 from hedon.experiment import memory
 from hedon.experiment.memory import memory_needed, memory_present, require_memory
+from hedon.experiment.simulation import SCRATCH_VARIABLE
 
 WORLD = ("networks", "moments and observations", "the rest of rollouts", "physics", "rest of the worlds")
 
@@ -38,6 +39,7 @@ def test_each_part_is_of_the_size_that_its_arrays_have():
 
 
 def test_a_run_that_does_not_fit_is_refused_by_its_parts(tmp_path, monkeypatch):
+    monkeypatch.delenv(SCRATCH_VARIABLE, raising=False)
     monkeypatch.setattr(memory, "memory_present", lambda: 10**8)
     words = r"\d GB.*networks \d.*moments and observations .*rollouts .*physics .*records"
     with pytest.raises(HedonError, match=words):
@@ -69,17 +71,20 @@ def test_a_container_says_how_much_there_is(tmp_path: Path):
     assert memory_present(files[:3]) > 123456
 
 
-def test_memory_that_the_system_refuses_is_an_error_not_a_crash():
+@pytest.mark.parametrize("in_files", [False, True])
+def test_memory_that_the_system_refuses_is_an_error_not_a_crash(in_files: bool, tmp_path: Path):
+    """What lies in files needs no memory, but addresses."""
     code = """
 import resource
 from hedon.config.load import load_config
 from hedon.error import EngineError
 from hedon.experiment.simulation import Simulation
-resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
+resource.setrlimit(resource.RLIMIT_AS, (3_000_000_000, 3_000_000_000))
 try:
-    Simulation(load_config("baseline"), range(100), 1)
+    Simulation(load_config("baseline"), range(60), 1)
 except EngineError as error:
     print(error)
 """
-    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    given = os.environ | {SCRATCH_VARIABLE: str(tmp_path) if in_files else ""}
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, env=given)
     assert "refuses memory for the worlds" in answer.stdout, answer.stderr

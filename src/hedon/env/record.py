@@ -13,7 +13,6 @@ from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
-from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.snapshot import save_snapshot
@@ -69,7 +68,6 @@ class Record:
             self._recorder.checkpoint(0, 0.0)
             self._held = held.pop_all()
         self._step, self._next, self._seconds = 0, 1, 0.0
-        self._due = time.perf_counter() + CHECKPOINT_SECONDS
 
     def require_open(self) -> None:
         """Refuses a step after the end of the records.
@@ -116,8 +114,7 @@ class Record:
             self._recorder.interval()
         if shown:
             self._recorder.frame()
-        if time.perf_counter() >= self._due:
-            self._due = time.perf_counter() + CHECKPOINT_SECONDS
+        if self._recorder.checkpoint_due:
             self._recorder.checkpoint(self._step, self._seconds)
 
     def close(self, status: str = "finished") -> Manifest:

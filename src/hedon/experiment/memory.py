@@ -74,22 +74,25 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
         MemoryNeedError: It needs more than there is; the message says what for.
     """
     need, present = memory_needed(config, worlds, threads), memory_present()
+    slots = sum(own.population.capacity for own in config.species.values())
+    remedy = (
+        f"lower population.capacity ({slots:,}), world.rollout_steps ({config.world.rollout_steps:,}) or the number of "
+        f"seeds ({worlds:,})"
+    )
     scratch = os.environ.get(SCRATCH_VARIABLE, "")
     if scratch:
-        _require_room(scratch, need.pop(COLD))
+        _require_room(scratch, need.pop(COLD), remedy)
     total = sum(need.values())
     if total > present:
         parts = ", ".join(f"{name} {size / 1e9:.1f}" for name, size in need.items())
-        slots = sum(own.population.capacity for own in config.species.values())
         other = "" if scratch else f", or set {SCRATCH_VARIABLE} to a folder that can take the {COLD}"
         raise MemoryNeedError(
-            f"the run may need {total / 1e9:.1f} GB of memory, and there are {present / 1e9:.1f} GB ({parts}): lower "
-            f"population.capacity ({slots:,}), world.rollout_steps "
-            f"({config.world.rollout_steps:,}) or the number of seeds ({worlds:,}){other}"
+            f"the run may need {total / 1e9:.1f} GB of memory, and there are {present / 1e9:.1f} GB ({parts}): "
+            f"{remedy}{other}"
         )
 
 
-def _require_room(scratch: str, needed: int) -> None:
+def _require_room(scratch: str, needed: int, remedy: str) -> None:
     """MemoryNeedError: the folder is not there, or its disk has too little room."""
     try:
         free = shutil.disk_usage(scratch).free
@@ -98,5 +101,5 @@ def _require_room(scratch: str, needed: int) -> None:
     if needed > free:
         raise MemoryNeedError(
             f"{SCRATCH_VARIABLE} = {brief(repr(scratch))}: the run needs {needed / 1e9:.1f} GB there, and "
-            f"{free / 1e9:.1f} GB are free"
+            f"{free / 1e9:.1f} GB are free: {remedy}, or choose another disk"
         )

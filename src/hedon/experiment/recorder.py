@@ -15,6 +15,7 @@ from hedon.experiment.sample import PopulationSampler, agent_rows, frame_rows
 from hedon.experiment.simulation import Simulation
 from hedon.record.array_file import ArrayWriter
 from hedon.record.checkpoint import CheckpointHead, Sampled
+from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_path
 from hedon.record.writer import Writer
 
 FLUSH_SECONDS = 30.0
@@ -22,6 +23,9 @@ FLUSH_SECONDS = 30.0
 FLUSH_GROWTH = 0.005
 """The same as a share of the session so far. A part costs about 10 kB for its footer, and an open file for each
 reader. So parts are written less often as a run gets longer: a run of many hours has some hundreds of them."""
+
+PACE = 19
+"""Least time between two checkpoints, in that which the first of them took to save."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +51,17 @@ class Recorder:
         writer: Where the rows go.
         frames: Steps between two frames; stored in checkpoints.
         start: Where the session begins.
+        checkpoint_seconds: Time between two checkpoints [s].
     """
 
-    def __init__(self, simulation: Simulation, writer: Writer, frames: int, start: Start) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        writer: Writer,
+        frames: int,
+        start: Start,
+        checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    ) -> None:
         self.simulation = simulation
         self.writer = writer
         self.frames = frames
@@ -62,6 +74,9 @@ class Recorder:
         self.begun = time.perf_counter()
         self.flush_due = 0.0
         self.shown = False
+        self.checkpoint_seconds = checkpoint_seconds
+        self.next_checkpoint = self.begun + checkpoint_seconds
+        self.saved = start.step if checkpoint_path(writer.folder, start.step).exists() else None  # what it goes on from
 
     def deaths(self, *, partial: bool = False) -> None:
         """Writes the agents that died since the last call. The engine has little room for them, so call it often.
@@ -108,15 +123,29 @@ class Recorder:
         if rows:
             self.writer.append("frames", *rows)
 
+    @property
+    def checkpoint_due(self) -> bool:
+        """Whether it is time for a checkpoint. Saving takes at most a twentieth of the time: those of large worlds are
+        further apart."""
+        return time.perf_counter() >= self.next_checkpoint
+
     def checkpoint(self, step: int, seconds: float) -> None:
-        """Saves a checkpoint to continue from. Deaths and frames of this step must be written before.
+        """Saves a checkpoint to continue from, unless there is one. All rows are on disk then.
+
+        Deaths and frames of this step must be written before.
 
         Args:
             step: Completed by every world that lives [step].
             seconds: Spent on steps so far, over all sessions [s].
         """
         self.living()
+        if step == self.saved:
+            self.writer.flush()
+            return
+        begun = time.perf_counter()
         self.writer.save_checkpoint(self._head(step, seconds), self._fill)
+        self.saved, now = step, time.perf_counter()
+        self.next_checkpoint = now + max(self.checkpoint_seconds, PACE * (now - begun))
 
     def fault(self, seconds: float) -> None:
         """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""

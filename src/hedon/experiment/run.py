@@ -15,7 +15,6 @@ from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
-from hedon.record.folder import checkpoint_path
 from hedon.record.founder import FOUNDERS
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
@@ -139,32 +138,28 @@ def advance(
         EngineError: A world reports an error; its state is in the folder `fault`, unless that cannot be written either.
         RecordError: The folder cannot be written.
     """
-    recorder = Recorder(simulation, writer, plan.frames, start)
+    recorder = Recorder(simulation, writer, plan.frames, start, plan.checkpoint_seconds)
     begun = time.perf_counter()
     seconds, step, status = start.seconds, start.step, "failed"
-    due = _Due(plan.checkpoint_seconds)
+    window, heard = plan.config.world.rollout_steps, 0
     try:
-        if not checkpoint_path(plan.out, step).exists():  # it is there where a run goes on from it
-            recorder.checkpoint(step, seconds)
-        saved = step
+        recorder.checkpoint(step, seconds)
         for step in _steps(simulation, plan, start.step, interrupted):
             seconds = start.seconds + time.perf_counter() - begun
             writer.require_folder()
             recorder.deaths()
-            if step % plan.config.world.rollout_steps == 0:
+            if step % window == 0:
                 recorder.interval()
             if plan.frames and step % plan.frames == 0:
                 recorder.frame()
-            if due.now(interrupted, window_ends=step % plan.config.world.rollout_steps == 0):
-                saving = time.perf_counter()
+            # Within a window a checkpoint would hold rollouts, which are larger than all else: only if asked to end.
+            if interrupted.count > heard or (step % window == 0 and recorder.checkpoint_due):
                 recorder.checkpoint(step, seconds)
-                due.saved(saving)
-                saved = step
+                heard = interrupted.count
             if display is not None and step < plan.steps:  # the last moment is shown below, with its own rows
                 display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
-        if saved != step:
-            recorder.checkpoint(step, seconds)
+        recorder.checkpoint(step, seconds)
         recorder.interval()
         if display is not None:
             display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
@@ -182,28 +177,6 @@ def advance(
             manifest = last_manifest(manifest, simulation, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
     return manifest
-
-
-class _Due:
-    """Decides when to save a checkpoint: at intervals, and immediately when the run is asked to end.
-
-    At an interval's end it waits for the window's, since rollouts are larger than all else. Large worlds have longer
-    intervals: saving takes at most a twentieth of the time.
-    """
-
-    def __init__(self, seconds: float) -> None:
-        self._seconds = seconds
-        self._next = time.perf_counter() + seconds
-        self._heard = 0
-
-    def now(self, interrupted: Interrupts, *, window_ends: bool) -> bool:
-        asked, self._heard = interrupted.count > self._heard, interrupted.count
-        return asked or (window_ends and time.perf_counter() >= self._next)
-
-    def saved(self, begun: float) -> None:
-        """Notes that a checkpoint was saved just now, since `begun`."""
-        now = time.perf_counter()
-        self._next = now + max(self._seconds, 19 * (now - begun))
 
 
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
