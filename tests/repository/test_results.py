@@ -129,6 +129,11 @@ def test_evolution_from_above():
         below, p_values = (values < 0).sum(), f"{small(p_of(values))} | {small(corrected[name])}"
         row = f"| {name} | {span(values, 2)} | {below} of 6 | {p_values} |"
         assert row in text_of, row
+    held = table("start/from/together.csv").row(by_predicate=pl.col("weight") == "w_normal", named=True)
+    optimum, low, high = (text(held[name], 2) for name in ("optimum", "optimum_low", "optimum_high"))
+    assert held["worlds"] == 18
+    assert f"held at {optimum} ({low} … {high}), p {p_text(held['p'])}" in text_of
+    assert f"held at {optimum} ({low} to {high}, p {p_text(held['p'])})" in page("../paper/paper.md").replace("\n", " ")
 
 
 def small(p: float) -> str:
