@@ -3,6 +3,7 @@
 Each condition is the real one. File systems of their own take root; without it those tests are skipped.
 """
 
+import gc
 import os
 import signal
 import socket
@@ -37,6 +38,7 @@ def disk(tmp_path):
     if mount("-t", "tmpfs", "-o", "size=40m", "tmpfs", folder).returncode != 0:
         pytest.skip("cannot mount a file system here: it takes root and the right to mount")
     yield folder
+    gc.collect()  # errors that a test caught may still hold what they were about: arrays in a checkpoint's file
     subprocess.run(["umount", folder], check=True)
 
 

@@ -65,7 +65,7 @@ def lock(
         folder: Of the run.
         steps: Steps of each world in all; None for those of the last session.
         threads: Threads to use; 0 for all processors. Changes no result.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Raises:
         RecordError: It is not a run, is in use, has no steps left, or its checkpoint does not fit; the message says
@@ -120,7 +120,7 @@ def resume(
         steps: Steps of each world in all; None for those of the last session.
         threads: Threads to use; 0 for all processors. Changes no result.
         display: Shows progress.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Returns:
         The manifest as it was saved at the end.
@@ -212,6 +212,7 @@ def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
             set_initial_state(simulation, plan)
         else:
             start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
+            checkpoint.arrays.clear()  # they are views of a file, which keeps its room on the disk while they live
         parts = checkpoint.head.parts if checkpoint else {}
         roll_back(plan.out, parts, start.step)
         manifest = next_manifest(found.manifest, plan, simulation, start.step)
