@@ -31,7 +31,7 @@ Ray = Annotated[
     str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
 ]
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
-Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints, for `hedon resume`.", min=0.0)]
+Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints; 0 for every window.", min=0.0)]
 Report = Annotated[bool, typer.Option(help="Write a report at the end; `hedon report` writes it at any time.")]
 
 

@@ -65,7 +65,7 @@ def plan_branch(
         steps: Steps of each world in all; None for those that the old run was planned with.
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; None for those of the old run.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Raises:
         RecordError: It is not a run, has no such checkpoint or a damaged one, or has come further than `steps`.
@@ -141,7 +141,7 @@ def branch(
         threads: Threads to use; 0 for all processors. Changes no result.
         frames: Steps between two frames; None for the parent's.
         display: Shows progress.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Returns:
         The manifest of the new run as it was saved at the end.

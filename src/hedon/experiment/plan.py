@@ -37,7 +37,8 @@ class RunPlan:
         out: The run's folder; given as a path or a text. It must not hold a run already.
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; 0 for none.
-        checkpoint_seconds: Time between two checkpoints [s]. There is always one at the start and one at the end.
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window. There is always
+            one at the start and one at the end.
         founders: Genomes that the worlds begin with; None where they are drawn from the config's laws. The plan's
             config gets the table's digest.
         networks: What agents that never learn begin with; None for new networks. The config gets their digest.

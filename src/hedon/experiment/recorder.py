@@ -51,7 +51,7 @@ class Recorder:
         writer: Where the rows go.
         frames: Steps between two frames; stored in checkpoints.
         start: Where the session begins.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
     """
 
     def __init__(
@@ -126,7 +126,7 @@ class Recorder:
     @property
     def checkpoint_due(self) -> bool:
         """Whether it is time for a checkpoint. Saving takes at most a twentieth of the time: those of large worlds are
-        further apart."""
+        further apart, unless every chance is asked for (0 s)."""
         return time.perf_counter() >= self.next_checkpoint
 
     def checkpoint(self, step: int, seconds: float) -> None:
@@ -145,7 +145,9 @@ class Recorder:
         begun = time.perf_counter()
         self.writer.save_checkpoint(self._head(step, seconds), self._fill)
         self.saved, now = step, time.perf_counter()
-        self.next_checkpoint = now + max(self.checkpoint_seconds, PACE * (now - begun))
+        self.next_checkpoint = now
+        if self.checkpoint_seconds > 0:
+            self.next_checkpoint += max(self.checkpoint_seconds, PACE * (now - begun))
 
     def fault(self, seconds: float) -> None:
         """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""

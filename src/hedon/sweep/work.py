@@ -138,7 +138,7 @@ def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
         plan: Of the sweep.
         batch: To make.
         folder: Where its run is made.
-        checkpoint_seconds: Time between two checkpoints [s].
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
     """
     condition = plan.conditions[batch.condition]
     changed = plan.changes(condition)
